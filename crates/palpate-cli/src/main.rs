@@ -1,0 +1,2 @@
+//! The palpate program.
+fn main() {}

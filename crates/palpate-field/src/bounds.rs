@@ -1,0 +1,196 @@
+//! Boxes and balls that bound a shape.
+
+use crate::pose::Pose;
+use crate::vector::{Point, Vector};
+
+/// A box along the axes, `min ≤ p ≤ max` in each coordinate [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb<const D: usize> {
+    /// The corner with the smallest coordinates.
+    pub min: Point<D>,
+    /// The corner with the largest coordinates.
+    pub max: Point<D>,
+}
+
+impl<const D: usize> Aabb<D> {
+    /// The box `|pᵢ| ≤ half_extentsᵢ`.
+    #[must_use]
+    pub fn centred(half_extents: Vector<f64, D>) -> Self {
+        Self { min: -half_extents, max: half_extents }
+    }
+
+    /// The smallest box around `points`; `None` if there are none.
+    pub fn around(points: impl IntoIterator<Item = Point<D>>) -> Option<Self> {
+        points.into_iter().map(|p| Self { min: p, max: p }).reduce(|a, b| a.union(&b))
+    }
+
+    /// The centre of the box [m].
+    #[must_use]
+    pub fn centre(&self) -> Point<D> {
+        Vector(std::array::from_fn(|i| 0.5 * (self.min[i] + self.max[i])))
+    }
+
+    /// Half the edge lengths [m].
+    #[must_use]
+    pub fn half_extents(&self) -> Vector<f64, D> {
+        Vector(std::array::from_fn(|i| 0.5 * (self.max[i] - self.min[i])))
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            min: Vector(std::array::from_fn(|i| self.min[i].min(other.min[i]))),
+            max: Vector(std::array::from_fn(|i| self.max[i].max(other.max[i]))),
+        }
+    }
+
+    /// The box with every face moved outwards by `margin` [m].
+    #[must_use]
+    pub fn grown(&self, margin: f64) -> Self {
+        let margin = Vector::constant(margin);
+        Self { min: self.min - margin, max: self.max + margin }
+    }
+
+    /// The smallest box around this one after `pose`.
+    #[must_use]
+    pub fn placed(&self, pose: &Pose<D>) -> Self {
+        let centre = pose.transform_point(self.centre());
+        let half = self.half_extents();
+        let matrix = pose.rotation.matrix();
+        let reach =
+            Vector(std::array::from_fn(|i| (0..D).map(|k| matrix[i][k].abs() * half[k]).sum()));
+        Self { min: centre - reach, max: centre + reach }.rounded_outwards()
+    }
+
+    /// `true` if `point` lies in the box or on its faces.
+    #[must_use]
+    pub fn contains(&self, point: Point<D>) -> bool {
+        (0..D).all(|i| self.min[i] <= point[i] && point[i] <= self.max[i])
+    }
+
+    /// Room for the roundings of a change of frame.
+    fn rounded_outwards(self) -> Self {
+        let largest =
+            (0..D).fold(0.0_f64, |m, i| m.max(self.min[i].abs()).max(self.max[i].abs()));
+        self.grown(8.0 * f64::EPSILON * largest)
+    }
+}
+
+/// A ball that bounds a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundingBall<const D: usize> {
+    /// The centre [m].
+    pub centre: Point<D>,
+    /// The radius [m].
+    pub radius: f64,
+}
+
+impl<const D: usize> BoundingBall<D> {
+    /// The smallest ball that holds both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let between = other.centre - self.centre;
+        let apart = between.norm();
+        if apart + other.radius <= self.radius {
+            return *self;
+        }
+        if apart + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = 0.5 * (apart + self.radius + other.radius);
+        let centre = self.centre + between * ((radius - self.radius) / apart);
+        Self { centre, radius: radius * (1.0 + 8.0 * f64::EPSILON) }
+    }
+}
+
+/// A box and a ball, each of which holds the set `f ≤ 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds<const D: usize> {
+    /// The box.
+    pub aabb: Aabb<D>,
+    /// The ball; often tighter than the one around the box.
+    pub ball: BoundingBall<D>,
+}
+
+impl<const D: usize> Bounds<D> {
+    /// The box `|pᵢ| ≤ half_extentsᵢ` and a ball of `radius` about the origin.
+    #[must_use]
+    pub fn centred(half_extents: Vector<f64, D>, radius: f64) -> Self {
+        Self {
+            aabb: Aabb::centred(half_extents),
+            ball: BoundingBall { centre: Vector::ZERO, radius },
+        }
+    }
+
+    /// `aabb` and the ball around it.
+    #[must_use]
+    pub fn of_box(aabb: Aabb<D>) -> Self {
+        let radius = aabb.half_extents().norm() * (1.0 + 4.0 * f64::EPSILON);
+        Self { aabb, ball: BoundingBall { centre: aabb.centre(), radius } }
+    }
+
+    /// Bounds of the union of both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let aabb = self.aabb.union(&other.aabb);
+        let ball = self.ball.union(&other.ball);
+        let around = Self::of_box(aabb).ball;
+        Self { aabb, ball: if around.radius < ball.radius { around } else { ball } }
+    }
+
+    /// Bounds of all points within `margin` [m].
+    #[must_use]
+    pub fn grown(&self, margin: f64) -> Self {
+        let radius = self.ball.radius + margin;
+        Self {
+            aabb: self.aabb.grown(margin),
+            ball: BoundingBall { centre: self.ball.centre, radius },
+        }
+    }
+
+    /// Bounds after `pose`.
+    #[must_use]
+    pub fn placed(&self, pose: &Pose<D>) -> Self {
+        let centre = pose.transform_point(self.ball.centre);
+        let slack = 8.0 * f64::EPSILON * (centre.norm() + self.ball.radius);
+        Self {
+            aabb: self.aabb.placed(pose),
+            ball: BoundingBall { centre, radius: self.ball.radius + slack },
+        }
+    }
+
+    /// Bounds after scaling axis `i` by `factors[i]`, all positive.
+    #[must_use]
+    pub fn scaled(&self, factors: [f64; D]) -> Self {
+        let scale = |p: Point<D>| Vector(std::array::from_fn(|i| p[i] * factors[i]));
+        let largest = factors.iter().fold(0.0_f64, |m, f| m.max(*f));
+        let aabb = Aabb { min: scale(self.aabb.min), max: scale(self.aabb.max) };
+        let ball = BoundingBall {
+            centre: scale(self.ball.centre),
+            radius: self.ball.radius * largest * (1.0 + 4.0 * f64::EPSILON),
+        };
+        Self { aabb, ball }
+    }
+
+    /// The largest distance of a point of the shape from the origin.
+    #[must_use]
+    pub fn radius_about_origin(&self) -> f64 {
+        self.ball.centre.norm() + self.ball.radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ball_of_two_balls_touches_both() {
+        let a = BoundingBall { centre: Vector([0.0, 0.0]), radius: 1.0 };
+        let b = BoundingBall { centre: Vector([4.0, 0.0]), radius: 2.0 };
+        let both = a.union(&b);
+        assert_eq!(both.centre, Vector([2.5, 0.0]));
+        assert!((both.radius - 3.5).abs() < 1e-14);
+        assert_eq!(a.union(&BoundingBall { radius: 0.5, ..a }), a);
+    }
+}

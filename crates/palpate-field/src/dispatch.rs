@@ -1,0 +1,136 @@
+//! Runs the loops over blocks with the best instruction set of the machine.
+//!
+//! A loop over lanes is an ordinary generic function, written once. Here it is
+//! compiled three times, with the instructions that every x86-64 machine has,
+//! with AVX2 and with AVX-512, and the copy to run is chosen once at run time;
+//! LLVM vectorises each. Other architectures have one copy. All copies give the
+//! same bits, since no formula uses a fused multiply-add.
+//!
+//! This is the one module of the crate where `unsafe` is allowed.
+#![allow(unsafe_code, reason = "calls functions compiled for a checked instruction set")]
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// A set of vector instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum InstructionSet {
+    /// What every machine of the target has.
+    Baseline = 1,
+    /// 256-bit vectors on x86-64.
+    Avx2 = 2,
+    /// 512-bit vectors on x86-64.
+    Avx512 = 3,
+}
+
+/// The instruction set in use; zero until it is first asked for.
+static IN_USE: AtomicU8 = AtomicU8::new(0);
+
+impl InstructionSet {
+    /// All of them, from the plainest to the widest.
+    pub const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// `true` if this machine has it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                Self::Avx2.is_available()
+                    && is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512bw")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => false,
+        }
+    }
+
+    /// The one that blocks are evaluated with: the widest available, unless
+    /// [`select`](Self::select) chose another.
+    #[inline(always)]
+    #[must_use]
+    pub fn in_use() -> Self {
+        match IN_USE.load(Ordering::Relaxed) {
+            1 => Self::Baseline,
+            2 => Self::Avx2,
+            3 => Self::Avx512,
+            _ => Self::detect(),
+        }
+    }
+
+    /// Evaluates all blocks of this process with `self` from now on, to compare
+    /// instruction sets; `false`, and nothing changes, if the machine lacks it.
+    pub fn select(self) -> bool {
+        let available = self.is_available();
+        if available {
+            IN_USE.store(self as u8, Ordering::Relaxed);
+        }
+        available
+    }
+
+    #[cold]
+    fn detect() -> Self {
+        let widest = Self::ALL.into_iter().rev().find(|set| set.is_available());
+        let set = widest.unwrap_or(Self::Baseline);
+        IN_USE.store(set as u8, Ordering::Relaxed);
+        set
+    }
+}
+
+/// A loop over the lanes of a block.
+///
+/// `run` must be `#[inline(always)]`, and so must all that it calls, to be
+/// compiled with the instructions of its caller here. Inputs and output are
+/// arguments, not fields, so that LLVM knows that they do not overlap.
+pub(crate) trait Job<A, B, Out> {
+    fn run(&self, a: &A, b: &B, count: usize, out: &mut Out);
+}
+
+/// Runs `job` with the instruction set in use.
+#[inline(always)]
+pub(crate) fn run<A, B, Out, J: Job<A, B, Out>>(
+    job: &J,
+    a: &A,
+    b: &B,
+    count: usize,
+    out: &mut Out,
+) {
+    #[cfg(target_arch = "x86_64")]
+    match InstructionSet::in_use() {
+        // SAFETY: in_use() returns only sets for which is_available() found
+        // every feature that the function is compiled with.
+        InstructionSet::Avx512 => return unsafe { with_avx512(job, a, b, count, out) },
+        // SAFETY: as above.
+        InstructionSet::Avx2 => return unsafe { with_avx2(job, a, b, count, out) },
+        InstructionSet::Baseline => {}
+    }
+    baseline(job, a, b, count, out);
+}
+
+#[inline(never)]
+fn baseline<A, B, Out, J: Job<A, B, Out>>(job: &J, a: &A, b: &B, count: usize, out: &mut Out) {
+    job.run(a, b, count, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi2")]
+fn with_avx2<A, B, Out, J: Job<A, B, Out>>(job: &J, a: &A, b: &B, count: usize, out: &mut Out) {
+    job.run(a, b, count, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi2,avx512f,avx512vl,avx512dq,avx512bw")]
+fn with_avx512<A, B, Out, J: Job<A, B, Out>>(
+    job: &J,
+    a: &A,
+    b: &B,
+    count: usize,
+    out: &mut Out,
+) {
+    job.run(a, b, count, out);
+}

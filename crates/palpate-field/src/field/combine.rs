@@ -1,0 +1,222 @@
+//! Nodes that fold an operation over their children's answers.
+
+use std::fmt::Debug;
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane, lanes};
+use crate::dispatch::{self, Job};
+use crate::promise::Promise;
+use crate::scalar::{Dual, Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// An operation on two answers.
+pub(crate) trait Combine: Debug + Send + Sync + 'static {
+    /// The answer for `a` and `b`.
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S;
+}
+
+/// `((c₀ ∘ c₁) ∘ c₂) ∘ …` over at least one child.
+#[derive(Debug)]
+pub(crate) struct Combined<O, const D: usize> {
+    pub(crate) operation: O,
+    pub(crate) children: Vec<Shape<D>>,
+    pub(crate) promise: Promise<D>,
+}
+
+#[inline(always)]
+fn differentiate<T: Float, O: Combine, const D: usize>(
+    operation: &O,
+    (a, a_gradient): (T, Vector<T, D>),
+    (b, b_gradient): (T, Vector<T, D>),
+) -> (T, Vector<T, D>) {
+    let a = Dual { value: a, gradient: a_gradient.0 };
+    let b = Dual { value: b, gradient: b_gradient.0 };
+    let result = operation.combine(a, b);
+    (result.value, Vector(result.gradient))
+}
+
+struct Values<'a, O>(&'a O);
+
+impl<S: Lane, O: Combine, const W: usize> Job<Column<S, W>, Column<S, W>, Column<S, W>>
+    for Values<'_, O>
+{
+    #[inline(always)]
+    fn run(&self, a: &Column<S, W>, b: &Column<S, W>, count: usize, out: &mut Column<S, W>) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, self.0.combine(a.get(i), b.get(i)));
+        }
+    }
+}
+
+struct ValuesAndGradients<'a, O>(&'a O);
+
+impl<T: Float + Lane, O: Combine, const D: usize, const W: usize>
+    Job<Gradients<T, D, W>, Gradients<T, D, W>, Gradients<T, D, W>>
+    for ValuesAndGradients<'_, O>
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        a: &Gradients<T, D, W>,
+        b: &Gradients<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        for i in 0..lanes::<T, W>(count) {
+            let (distance, gradient) = differentiate(
+                self.0,
+                (a.distance.get(i), a.gradient.get(i)),
+                (b.distance.get(i), b.gradient.get(i)),
+            );
+            out.distance.set(i, distance);
+            out.gradient.set(i, gradient);
+        }
+    }
+}
+
+impl<T: Float, O: Combine, const D: usize> EvaluatePoint<T, D> for Combined<O, D>
+where
+    dyn Field<D>: EvaluatePoint<T, D>,
+{
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        let mut distance = self.children[0].field().distance(p);
+        for child in &self.children[1..] {
+            distance = self.operation.combine(distance, child.field().distance(p));
+        }
+        distance
+    }
+
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let mut distance = self.children[0].field().distance_gradient(p, gradient);
+        let mut other = Vector([T::constant(0.0); D]);
+        for child in &self.children[1..] {
+            let value = child.field().distance_gradient(p, &mut other);
+            (distance, *gradient) =
+                differentiate(&self.operation, (distance, *gradient), (value, other));
+        }
+        distance
+    }
+}
+
+/// Folds an operation over the blocks of children, one after the other.
+///
+/// The results alternate between the output and a scratch block: a select that
+/// writes where it reads becomes a masked store, which is microcoded on some
+/// machines.
+pub(super) struct ValueFold<'a, S: Lane, O, const W: usize> {
+    operation: &'a O,
+    out: &'a mut Column<S, W>,
+    scratch: Column<S, W>,
+    next: Column<S, W>,
+    pushed: usize,
+}
+
+impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
+    pub(super) fn new(operation: &'a O, out: &'a mut Column<S, W>) -> Self {
+        Self { operation, out, scratch: Column::zero(), next: Column::zero(), pushed: 0 }
+    }
+
+    pub(super) fn push<const D: usize>(
+        &mut self,
+        child: &Shape<D>,
+        p: &Block<S, D, W>,
+        count: usize,
+    ) where
+        dyn Field<D>: EvaluateBlock<S, D, W>,
+    {
+        if self.pushed == 0 {
+            child.field().distances(p, count, self.out);
+        } else {
+            child.field().distances(p, count, &mut self.next);
+            let job = Values(self.operation);
+            if self.pushed % 2 == 1 {
+                dispatch::run(&job, &*self.out, &self.next, count, &mut self.scratch);
+            } else {
+                dispatch::run(&job, &self.scratch, &self.next, count, self.out);
+            }
+        }
+        self.pushed += 1;
+    }
+
+    pub(super) fn finish(self) {
+        if self.pushed % 2 == 0 {
+            self.out.clone_from(&self.scratch);
+        }
+    }
+}
+
+/// The same with gradients.
+pub(super) struct GradientFold<'a, T: Float + Lane, O, const D: usize, const W: usize> {
+    operation: &'a O,
+    out: &'a mut Gradients<T, D, W>,
+    scratch: Gradients<T, D, W>,
+    next: Gradients<T, D, W>,
+    pushed: usize,
+}
+
+impl<'a, T: Float + Lane, O: Combine, const D: usize, const W: usize>
+    GradientFold<'a, T, O, D, W>
+where
+    dyn Field<D>: DifferentiateBlock<T, D, W>,
+{
+    pub(super) fn new(operation: &'a O, out: &'a mut Gradients<T, D, W>) -> Self {
+        Self { operation, out, scratch: Gradients::zero(), next: Gradients::zero(), pushed: 0 }
+    }
+
+    pub(super) fn push(&mut self, child: &Shape<D>, p: &Block<T, D, W>, count: usize) {
+        if self.pushed == 0 {
+            child.field().distances_gradients(p, count, self.out);
+        } else {
+            child.field().distances_gradients(p, count, &mut self.next);
+            let job = ValuesAndGradients(self.operation);
+            if self.pushed % 2 == 1 {
+                dispatch::run(&job, &*self.out, &self.next, count, &mut self.scratch);
+            } else {
+                dispatch::run(&job, &self.scratch, &self.next, count, self.out);
+            }
+        }
+        self.pushed += 1;
+    }
+
+    pub(super) fn finish(self) {
+        if self.pushed % 2 == 0 {
+            self.out.clone_from(&self.scratch);
+        }
+    }
+}
+
+impl<S: Lane, O: Combine, const D: usize, const W: usize> EvaluateBlock<S, D, W>
+    for Combined<O, D>
+where
+    dyn Field<D>: EvaluateBlock<S, D, W>,
+{
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+        let mut fold = ValueFold::new(&self.operation, out);
+        self.children.iter().for_each(|child| fold.push(child, p, count));
+        fold.finish();
+    }
+}
+
+impl<T: Float + Lane, O: Combine, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
+    for Combined<O, D>
+where
+    dyn Field<D>: DifferentiateBlock<T, D, W>,
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        let mut fold = GradientFold::new(&self.operation, out);
+        self.children.iter().for_each(|child| fold.push(child, p, count));
+        fold.finish();
+    }
+}
+
+impl<O: Combine, const D: usize> Field<D> for Combined<O, D> {
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+}

@@ -1,0 +1,118 @@
+//! Fields that are not formulas: closures, and later grids and meshes.
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane};
+use crate::promise::Promise;
+use crate::scalar::{Float, Model};
+use crate::vector::{Point, Vector};
+
+/// A field that a user evaluates point by point in double precision.
+///
+/// A closed formula is faster as a [`Kernel`](crate::kernel::Kernel): its blocks
+/// vectorise, its gradient and its model come by themselves. A `CustomField` is
+/// for what no formula gives. Cells are bounded by its Lipschitz constant.
+///
+/// ```
+/// use palpate_field::{CustomField, Point, Promise, Shape, Vector};
+///
+/// /// Waves of 1 cm on a floor; nothing is known of it but its steepness.
+/// #[derive(Debug)]
+/// struct Waves(Promise<3>);
+///
+/// impl CustomField<3> for Waves {
+///     fn distance(&self, p: Point<3>) -> f64 {
+///         p[1] - 0.01 * (20.0 * p[0]).sin()
+///     }
+///     fn distance_gradient(&self, p: Point<3>) -> (f64, Vector<f64, 3>) {
+///         (self.distance(p), Vector([-0.2 * (20.0 * p[0]).cos(), 1.0, 0.0]))
+///     }
+///     fn promise(&self) -> &Promise<3> {
+///         &self.0
+///     }
+/// }
+///
+/// let steepness = 1.0_f64.hypot(0.2);
+/// let waves = Shape::custom(Waves(Promise::lipschitz(None, steepness)));
+/// assert_eq!(waves.distance(Vector([0.0, 0.5, 0.0])), 0.5);
+/// assert!(waves.safe_radius(Vector([0.0, 0.5, 0.0])) < 0.5);
+/// ```
+pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
+    /// The signed distance at `p` [m]: negative inside.
+    fn distance(&self, p: Point<D>) -> f64;
+
+    /// The signed distance at `p` [m] and its gradient, never NaN.
+    fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>);
+
+    /// What the values promise.
+    fn promise(&self) -> &Promise<D>;
+}
+
+/// A [`CustomField`] as a node: its blocks are loops over points.
+#[derive(Debug)]
+pub(crate) struct Custom<F>(pub(crate) F);
+
+#[inline(always)]
+fn widened<T: Float, const D: usize>(p: &Vector<T, D>) -> Point<D> {
+    Vector(p.0.map(T::to_f64))
+}
+
+impl<T: Float, F: CustomField<D>, const D: usize> EvaluatePoint<T, D> for Custom<F> {
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        T::constant(self.0.distance(widened(p)))
+    }
+
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let (distance, slope) = self.0.distance_gradient(widened(p));
+        *gradient = Vector::of(&slope.0);
+        T::constant(distance)
+    }
+}
+
+impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> EvaluateBlock<T, D, W>
+    for Custom<F>
+{
+    fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
+        for i in 0..count.min(W) {
+            out.set(i, EvaluatePoint::distance(self, &p.get(i)));
+        }
+    }
+}
+
+impl<F: CustomField<D>, const D: usize, const W: usize> EvaluateBlock<Model, D, W>
+    for Custom<F>
+{
+    fn distances(&self, p: &Block<Model, D, W>, count: usize, out: &mut Column<Model, W>) {
+        let promise = self.0.promise();
+        for i in 0..count.min(W) {
+            let cell = p.get(i).0;
+            let centre = Vector(cell.map(|x| x.value));
+            let rounding = promise.rounding.within(centre.norm() + Model::radius(&cell));
+            let value = self.0.distance(centre);
+            out.set(i, Model::lipschitz(value, promise.lipschitz, &cell, rounding));
+        }
+    }
+}
+
+impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
+    DifferentiateBlock<T, D, W> for Custom<F>
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        for i in 0..count.min(W) {
+            let mut gradient = Vector([T::default(); D]);
+            let distance = EvaluatePoint::distance_gradient(self, &p.get(i), &mut gradient);
+            out.distance.set(i, distance);
+            out.gradient.set(i, gradient);
+        }
+    }
+}
+
+impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
+    fn promise(&self) -> &Promise<D> {
+        self.0.promise()
+    }
+}

@@ -1,0 +1,207 @@
+//! Leaves: a kernel, perhaps in a frame of its own.
+
+use std::sync::Arc;
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane, lanes};
+use crate::dispatch::{self, Job};
+use crate::kernel::Kernel;
+use crate::pose::Pose;
+use crate::promise::Promise;
+use crate::scalar::{Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// The change of coordinates from the world to a placed body.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<const D: usize> {
+    /// The pose it was made from.
+    pub world_from_body: Pose<D>,
+    /// The columns of its rotation.
+    columns: [[f64; D]; D],
+}
+
+impl<const D: usize> Placement<D> {
+    /// The change of coordinates to a body at `world_from_body`.
+    #[must_use]
+    pub fn new(world_from_body: Pose<D>) -> Self {
+        let columns = *world_from_body.rotation.inverse().matrix();
+        Self { world_from_body, columns }
+    }
+
+    /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
+    #[inline(always)]
+    pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        let q = p - Vector::of(&self.world_from_body.translation.0);
+        Vector(std::array::from_fn(|i| q.dot_constant(&self.columns[i])))
+    }
+
+    /// `R·v`: a gradient in the body's frame, back in the world's.
+    #[inline(always)]
+    pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
+        let rows = self.world_from_body.rotation.matrix();
+        Vector(std::array::from_fn(|i| v.dot_constant(&rows[i])))
+    }
+}
+
+/// A kernel as a field.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf<K, const D: usize> {
+    kernel: K,
+    placement: Option<Placement<D>>,
+    promise: Promise<D>,
+}
+
+impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
+    pub(crate) fn new(kernel: K) -> Self {
+        let promise = kernel.promise();
+        Self { kernel, placement: None, promise }
+    }
+}
+
+struct Values<'a, K>(&'a K);
+
+impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize>
+    Job<Block<S, D, W>, (), Column<S, W>> for Values<'_, K>
+{
+    #[inline(always)]
+    fn run(&self, p: &Block<S, D, W>, (): &(), count: usize, out: &mut Column<S, W>) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, S::evaluate(self.0, p.get(i)));
+        }
+    }
+}
+
+struct ValuesAndGradients<'a, K>(&'a K);
+
+impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize>
+    Job<Block<T, D, W>, (), Gradients<T, D, W>> for ValuesAndGradients<'_, K>
+{
+    #[inline(always)]
+    fn run(&self, p: &Block<T, D, W>, (): &(), count: usize, out: &mut Gradients<T, D, W>) {
+        for i in 0..lanes::<T, W>(count) {
+            let (distance, gradient) = self.0.distance_gradient(p.get(i));
+            out.distance.set(i, distance);
+            out.gradient.set(i, gradient);
+        }
+    }
+}
+
+/// Moves a block of points into the body's frame.
+struct ToBody;
+
+impl<S: Lane, const D: usize, const W: usize> Job<Block<S, D, W>, Placement<D>, Block<S, D, W>>
+    for ToBody
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        p: &Block<S, D, W>,
+        placement: &Placement<D>,
+        count: usize,
+        out: &mut Block<S, D, W>,
+    ) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, placement.to_body(p.get(i)));
+        }
+    }
+}
+
+/// Turns a block of gradients from the body's frame into the world's.
+struct GradientsToWorld;
+
+impl<T: Float + Lane, const D: usize, const W: usize>
+    Job<Gradients<T, D, W>, Placement<D>, Gradients<T, D, W>> for GradientsToWorld
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        a: &Gradients<T, D, W>,
+        placement: &Placement<D>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        for i in 0..lanes::<T, W>(count) {
+            out.distance.set(i, a.distance.get(i));
+            out.gradient.set(i, placement.gradient_to_world(a.gradient.get(i)));
+        }
+    }
+}
+
+impl<T: Float, K: Kernel<D>, const D: usize> EvaluatePoint<T, D> for Leaf<K, D> {
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        match &self.placement {
+            None => self.kernel.distance(*p),
+            Some(placement) => self.kernel.distance(placement.to_body(*p)),
+        }
+    }
+
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let distance;
+        match &self.placement {
+            None => (distance, *gradient) = self.kernel.distance_gradient(*p),
+            Some(placement) => {
+                let in_body;
+                (distance, in_body) = self.kernel.distance_gradient(placement.to_body(*p));
+                *gradient = placement.gradient_to_world(in_body);
+            }
+        }
+        distance
+    }
+}
+
+impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
+    for Leaf<K, D>
+{
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+        match &self.placement {
+            None => dispatch::run(&Values(&self.kernel), p, &(), count, out),
+            Some(placement) => {
+                let mut q = Block::zero();
+                dispatch::run(&ToBody, p, placement, count, &mut q);
+                dispatch::run(&Values(&self.kernel), &q, &(), count, out);
+            }
+        }
+    }
+}
+
+impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
+    for Leaf<K, D>
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        match &self.placement {
+            None => dispatch::run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
+            Some(placement) => {
+                let mut q = Block::zero();
+                let mut in_body = Gradients::zero();
+                dispatch::run(&ToBody, p, placement, count, &mut q);
+                dispatch::run(&ValuesAndGradients(&self.kernel), &q, &(), count, &mut in_body);
+                dispatch::run(&GradientsToWorld, &in_body, placement, count, out);
+            }
+        }
+    }
+}
+
+impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+
+    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
+        let world_from_body = match &self.placement {
+            None => *pose,
+            Some(placement) => *pose * placement.world_from_body,
+        };
+        Some(Shape::from_node(Arc::new(Self {
+            kernel: self.kernel.clone(),
+            placement: Some(Placement::new(world_from_body)),
+            // From the kernel's promise, so that boxes do not grow twice.
+            promise: self.kernel.promise().placed(&world_from_body),
+        })))
+    }
+}

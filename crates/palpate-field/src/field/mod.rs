@@ -1,0 +1,94 @@
+//! What the engine calls: fields as objects.
+//!
+//! A [`Field`] answers for one point, for a block of points with and without
+//! gradients, and for a block of cells. Leaves hold a
+//! [`Kernel`](crate::kernel::Kernel); operators are nodes that loop over their
+//! children's blocks. Nothing here allocates.
+
+mod combine;
+mod custom;
+mod leaf;
+mod remap;
+mod union;
+mod warp;
+
+use std::fmt::Debug;
+
+use crate::block::{BLOCK, Block, Column, Gradients, Lane, SHORT};
+use crate::pose::Pose;
+use crate::promise::Promise;
+use crate::scalar::{Float, Model};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+pub(crate) use combine::{Combine, Combined};
+pub(crate) use custom::Custom;
+pub use custom::CustomField;
+pub(crate) use leaf::Leaf;
+pub use leaf::Placement;
+pub(crate) use remap::{Remap, Remapped};
+pub(crate) use union::Union;
+pub(crate) use warp::{Warp, Warped};
+
+/// Answers for one point.
+pub trait EvaluatePoint<T: Float, const D: usize> {
+    /// The signed distance at `p` [m].
+    fn distance(&self, p: &Vector<T, D>) -> T;
+
+    /// The signed distance at `p` [m]; puts its gradient into `gradient`.
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T;
+}
+
+/// Answers for a block of points or cells.
+pub trait EvaluateBlock<S: Lane, const D: usize, const W: usize> {
+    /// The signed distances in the first `count` lanes [m].
+    ///
+    /// The lanes of `out` past `count` are unspecified.
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>);
+}
+
+/// Answers for a block of points, with gradients.
+pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
+    /// The signed distances [m] and gradients in the first `count` lanes.
+    ///
+    /// The lanes of `out` past `count` are unspecified.
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    );
+}
+
+/// A signed distance field, as the engine sees it.
+///
+/// Implemented by the nodes of this crate; what users write is a
+/// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Scalar calls, blocks
+/// and instruction sets agree bit for bit within a number type.
+pub trait Field<const D: usize>:
+    EvaluatePoint<f64, D>
+    + EvaluatePoint<f32, D>
+    + EvaluateBlock<f64, D, BLOCK>
+    + EvaluateBlock<f64, D, SHORT>
+    + EvaluateBlock<f32, D, BLOCK>
+    + EvaluateBlock<Model, D, BLOCK>
+    + DifferentiateBlock<f64, D, BLOCK>
+    + DifferentiateBlock<f64, D, SHORT>
+    + DifferentiateBlock<f32, D, BLOCK>
+    + Debug
+    + Send
+    + Sync
+{
+    /// What the values promise.
+    fn promise(&self) -> &Promise<D>;
+
+    /// The same shape moved by `pose`, if the node can move itself at no cost.
+    fn placed(&self, _pose: &Pose<D>) -> Option<Shape<D>> {
+        None
+    }
+
+    /// The members, if this is a sharp union: nested unions are flattened.
+    fn members(&self) -> Option<&[Shape<D>]> {
+        None
+    }
+}

@@ -1,0 +1,129 @@
+//! Nodes that change their child's answer in place: offset, shell, guard.
+
+use std::fmt::Debug;
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane, lanes};
+use crate::dispatch::{self, Job};
+use crate::promise::Promise;
+use crate::scalar::{Dual, Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// A function of the point and the child's answer there.
+pub(crate) trait Remap<const D: usize>: Debug + Send + Sync + 'static {
+    /// What becomes of the child's answer.
+    fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S;
+}
+
+/// A child whose answers go through a [`Remap`].
+#[derive(Debug)]
+pub(crate) struct Remapped<M, const D: usize> {
+    pub(crate) map: M,
+    pub(crate) child: Shape<D>,
+    pub(crate) promise: Promise<D>,
+}
+
+#[inline(always)]
+fn differentiate<T: Float, M: Remap<D>, const D: usize>(
+    map: &M,
+    p: Vector<T, D>,
+    child: T,
+    gradient: Vector<T, D>,
+) -> (T, Vector<T, D>) {
+    let child = Dual { value: child, gradient: gradient.0 };
+    let result = map.value(Vector(Dual::variables(p.0)), child);
+    (result.value, Vector(result.gradient))
+}
+
+struct Values<'a, M>(&'a M);
+
+impl<S: Lane, M: Remap<D>, const D: usize, const W: usize>
+    Job<Block<S, D, W>, Column<S, W>, Column<S, W>> for Values<'_, M>
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        p: &Block<S, D, W>,
+        child: &Column<S, W>,
+        count: usize,
+        out: &mut Column<S, W>,
+    ) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, self.0.value(p.get(i), child.get(i)));
+        }
+    }
+}
+
+struct ValuesAndGradients<'a, M>(&'a M);
+
+impl<T: Float + Lane, M: Remap<D>, const D: usize, const W: usize>
+    Job<Block<T, D, W>, Gradients<T, D, W>, Gradients<T, D, W>> for ValuesAndGradients<'_, M>
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        p: &Block<T, D, W>,
+        child: &Gradients<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        for i in 0..lanes::<T, W>(count) {
+            let (distance, gradient) =
+                differentiate(self.0, p.get(i), child.distance.get(i), child.gradient.get(i));
+            out.distance.set(i, distance);
+            out.gradient.set(i, gradient);
+        }
+    }
+}
+
+impl<T: Float, M: Remap<D>, const D: usize> EvaluatePoint<T, D> for Remapped<M, D>
+where
+    dyn Field<D>: EvaluatePoint<T, D>,
+{
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        self.map.value(*p, self.child.field().distance(p))
+    }
+
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let child = self.child.field().distance_gradient(p, gradient);
+        let distance;
+        (distance, *gradient) = differentiate(&self.map, *p, child, *gradient);
+        distance
+    }
+}
+
+impl<S: Lane, M: Remap<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
+    for Remapped<M, D>
+where
+    dyn Field<D>: EvaluateBlock<S, D, W>,
+{
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+        let mut child = Column::zero();
+        self.child.field().distances(p, count, &mut child);
+        dispatch::run(&Values(&self.map), p, &child, count, out);
+    }
+}
+
+impl<T: Float + Lane, M: Remap<D>, const D: usize, const W: usize> DifferentiateBlock<T, D, W>
+    for Remapped<M, D>
+where
+    dyn Field<D>: DifferentiateBlock<T, D, W>,
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        let mut child = Gradients::zero();
+        self.child.field().distances_gradients(p, count, &mut child);
+        dispatch::run(&ValuesAndGradients(&self.map), p, &child, count, out);
+    }
+}
+
+impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+}

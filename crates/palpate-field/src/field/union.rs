@@ -1,0 +1,310 @@
+//! The sharp union of any number of members, with members out of reach skipped.
+//!
+//! A member is skipped only where its value is sure to be larger than the
+//! smallest, rounding included, so skipping changes no bit of the result.
+
+use super::combine::{GradientFold, ValueFold};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane};
+use crate::dispatch::{self, Job};
+use crate::operator::boolean::Smaller;
+use crate::promise::{Promise, Quality};
+use crate::scalar::{Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::{Point, Vector};
+
+/// Below this many members, asking all is faster than choosing.
+const WORTH_CHOOSING: usize = 6;
+
+/// Members looked at together.
+const GROUP: usize = 64;
+
+/// Beyond this distance from the origin [m], squares of lengths near the limits
+/// of single precision: every member is asked.
+const FAR: f64 = 1e15;
+
+/// The union of at least one member.
+#[derive(Debug)]
+pub(crate) struct Union<const D: usize> {
+    members: Vec<Shape<D>>,
+    /// Empty where choosing is not worth it.
+    groups: Vec<Group<D>>,
+    slack: Slack,
+    promise: Promise<D>,
+}
+
+/// The balls around up to [`GROUP`] members, one array a coordinate.
+///
+/// Single precision is enough: what it rounds is part of the [`Slack`].
+#[derive(Debug)]
+#[repr(C, align(64))]
+struct Group<const D: usize> {
+    centre: [[f32; GROUP]; D],
+    /// Infinite for a member that may not be skipped; minus infinity past the
+    /// last member.
+    radius: [f32; GROUP],
+}
+
+/// How far each member of a group is from a query at least.
+#[derive(Debug)]
+#[repr(C, align(64))]
+struct Gaps([f32; GROUP]);
+
+/// How much smaller than its ball's distance a member's value may come out: the
+/// rounding of the balls, and of the members themselves in single precision.
+#[derive(Clone, Copy, Debug)]
+struct Slack {
+    constant: f64,
+    per_metre: f64,
+}
+
+/// A ball that holds the points asked for.
+#[derive(Clone, Copy, Debug)]
+struct Query<const D: usize> {
+    centre: Point<D>,
+    radius: f64,
+}
+
+impl<const D: usize> Group<D> {
+    fn new(members: &[Shape<D>]) -> Self {
+        let mut group = Self { centre: [[0.0; GROUP]; D], radius: [f32::NEG_INFINITY; GROUP] };
+        for (i, member) in members.iter().enumerate() {
+            let promise = member.promise();
+            group.radius[i] = f32::INFINITY;
+            let bounds = match promise.bounds {
+                Some(bounds) if may_be_skipped(promise) => bounds,
+                _ => continue,
+            };
+            group.radius[i] = bounds.ball.radius as f32;
+            for k in 0..D {
+                group.centre[k][i] = bounds.ball.centre[k] as f32;
+            }
+        }
+        group
+    }
+}
+
+/// `true` if the values are nowhere below the signed distance to the ball.
+fn may_be_skipped<const D: usize>(promise: &Promise<D>) -> bool {
+    promise.above_bounds && promise.inside != Quality::Lipschitz
+}
+
+struct ToBalls;
+
+impl<const D: usize> Job<Group<D>, Vector<f32, D>, Gaps> for ToBalls {
+    #[inline(always)]
+    fn run(&self, group: &Group<D>, centre: &Vector<f32, D>, _: usize, gaps: &mut Gaps) {
+        for i in 0..GROUP {
+            let between =
+                Vector::<f32, D>(std::array::from_fn(|k| group.centre[k][i] - centre[k]));
+            gaps.0[i] = between.norm() - group.radius[i];
+        }
+    }
+}
+
+impl Gaps {
+    /// The first member with the smallest gap, and the gap.
+    #[inline(always)]
+    fn smallest(&self) -> (usize, f32) {
+        let mut best = (0, self.0[0]);
+        for (i, gap) in self.0.iter().enumerate() {
+            if *gap < best.1 {
+                best = (i, *gap);
+            }
+        }
+        best
+    }
+}
+
+impl<const D: usize> Union<D> {
+    pub(crate) fn new(members: Vec<Shape<D>>, promise: Promise<D>) -> Self {
+        let choosing = members.len() >= WORTH_CHOOSING;
+        let groups: Vec<_> =
+            if choosing { members.chunks(GROUP).map(Group::new).collect() } else { Vec::new() };
+        let extent = members
+            .iter()
+            .filter_map(|m| m.promise().bounds)
+            .fold(0.0_f64, |far, bounds| far.max(bounds.radius_about_origin()));
+        // Rounding is given in double precision; single is 2²⁹ times coarser.
+        let coarser = f64::from(f32::EPSILON) / f64::EPSILON;
+        let rounding = promise.rounding.times(2.0 * coarser);
+        let balls = 16.0 * f64::from(f32::EPSILON);
+        let slack = Slack {
+            constant: rounding.constant + balls * extent,
+            per_metre: rounding.per_metre + balls,
+        };
+        Self { members, groups, slack, promise }
+    }
+
+    /// Calls `near` with every member that may be the smallest somewhere in the
+    /// ball, in their order.
+    ///
+    /// `value` gives an upper bound of a member's values in the ball; `near` may
+    /// return a smaller bound.
+    #[inline(always)]
+    fn for_each_near(
+        &self,
+        query: Query<D>,
+        mut value: impl FnMut(usize) -> f64,
+        mut near: impl FnMut(usize) -> f64,
+    ) {
+        let centre = Vector::<f32, D>::of(&query.centre.0);
+        let from_origin = query.centre.norm() + query.radius;
+        let slack = if from_origin < FAR {
+            self.slack.constant + self.slack.per_metre * from_origin + query.radius
+        } else {
+            f64::INFINITY
+        };
+        let mut gaps = Gaps([0.0; GROUP]);
+        let mut bound = f64::INFINITY;
+        for (g, group) in self.groups.iter().enumerate() {
+            dispatch::run(&ToBalls, group, &centre, GROUP, &mut gaps);
+            let base = g * GROUP;
+            let (nearest, gap) = gaps.smallest();
+            if f64::from(gap) <= bound {
+                bound = bound.min(value(base + nearest));
+            }
+            let mut limit = (bound + slack) as f32;
+            let count = GROUP.min(self.members.len() - base);
+            for (i, gap) in gaps.0[..count].iter().enumerate() {
+                if *gap <= limit {
+                    bound = bound.min(near(base + i));
+                    limit = (bound + slack) as f32;
+                }
+            }
+        }
+    }
+
+    /// The smallest value at a point, and which member has it.
+    #[inline(always)]
+    fn winner<T: Float>(&self, p: &Vector<T, D>) -> (T, usize)
+    where
+        dyn Field<D>: EvaluatePoint<T, D>,
+    {
+        let ask = |i: usize| self.members[i].field().distance(p);
+        let mut best: Option<(T, usize)> = None;
+        let mut offer = |value: T, i: usize| match best {
+            Some((smallest, _)) if !(value < smallest) => {}
+            _ => best = Some((value, i)),
+        };
+        if self.groups.is_empty() {
+            for i in 0..self.members.len() {
+                offer(ask(i), i);
+            }
+        } else {
+            let query = Query { centre: Vector(p.0.map(T::to_f64)), radius: 0.0 };
+            let first = std::cell::Cell::new((usize::MAX, T::default()));
+            let value = |i| {
+                let value = ask(i);
+                first.set((i, value));
+                value.to_f64()
+            };
+            self.for_each_near(query, value, |i| {
+                let known = first.get();
+                let value = if known.0 == i { known.1 } else { ask(i) };
+                offer(value, i);
+                value.to_f64()
+            });
+        }
+        best.unwrap_or((T::constant(f64::INFINITY), 0))
+    }
+
+    /// The ball around the first `count` points or cells of a block.
+    fn ball_around<S: Lane, const W: usize>(p: &Block<S, D, W>, count: usize) -> Query<D> {
+        let mut low = Vector::<f64, D>::constant(f64::INFINITY);
+        let mut high = Vector::<f64, D>::constant(f64::NEG_INFINITY);
+        for i in 0..count.min(W) {
+            for (k, x) in p.get(i).0.iter().enumerate() {
+                let (least, most) = x.range();
+                low[k] = Scalar::min(low[k], least);
+                high[k] = Scalar::max(high[k], most);
+            }
+        }
+        let centre = (low + high) * 0.5;
+        Query { centre, radius: (high - centre).norm() * (1.0 + 4.0 * f64::EPSILON) }
+    }
+
+    /// The members that matter in a block.
+    fn near_block<S: Lane, const W: usize>(
+        &self,
+        p: &Block<S, D, W>,
+        count: usize,
+        mut near: impl FnMut(&Shape<D>),
+    ) {
+        if self.groups.is_empty() {
+            self.members.iter().for_each(near);
+            return;
+        }
+        let query = Self::ball_around(p, count);
+        self.for_each_near(
+            query,
+            |i| {
+                let member = &self.members[i];
+                let promise = member.promise();
+                match promise.region {
+                    None => {
+                        let value: f64 = member.field().distance(&query.centre);
+                        value + promise.lipschitz * query.radius
+                    }
+                    Some(_) => f64::INFINITY,
+                }
+            },
+            |i| {
+                near(&self.members[i]);
+                f64::INFINITY
+            },
+        );
+    }
+}
+
+impl<T: Float, const D: usize> EvaluatePoint<T, D> for Union<D>
+where
+    dyn Field<D>: EvaluatePoint<T, D>,
+{
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        self.winner(p).0
+    }
+
+    /// All values first, then the gradient of the one member that is smallest.
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let (_, winner) = self.winner(p);
+        self.members[winner].field().distance_gradient(p, gradient)
+    }
+}
+
+impl<S: Lane, const D: usize, const W: usize> EvaluateBlock<S, D, W> for Union<D>
+where
+    dyn Field<D>: EvaluateBlock<S, D, W>,
+{
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+        let mut fold = ValueFold::new(&Smaller, out);
+        self.near_block(p, count, |member| fold.push(member, p, count));
+        fold.finish();
+    }
+}
+
+impl<T: Float + Lane, const D: usize, const W: usize> DifferentiateBlock<T, D, W> for Union<D>
+where
+    dyn Field<D>: DifferentiateBlock<T, D, W>,
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        let mut fold = GradientFold::new(&Smaller, out);
+        self.near_block(p, count, |member| fold.push(member, p, count));
+        fold.finish();
+    }
+}
+
+impl<const D: usize> Field<D> for Union<D> {
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+
+    fn members(&self) -> Option<&[Shape<D>]> {
+        Some(&self.members)
+    }
+}

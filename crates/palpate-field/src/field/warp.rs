@@ -1,0 +1,175 @@
+//! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
+
+use std::fmt::Debug;
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use crate::block::{Block, Column, Gradients, Lane, lanes};
+use crate::dispatch::{self, Job};
+use crate::promise::Promise;
+use crate::scalar::{Dual, Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// A map from the node's `D` coordinates to its child's `E`.
+pub(crate) trait Warp<const D: usize, const E: usize>:
+    Debug + Send + Sync + 'static
+{
+    /// Where the child is asked.
+    fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, E>;
+
+    /// What becomes of the child's answer.
+    #[inline(always)]
+    fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
+        child
+    }
+
+    /// The node's answer and gradient from the child's: by duals, unless the map
+    /// knows better.
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        p: Vector<T, D>,
+        child: T,
+        child_gradient: Vector<T, E>,
+    ) -> (T, Vector<T, D>) {
+        let variables = Vector(Dual::variables(p.0));
+        let moved = self.point(variables);
+        let mut gradient = [T::constant(0.0); D];
+        for (slope, coordinate) in child_gradient.0.iter().zip(moved.0) {
+            for k in 0..D {
+                gradient[k] = gradient[k] + *slope * coordinate.gradient[k];
+            }
+        }
+        let result = self.value(variables, Dual { value: child, gradient });
+        (result.value, Vector(result.gradient))
+    }
+}
+
+/// A child seen through a [`Warp`].
+#[derive(Debug)]
+pub(crate) struct Warped<M, const D: usize, const E: usize> {
+    pub(crate) map: M,
+    pub(crate) child: Shape<E>,
+    pub(crate) promise: Promise<D>,
+}
+
+struct Points<'a, M>(&'a M);
+
+impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize, const W: usize>
+    Job<Block<S, D, W>, (), Block<S, E, W>> for Points<'_, M>
+{
+    #[inline(always)]
+    fn run(&self, p: &Block<S, D, W>, (): &(), count: usize, out: &mut Block<S, E, W>) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, self.0.point(p.get(i)));
+        }
+    }
+}
+
+struct Values<'a, M, const E: usize>(&'a M);
+
+impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize, const W: usize>
+    Job<Block<S, D, W>, Column<S, W>, Column<S, W>> for Values<'_, M, E>
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        p: &Block<S, D, W>,
+        child: &Column<S, W>,
+        count: usize,
+        out: &mut Column<S, W>,
+    ) {
+        for i in 0..lanes::<S, W>(count) {
+            out.set(i, self.0.value(p.get(i), child.get(i)));
+        }
+    }
+}
+
+struct PulledBack<'a, M>(&'a M);
+
+impl<T, M, const D: usize, const E: usize, const W: usize>
+    Job<Block<T, D, W>, Gradients<T, E, W>, Gradients<T, D, W>> for PulledBack<'_, M>
+where
+    T: Float + Lane,
+    M: Warp<D, E>,
+{
+    #[inline(always)]
+    fn run(
+        &self,
+        p: &Block<T, D, W>,
+        child: &Gradients<T, E, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        for i in 0..lanes::<T, W>(count) {
+            let (distance, gradient) =
+                self.0.gradient(p.get(i), child.distance.get(i), child.gradient.get(i));
+            out.distance.set(i, distance);
+            out.gradient.set(i, gradient);
+        }
+    }
+}
+
+impl<T, M, const D: usize, const E: usize> EvaluatePoint<T, D> for Warped<M, D, E>
+where
+    T: Float,
+    M: Warp<D, E>,
+    dyn Field<E>: EvaluatePoint<T, E>,
+{
+    fn distance(&self, p: &Vector<T, D>) -> T {
+        let child: T = self.child.field().distance(&self.map.point(*p));
+        self.map.value(*p, child)
+    }
+
+    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+        let mut child_gradient = Vector([T::constant(0.0); E]);
+        let child =
+            self.child.field().distance_gradient(&self.map.point(*p), &mut child_gradient);
+        let distance;
+        (distance, *gradient) = self.map.gradient(*p, child, child_gradient);
+        distance
+    }
+}
+
+impl<S, M, const D: usize, const E: usize, const W: usize> EvaluateBlock<S, D, W>
+    for Warped<M, D, E>
+where
+    S: Lane,
+    M: Warp<D, E>,
+    dyn Field<E>: EvaluateBlock<S, E, W>,
+{
+    fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
+        let mut q = Block::<S, E, W>::zero();
+        let mut child = Column::zero();
+        dispatch::run(&Points(&self.map), p, &(), count, &mut q);
+        self.child.field().distances(&q, count, &mut child);
+        dispatch::run(&Values::<M, E>(&self.map), p, &child, count, out);
+    }
+}
+
+impl<T, M, const D: usize, const E: usize, const W: usize> DifferentiateBlock<T, D, W>
+    for Warped<M, D, E>
+where
+    T: Float + Lane,
+    M: Warp<D, E>,
+    dyn Field<E>: DifferentiateBlock<T, E, W>,
+{
+    fn distances_gradients(
+        &self,
+        p: &Block<T, D, W>,
+        count: usize,
+        out: &mut Gradients<T, D, W>,
+    ) {
+        let mut q = Block::<T, E, W>::zero();
+        let mut child = Gradients::<T, E, W>::zero();
+        dispatch::run(&Points(&self.map), p, &(), count, &mut q);
+        self.child.field().distances_gradients(&q, count, &mut child);
+        dispatch::run(&PulledBack(&self.map), p, &child, count, out);
+    }
+}
+
+impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
+}

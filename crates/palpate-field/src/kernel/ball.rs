@@ -1,0 +1,58 @@
+//! The ball.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// All points within `radius` of the origin: a disc in 2D, a ball in 3D.
+///
+/// `f = ‖p‖ − r`, exact.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// assert_eq!(ball.distance(Vector([2.0, 3.0, 6.0])), 6.5);
+/// assert_eq!(ball.distance(Vector([0.0, 0.0, 0.0])), -0.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ball {
+    radius: f64,
+}
+
+impl Ball {
+    /// A ball of `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive.
+    pub fn new(radius: f64) -> Result<Self, ShapeError> {
+        Ok(Self { radius: positive("radius", radius, Unit::Metre)? })
+    }
+}
+
+impl<const D: usize> Kernel<D> for Ball {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        p.norm() - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<D> {
+        let bounds = Bounds::centred(Vector::constant(self.radius), self.radius);
+        Promise::exact_convex(Some(bounds), 3.0, self.radius).symmetric()
+    }
+}
+
+primitive! {
+    Ball, "ball", any,
+    about: "All points within a radius of the origin.",
+    model: ClosedForm,
+    parameters: { radius: Length = "the radius" },
+    example: (0.7),
+}

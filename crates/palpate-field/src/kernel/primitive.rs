@@ -1,0 +1,304 @@
+//! The one declaration of each primitive, and the catalogue of all.
+
+use crate::error::{ShapeError, Unit};
+use crate::kernel::Kernel;
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// What a parameter is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// A positive length [m].
+    Length,
+    /// A length of zero or more [m].
+    LengthOrZero,
+    /// An angle [rad]; scene files give degrees and say so in the key.
+    Angle,
+    /// A whole number.
+    Count,
+    /// A position or direction, one number a dimension [m].
+    Vector,
+    /// Several positions [m].
+    Points,
+    /// Several closed polygons, each a list of positions [m].
+    Rings,
+}
+
+impl ParameterKind {
+    /// The unit of its numbers.
+    #[must_use]
+    pub const fn unit(self) -> Unit {
+        match self {
+            Self::Angle => Unit::Radian,
+            Self::Count => Unit::One,
+            _ => Unit::Metre,
+        }
+    }
+}
+
+/// One of the numbers or lists that a primitive is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name, as in scene files (where angles add `_degrees`).
+    pub name: &'static str,
+    /// What it is.
+    pub kind: ParameterKind,
+    /// What it means, in a few words.
+    pub about: &'static str,
+}
+
+/// A value for a [`Parameter`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Argument {
+    /// For a length [m] or an angle [rad].
+    Number(f64),
+    /// For a count.
+    Count(u32),
+    /// For a vector.
+    Vector(Vec<f64>),
+    /// For points.
+    Points(Vec<Vec<f64>>),
+    /// For rings.
+    Rings(Vec<Vec<Vec<f64>>>),
+}
+
+/// How a primitive bounds its values over a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelRule {
+    /// Its formula, evaluated with models.
+    ClosedForm,
+    /// The tangent plane of a convex exact field.
+    Tangent,
+    /// Its Lipschitz constant alone.
+    Lipschitz,
+}
+
+/// A kernel with a name, which can be made from arguments.
+///
+/// Implemented by the `primitive!` declaration beside each kernel.
+pub trait Primitive<const D: usize>: Kernel<D> + Sized {
+    /// The name in scene files.
+    const NAME: &'static str;
+    /// What it is, in one sentence.
+    const ABOUT: &'static str;
+    /// What it is made from.
+    const PARAMETERS: &'static [Parameter];
+    /// How it bounds its values over a cell.
+    const MODEL: ModelRule;
+
+    /// Makes it from one argument for each parameter, in their order.
+    ///
+    /// # Errors
+    ///
+    /// If an argument is of the wrong kind or breaks the parameter's rule.
+    fn from_arguments(arguments: &[Argument]) -> Result<Self, ShapeError>;
+
+    /// One of about 1 m, without symmetry where it can be helped, for tests and
+    /// pictures.
+    ///
+    /// # Errors
+    ///
+    /// None in practice.
+    fn example() -> Result<Self, ShapeError>;
+}
+
+/// A primitive in the catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<const D: usize> {
+    /// The name in scene files.
+    pub name: &'static str,
+    /// What it is, in one sentence.
+    pub about: &'static str,
+    /// What it is made from.
+    pub parameters: &'static [Parameter],
+    /// How it bounds its values over a cell.
+    pub model: ModelRule,
+    build: fn(&[Argument]) -> Result<Shape<D>, ShapeError>,
+    example: fn() -> Result<Shape<D>, ShapeError>,
+}
+
+impl<const D: usize> Entry<D> {
+    pub(crate) const fn of<K: Primitive<D>>() -> Self {
+        Self {
+            name: K::NAME,
+            about: K::ABOUT,
+            parameters: K::PARAMETERS,
+            model: K::MODEL,
+            build: |arguments| K::from_arguments(arguments).map(Shape::from_kernel),
+            example: || K::example().map(Shape::from_kernel),
+        }
+    }
+
+    /// Makes the primitive from one argument for each parameter, in their order.
+    ///
+    /// # Errors
+    ///
+    /// If an argument is of the wrong kind or breaks the parameter's rule.
+    pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
+        (self.build)(arguments)
+    }
+
+    /// The example of the primitive, of about 1 m.
+    ///
+    /// # Errors
+    ///
+    /// None in practice.
+    pub fn example(&self) -> Result<Shape<D>, ShapeError> {
+        (self.example)()
+    }
+}
+
+/// What a constructor takes from an [`Argument`].
+pub(crate) trait FromArgument: Sized {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError>;
+}
+
+fn wrong_kind(parameter: &Parameter, expected: &'static str) -> ShapeError {
+    ShapeError::Unsuitable { operator: parameter.name, needs: expected.into() }
+}
+
+impl FromArgument for f64 {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError> {
+        match argument {
+            Argument::Number(number) => Ok(*number),
+            _ => Err(wrong_kind(parameter, "a number")),
+        }
+    }
+}
+
+impl FromArgument for u32 {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError> {
+        match argument {
+            Argument::Count(count) => Ok(*count),
+            _ => Err(wrong_kind(parameter, "a whole number")),
+        }
+    }
+}
+
+fn vector<const D: usize>(
+    parameter: &Parameter,
+    components: &[f64],
+) -> Result<Vector<f64, D>, ShapeError> {
+    let components = components.try_into().map_err(|_| ShapeError::Count {
+        parameter: parameter.name.into(),
+        rule: format!("{D} numbers").into(),
+        count: components.len(),
+    })?;
+    for x in components {
+        crate::error::finite(parameter.name, x, parameter.kind.unit())?;
+    }
+    Ok(Vector(components))
+}
+
+impl<const D: usize> FromArgument for Vector<f64, D> {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError> {
+        match argument {
+            Argument::Vector(components) => vector(parameter, components),
+            _ => Err(wrong_kind(parameter, "a vector")),
+        }
+    }
+}
+
+impl<const D: usize> FromArgument for Vec<Vector<f64, D>> {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError> {
+        match argument {
+            Argument::Points(points) => points.iter().map(|p| vector(parameter, p)).collect(),
+            _ => Err(wrong_kind(parameter, "a list of points")),
+        }
+    }
+}
+
+impl<const D: usize> FromArgument for Vec<Vec<Vector<f64, D>>> {
+    fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError> {
+        match argument {
+            Argument::Rings(rings) => rings
+                .iter()
+                .map(|ring| ring.iter().map(|p| vector(parameter, p)).collect())
+                .collect(),
+            _ => Err(wrong_kind(parameter, "a list of rings")),
+        }
+    }
+}
+
+/// Takes exactly as many arguments as there are parameters.
+pub(crate) fn check_count(
+    name: &'static str,
+    parameters: &[Parameter],
+    arguments: &[Argument],
+) -> Result<(), ShapeError> {
+    if parameters.len() == arguments.len() {
+        return Ok(());
+    }
+    Err(ShapeError::Count {
+        parameter: name.into(),
+        rule: format!("{} arguments", parameters.len()).into(),
+        count: arguments.len(),
+    })
+}
+
+/// Declares a kernel as a primitive: its name, what it is, its parameters in the
+/// order of `new`, how it bounds cells, and an example.
+macro_rules! primitive {
+    (
+        $kernel:ty, $name:literal, $dimension:tt,
+        about: $about:literal,
+        model: $model:ident,
+        parameters: { $($parameter:ident: $kind:ident = $what:literal),* $(,)? },
+        example: ($($example:expr),* $(,)?) $(,)?
+    ) => {
+        primitive!(@impl $dimension, $kernel, $name, $about, $model,
+            { $($parameter: $kind = $what),* }, ($($example),*));
+    };
+    (@impl any, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@body [const D: usize], D, $kernel, $($rest)*);
+    };
+    (@impl $dimension:literal, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@body [], $dimension, $kernel, $($rest)*);
+    };
+    (
+        @body [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        $name:literal, $about:literal, $model:ident,
+        { $($parameter:ident: $kind:ident = $what:literal),* },
+        ($($example:expr),*)
+    ) => {
+        impl<$($generics)*> $crate::kernel::Primitive<$dimension> for $kernel {
+            const NAME: &'static str = $name;
+            const ABOUT: &'static str = $about;
+            const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
+                $($crate::kernel::Parameter {
+                    name: stringify!($parameter),
+                    kind: $crate::kernel::ParameterKind::$kind,
+                    about: $what,
+                }),*
+            ];
+            const MODEL: $crate::kernel::ModelRule = $crate::kernel::ModelRule::$model;
+
+            fn from_arguments(
+                arguments: &[$crate::kernel::Argument],
+            ) -> Result<Self, $crate::error::ShapeError> {
+                let parameters =
+                    <Self as $crate::kernel::Primitive<$dimension>>::PARAMETERS;
+                $crate::kernel::primitive::check_count($name, parameters, arguments)?;
+                let mut pairs = parameters.iter().zip(arguments);
+                let mut next = || pairs.next().ok_or($crate::error::ShapeError::Count {
+                    parameter: $name.into(),
+                    rule: "all arguments".into(),
+                    count: arguments.len(),
+                });
+                $(
+                    let (parameter, argument) = next()?;
+                    let $parameter = $crate::kernel::primitive::FromArgument::from_argument(
+                        parameter, argument,
+                    )?;
+                )*
+                Self::new($($parameter),*)
+            }
+
+            fn example() -> Result<Self, $crate::error::ShapeError> {
+                Self::new($($example),*)
+            }
+        }
+    };
+}
+
+pub(crate) use primitive;

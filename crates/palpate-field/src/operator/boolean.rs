@@ -1,0 +1,230 @@
+//! Sharp booleans: union, intersection, difference, symmetric difference.
+
+use std::sync::Arc;
+
+use crate::bounds::{BoundingBall, Bounds};
+use crate::error::ShapeError;
+use crate::field::{Combine, Combined, Union};
+use crate::promise::{Promise, Quality};
+use crate::scalar::Scalar;
+use crate::shape::Shape;
+
+/// Union: `min(a, b)`.
+#[derive(Debug)]
+pub(crate) struct Smaller;
+
+impl Combine for Smaller {
+    #[inline(always)]
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
+        a.min(b)
+    }
+}
+
+/// Intersection: `max(a, b)`.
+#[derive(Debug)]
+pub(crate) struct Larger;
+
+impl Combine for Larger {
+    #[inline(always)]
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
+        a.max(b)
+    }
+}
+
+/// Difference, a without b: `max(a, −b)`.
+#[derive(Debug)]
+pub(crate) struct Without;
+
+impl Combine for Without {
+    #[inline(always)]
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
+        a.max(-b)
+    }
+}
+
+/// Symmetric difference: `max(min(a, b), −max(a, b))`.
+#[derive(Debug)]
+pub(crate) struct InOne;
+
+impl Combine for InOne {
+    #[inline(always)]
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
+        a.min(b).max(-a.max(b))
+    }
+}
+
+/// What every operator on two fields has in common; quality is left as of `a`.
+pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+    Promise {
+        lipschitz: a.lipschitz.max(b.lipschitz),
+        region: common_region(a.region, b.region),
+        convex: false,
+        symmetric: std::array::from_fn(|i| a.symmetric[i] && b.symmetric[i]),
+        reach: a.reach.max(b.reach),
+        rounding: a.rounding.or(&b.rounding),
+        ..*a
+    }
+}
+
+/// A ball in which both Lipschitz constants hold.
+fn common_region<const D: usize>(
+    a: Option<BoundingBall<D>>,
+    b: Option<BoundingBall<D>>,
+) -> Option<BoundingBall<D>> {
+    let (Some(a), Some(b)) = (a, b) else { return a.or(b) };
+    let (small, large) = if a.radius <= b.radius { (a, b) } else { (b, a) };
+    let room = large.radius - (small.centre - large.centre).norm();
+    Some(BoundingBall { radius: small.radius.min(room).max(0.0), ..small })
+}
+
+/// Bounds that hold both sets; none if one has none.
+pub(crate) fn both_bounds<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Option<Bounds<D>> {
+    Some(a.bounds?.union(&b.bounds?))
+}
+
+/// Exact outside if both are, a bound inside.
+pub(crate) fn promise_of_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+    Promise {
+        outside: a.outside.and(b.outside),
+        inside: a.inside.and(b.inside).bounded(),
+        bounds: both_bounds(a, b),
+        above_bounds: a.above_bounds && b.above_bounds,
+        has_interior: a.has_interior || b.has_interior,
+        ..joined(a, b)
+    }
+}
+
+/// A bound outside, exact inside if both are. The value is at least that of
+/// either side, so the bounds of either serve: the smaller.
+fn promise_of_intersection<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+    let radius = |p: &Promise<D>| p.bounds.map_or(f64::INFINITY, |bounds| bounds.ball.radius);
+    let tighter = if radius(b) < radius(a) { b } else { a };
+    Promise {
+        outside: a.outside.and(b.outside).bounded(),
+        inside: a.inside.and(b.inside),
+        bounds: tighter.bounds,
+        above_bounds: tighter.above_bounds,
+        convex: a.convex && b.convex,
+        has_interior: a.has_interior && b.has_interior,
+        ..joined(a, b)
+    }
+}
+
+/// The dual: inside is exact if `a` is exact inside and `b` outside.
+fn promise_of_difference<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+    Promise {
+        outside: a.outside.and(b.inside).bounded(),
+        inside: a.inside.and(b.outside),
+        has_interior: a.has_interior,
+        ..joined(a, b)
+    }
+}
+
+fn promise_of_symmetric_difference<const D: usize>(
+    a: &Promise<D>,
+    b: &Promise<D>,
+) -> Promise<D> {
+    let quality: Quality = a.outside.and(a.inside).and(b.outside).and(b.inside).bounded();
+    Promise { outside: quality, inside: quality, ..promise_of_union(a, b) }
+}
+
+/// The promise of an operation folded over `shapes`.
+pub(crate) fn fold_promises<const D: usize>(
+    shapes: &[Shape<D>],
+    rule: impl Fn(&Promise<D>, &Promise<D>) -> Promise<D>,
+) -> Option<Promise<D>> {
+    let (first, rest) = shapes.split_first()?;
+    Some(rest.iter().fold(*first.promise(), |so_far, shape| rule(&so_far, shape.promise())))
+}
+
+/// Folds `operation` over `shapes`, with its rule for promises.
+pub(crate) fn combined<const D: usize, O: Combine>(
+    operation: O,
+    name: &'static str,
+    children: Vec<Shape<D>>,
+    rule: impl Fn(&Promise<D>, &Promise<D>) -> Promise<D>,
+) -> Result<Shape<D>, ShapeError> {
+    let promise = fold_promises(&children, rule).ok_or_else(|| nothing_in(name))?;
+    let depth = Shape::deepest(&children) + 1;
+    if children.len() == 1 {
+        return Ok(children[0].clone());
+    }
+    Shape::from_operator(Arc::new(Combined { operation, children, promise }), depth)
+}
+
+fn nothing_in(name: &'static str) -> ShapeError {
+    ShapeError::Count { parameter: name.into(), rule: "at least 1 shape".into(), count: 0 }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The union of all `shapes`: `min(a, b, …)`.
+    ///
+    /// Exact outside if all are, a bound inside. Unions among the shapes are
+    /// flattened. Members out of reach of the points asked for are skipped.
+    ///
+    /// # Errors
+    ///
+    /// If there are no shapes, or they are nested too deeply.
+    pub fn union(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
+        let mut members = Vec::new();
+        for shape in shapes {
+            match shape.field().members() {
+                Some(nested) => members.extend_from_slice(nested),
+                None => members.push(shape),
+            }
+        }
+        if members.len() == 1 {
+            return Ok(members.swap_remove(0));
+        }
+        let promise =
+            fold_promises(&members, promise_of_union).ok_or_else(|| nothing_in("union"))?;
+        let depth = Self::deepest(&members) + 1;
+        Self::from_operator(Arc::new(Union::new(members, promise)), depth)
+    }
+
+    /// The intersection of all `shapes`: `max(a, b, …)`.
+    ///
+    /// A bound outside, exact inside if all are.
+    ///
+    /// # Errors
+    ///
+    /// If there are no shapes, or they are nested too deeply.
+    pub fn intersection(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
+        let children = shapes.into_iter().collect();
+        combined(Larger, "intersection", children, promise_of_intersection)
+    }
+
+    /// This shape without `others`: `max(a, −b, …)`.
+    ///
+    /// A bound outside; exact inside if this shape is exact inside and all
+    /// others outside.
+    ///
+    /// # Errors
+    ///
+    /// If shapes are nested too deeply.
+    pub fn difference(
+        self,
+        others: impl IntoIterator<Item = Self>,
+    ) -> Result<Self, ShapeError> {
+        let others: Vec<_> = others.into_iter().collect();
+        if others.is_empty() {
+            return Ok(self);
+        }
+        let children = vec![self, Self::union(others)?];
+        combined(Without, "difference", children, promise_of_difference)
+    }
+
+    /// What is in an odd number of `shapes`: `max(min(a, b), −max(a, b))`.
+    ///
+    /// A bound on both sides.
+    ///
+    /// # Errors
+    ///
+    /// If there are no shapes, or they are nested too deeply.
+    pub fn symmetric_difference(
+        shapes: impl IntoIterator<Item = Self>,
+    ) -> Result<Self, ShapeError> {
+        let children = shapes.into_iter().collect();
+        combined(InOne, "symmetric_difference", children, promise_of_symmetric_difference)
+    }
+}

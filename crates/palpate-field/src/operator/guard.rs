@@ -1,0 +1,57 @@
+//! The guard: a field raised to the distance to its own box.
+
+use std::sync::Arc;
+
+use crate::bounds::Aabb;
+use crate::error::ShapeError;
+use crate::field::{Remap, Remapped};
+use crate::promise::{Promise, Rounding};
+use crate::scalar::Scalar;
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// `max(f, distance to the box)`.
+#[derive(Debug)]
+pub(crate) struct Guard<const D: usize> {
+    centre: Vector<f64, D>,
+    half_extents: Vector<f64, D>,
+}
+
+impl<const D: usize> Guard<D> {
+    fn new(aabb: &Aabb<D>) -> Self {
+        Self { centre: aabb.centre(), half_extents: aabb.half_extents() }
+    }
+}
+
+impl<const D: usize> Remap<D> for Guard<D> {
+    #[inline(always)]
+    fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S {
+        let q = (p - Vector::of(&self.centre.0)).abs() - Vector::of(&self.half_extents.0);
+        child.max(S::orthant(q.0))
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The same shape with values of at least the distance to its box.
+    ///
+    /// A field that is only a bound may be small far from its shape; an operator
+    /// that moves the surface outwards would find a surface there. Inside the
+    /// box nothing changes, since the distance to the box is negative there and
+    /// no deeper than the shape's... unless the shape itself is deeper, which no
+    /// bound is.
+    pub(crate) fn guarded(self) -> Result<Self, ShapeError> {
+        let promise = self.promise();
+        let (Some(bounds), false) = (promise.bounds, promise.above_bounds) else {
+            return Ok(self);
+        };
+        let size = bounds.radius_about_origin();
+        let promise = Promise {
+            above_bounds: true,
+            rounding: promise.rounding.or(&Rounding::of_operations(8.0, size)),
+            ..*promise
+        };
+        let depth = self.depth() + 1;
+        let node = Remapped { map: Guard::new(&bounds.aabb), child: self, promise };
+        Self::from_operator(Arc::new(node), depth)
+    }
+}

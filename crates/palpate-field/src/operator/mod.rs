@@ -1,0 +1,14 @@
+//! Operators: what turns shapes into shapes.
+//!
+//! Each file holds the formulas of one family, the rule by which the family's
+//! promises follow from its children's, and the methods of
+//! [`Shape`](crate::Shape) that build it.
+
+pub(crate) mod boolean;
+mod domain;
+mod guard;
+mod smooth;
+mod surface;
+mod transform;
+
+pub use smooth::Smooth;

@@ -1,0 +1,201 @@
+//! Rigid motions and scales.
+
+use std::sync::Arc;
+
+use crate::error::{LARGEST_LENGTH, ShapeError, Unit};
+use crate::field::{Placement, Warp, Warped};
+use crate::pose::{Pose, Rotation};
+use crate::promise::{Promise, Rounding};
+use crate::scalar::{Float, Scalar};
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+impl<const D: usize> Warp<D, D> for Placement<D> {
+    #[inline(always)]
+    fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        self.to_body(p)
+    }
+
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        _p: Vector<T, D>,
+        child: T,
+        child_gradient: Vector<T, D>,
+    ) -> (T, Vector<T, D>) {
+        (child, self.gradient_to_world(child_gradient))
+    }
+}
+
+/// `s·f(p / s)`.
+#[derive(Debug)]
+struct UniformScale {
+    factor: f64,
+    inverse: f64,
+}
+
+impl<const D: usize> Warp<D, D> for UniformScale {
+    #[inline(always)]
+    fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        p.scale(self.inverse)
+    }
+
+    #[inline(always)]
+    fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
+        child.scale(self.factor)
+    }
+
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        _p: Vector<T, D>,
+        child: T,
+        child_gradient: Vector<T, D>,
+    ) -> (T, Vector<T, D>) {
+        // The factors s and 1/s cancel.
+        (child.scale(self.factor), child_gradient)
+    }
+}
+
+/// `min sᵢ · f(pᵢ / sᵢ)`.
+#[derive(Debug)]
+struct AxisScale<const D: usize> {
+    inverse: [f64; D],
+    smallest: f64,
+}
+
+impl<const D: usize> Warp<D, D> for AxisScale<D> {
+    #[inline(always)]
+    fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        Vector(std::array::from_fn(|i| p.0[i].scale(self.inverse[i])))
+    }
+
+    #[inline(always)]
+    fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
+        child.scale(self.smallest)
+    }
+}
+
+fn check_factor(factor: f64) -> Result<f64, ShapeError> {
+    if (1.0 / LARGEST_LENGTH..=LARGEST_LENGTH).contains(&factor) {
+        Ok(factor)
+    } else {
+        Err(ShapeError::number("scale", "positive, from 1e-15 to 1e15", factor, Unit::One))
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The shape moved by `world_from_body`. Every promise but symmetry is kept.
+    ///
+    /// Motions of a leaf, and motions of motions, become one.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite, or shapes are nested too deeply.
+    pub fn placed(&self, world_from_body: &Pose<D>) -> Result<Self, ShapeError> {
+        for x in world_from_body.translation.0 {
+            crate::error::finite("translate", x, Unit::Metre)?;
+        }
+        if let Some(shape) = self.field().placed(world_from_body) {
+            return Ok(shape);
+        }
+        let promise = self.promise().placed(world_from_body);
+        let depth = self.depth() + 1;
+        let map = Placement::new(*world_from_body);
+        let node = Warped { map, child: self.clone(), promise };
+        Self::from_operator(Arc::new(node), depth)
+    }
+
+    /// The shape moved by `offset` [m].
+    ///
+    /// # Errors
+    ///
+    /// As [`placed`](Self::placed).
+    pub fn translated(&self, offset: Vector<f64, D>) -> Result<Self, ShapeError> {
+        self.placed(&Pose::translation(offset))
+    }
+
+    /// The shape turned about the origin.
+    ///
+    /// # Errors
+    ///
+    /// As [`placed`](Self::placed).
+    pub fn rotated(&self, rotation: Rotation<D>) -> Result<Self, ShapeError> {
+        self.placed(&Pose::rotation(rotation))
+    }
+
+    /// The shape scaled by `factor` about the origin: `s·f(p/s)`. Every promise
+    /// is kept.
+    ///
+    /// # Errors
+    ///
+    /// If the factor is not positive, or shapes are nested too deeply.
+    pub fn scaled(&self, factor: f64) -> Result<Self, ShapeError> {
+        let factor = check_factor(factor)?;
+        let promise = self.promise();
+        let size = promise.bounds.map_or(0.0, |b| b.radius_about_origin()) * factor;
+        let own = Rounding::of_operations(2.0 * promise.lipschitz.max(1.0), size);
+        let promise = Promise {
+            bounds: promise.bounds.map(|b| b.scaled([factor; D])),
+            region: promise.region.map(|ball| crate::bounds::BoundingBall {
+                centre: ball.centre * factor,
+                radius: ball.radius * factor,
+            }),
+            reach: promise.reach * factor,
+            rounding: promise.rounding.at(1.0 / factor, 0.0).times(factor).plus(&own),
+            ..*promise
+        };
+        let depth = self.depth() + 1;
+        let map = UniformScale { factor, inverse: 1.0 / factor };
+        let node = Warped { map, child: self.clone(), promise };
+        Self::from_operator(Arc::new(node), depth)
+    }
+
+    /// The shape scaled by `factors[i]` along axis `i`: `min sᵢ · f(pᵢ/sᵢ)`.
+    ///
+    /// A bound on both sides: no formula keeps distances under a stretch.
+    ///
+    /// # Errors
+    ///
+    /// If a factor is not positive, or shapes are nested too deeply.
+    pub fn stretched(&self, factors: [f64; D]) -> Result<Self, ShapeError> {
+        for factor in factors {
+            check_factor(factor)?;
+        }
+        let smallest = factors.iter().fold(f64::INFINITY, |m, f| m.min(*f));
+        let child = self.promise();
+        let largest = factors.iter().fold(0.0_f64, |m, f| m.max(*f));
+        let size = child.bounds.map_or(0.0, |b| b.radius_about_origin()) * largest;
+        let own = Rounding::of_operations(2.0 * child.lipschitz.max(1.0), size);
+        let promise = Promise {
+            bounds: child.bounds.map(|b| b.scaled(factors)),
+            above_bounds: false,
+            // In stretched space the region is an ellipsoid; a ball within it.
+            region: child.region.map(|ball| crate::bounds::BoundingBall {
+                centre: Vector(std::array::from_fn(|i| ball.centre[i] * factors[i])),
+                radius: ball.radius * smallest,
+            }),
+            reach: child.reach * smallest,
+            rounding: child.rounding.at(1.0 / smallest, 0.0).times(smallest).plus(&own),
+            ..child.bound()
+        };
+        let depth = self.depth() + 1;
+        let map = AxisScale { inverse: factors.map(|f| 1.0 / f), smallest };
+        let node = Warped { map, child: self.clone(), promise };
+        Self::from_operator(Arc::new(node), depth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Ball;
+
+    #[test]
+    fn moves_of_a_leaf_become_one_node() -> Result<(), ShapeError> {
+        let ball = Shape::<2>::from_kernel(Ball::new(1.0)?);
+        let moved = ball.translated(Vector([1.0, 0.0]))?.rotated(Rotation::from_angle(1.0)?)?;
+        assert_eq!(moved.depth(), 1);
+        Ok(())
+    }
+}

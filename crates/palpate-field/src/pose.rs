@@ -1,0 +1,371 @@
+//! Rotations and rigid motions.
+//!
+//! Frames are named: a pose called `world_from_body` maps body coordinates to
+//! world coordinates.
+
+use std::ops::Mul;
+
+use crate::error::{ShapeError, Unit};
+use crate::vector::{Point, Vector};
+
+/// How far the columns of a matrix may be from orthonormal to be taken as a
+/// rotation: what remains of numbers written with seven digits.
+const ORTHONORMAL_TOLERANCE: f64 = 1e-6;
+
+/// A rotation about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation<const D: usize> {
+    matrix: [[f64; D]; D],
+}
+
+impl<const D: usize> Rotation<D> {
+    /// The rotation that moves nothing.
+    #[must_use]
+    pub fn identity() -> Self {
+        let row = |i: usize| Vector::<f64, D>::unit(i).0;
+        Self { matrix: std::array::from_fn(row) }
+    }
+
+    /// The rows of the rotation's matrix.
+    #[must_use]
+    pub fn matrix(&self) -> &[[f64; D]; D] {
+        &self.matrix
+    }
+
+    /// The rotation with the given rows, made exactly orthonormal.
+    ///
+    /// # Errors
+    ///
+    /// If a row or column is not of length one or not square to the others
+    /// within 1e-6, or if the matrix mirrors.
+    pub fn from_matrix(rows: [[f64; D]; D]) -> Result<Self, ShapeError> {
+        let wrong =
+            |value| ShapeError::number("rotation", "an orthonormal matrix", value, Unit::One);
+        let mut matrix = rows;
+        for i in 0..D {
+            for k in 0..i {
+                let skew = Vector(matrix[i]).dot(Vector(matrix[k]));
+                if !(skew.abs() <= ORTHONORMAL_TOLERANCE) {
+                    return Err(wrong(skew));
+                }
+                matrix[i] = (Vector(matrix[i]) - Vector(matrix[k]) * skew).0;
+            }
+            let length = Vector(matrix[i]).norm();
+            if !((length - 1.0).abs() <= ORTHONORMAL_TOLERANCE) {
+                return Err(wrong(length));
+            }
+            matrix[i] = (Vector(matrix[i]) * (1.0 / length)).0;
+        }
+        let determinant = determinant(&matrix);
+        if determinant > 0.0 { Ok(Self { matrix }) } else { Err(wrong(determinant)) }
+    }
+
+    /// The rotation that undoes this one.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        Self { matrix: std::array::from_fn(|i| std::array::from_fn(|k| self.matrix[k][i])) }
+    }
+
+    /// Applies the rotation.
+    #[inline]
+    #[must_use]
+    pub fn rotate(&self, v: Vector<f64, D>) -> Vector<f64, D> {
+        Vector(std::array::from_fn(|i| Vector(self.matrix[i]).dot(v)))
+    }
+}
+
+fn determinant<const D: usize>(m: &[[f64; D]; D]) -> f64 {
+    match D {
+        2 => m[0][0] * m[1][1] - m[0][1] * m[1][0],
+        _ => (0..3)
+            .map(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                m[0][i] * (m[1][j] * m[2][k] - m[1][k] * m[2][j])
+            })
+            .sum(),
+    }
+}
+
+impl<const D: usize> Mul for Rotation<D> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let columns = other.inverse();
+        Self {
+            matrix: std::array::from_fn(|i| {
+                std::array::from_fn(|k| Vector(self.matrix[i]).dot(Vector(columns.matrix[k])))
+            }),
+        }
+    }
+}
+
+impl Rotation<2> {
+    /// Turns by `angle` [rad], from x towards y.
+    ///
+    /// # Errors
+    ///
+    /// If the angle is not finite.
+    pub fn from_angle(angle: f64) -> Result<Self, ShapeError> {
+        if !angle.is_finite() {
+            return Err(ShapeError::number("angle", "finite", angle, Unit::Radian));
+        }
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        Ok(Self { matrix: [[cos, -sin], [sin, cos]] })
+    }
+
+    /// The angle of the rotation [rad], in (−π, π].
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        libm::atan2(self.matrix[1][0], self.matrix[0][0])
+    }
+}
+
+impl Rotation<3> {
+    /// Turns by `angle` [rad] about `axis`, counter-clockwise seen from its tip.
+    ///
+    /// # Errors
+    ///
+    /// If the axis has no direction or a number is not finite.
+    pub fn from_axis_angle(axis: Vector<f64, 3>, angle: f64) -> Result<Self, ShapeError> {
+        if !angle.is_finite() {
+            return Err(ShapeError::number("angle", "finite", angle, Unit::Radian));
+        }
+        let Some(axis) = axis.normalized() else {
+            let length = axis.norm();
+            return Err(ShapeError::number("axis", "a direction", length, Unit::One));
+        };
+        let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
+        let [x, y, z] = axis.0;
+        Self::from_quaternion([x * sin, y * sin, z * sin, cos])
+    }
+
+    /// The rotation of the quaternion `[x, y, z, w]`, which need not be of
+    /// length one.
+    ///
+    /// # Errors
+    ///
+    /// If the quaternion is zero or a number is not finite.
+    pub fn from_quaternion(quaternion: [f64; 4]) -> Result<Self, ShapeError> {
+        let Some(Vector([x, y, z, w])) = Vector(quaternion).normalized() else {
+            let length = Vector(quaternion).norm();
+            return Err(ShapeError::number("rotation", "a quaternion", length, Unit::One));
+        };
+        let matrix = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        Ok(Self { matrix })
+    }
+
+    /// The unit quaternion `[x, y, z, w]` of the rotation, with `w ≥ 0`.
+    ///
+    /// The largest component is found first, so that nothing is divided by a
+    /// small number (Shepperd 1978).
+    #[must_use]
+    pub fn quaternion(&self) -> [f64; 4] {
+        let m = &self.matrix;
+        let trace = m[0][0] + m[1][1] + m[2][2];
+        let mut q = [0.0; 4];
+        let largest = (0..3).fold(3, |best, i| {
+            let candidate = if best == 3 { trace } else { m[best][best] };
+            if m[i][i] > candidate { i } else { best }
+        });
+        if largest == 3 {
+            q[3] = 1.0 + trace;
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                q[i] = m[k][j] - m[j][k];
+            }
+        } else {
+            let (i, j, k) = (largest, (largest + 1) % 3, (largest + 2) % 3);
+            q[i] = 1.0 + m[i][i] - m[j][j] - m[k][k];
+            q[j] = m[j][i] + m[i][j];
+            q[k] = m[k][i] + m[i][k];
+            q[3] = m[k][j] - m[j][k];
+        }
+        let sign = if q[3] < 0.0 { -1.0 } else { 1.0 };
+        let length = Vector(q).norm();
+        q.map(|x| sign * x / length)
+    }
+}
+
+/// A rigid motion: a rotation, then a translation.
+///
+/// ```
+/// use palpate_field::{Pose, Rotation, Vector};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let quarter = Rotation::from_angle(std::f64::consts::FRAC_PI_2)?;
+/// let world_from_body = Pose::new(quarter, Vector([1.0, 0.0]));
+/// let p = world_from_body.transform_point(Vector([2.0, 0.0]));
+/// assert!((p - Vector([1.0, 2.0])).norm() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<const D: usize> {
+    /// The rotation, applied first.
+    pub rotation: Rotation<D>,
+    /// The translation, applied second [m].
+    pub translation: Vector<f64, D>,
+}
+
+impl<const D: usize> Pose<D> {
+    /// Rotates, then translates.
+    #[must_use]
+    pub fn new(rotation: Rotation<D>, translation: Vector<f64, D>) -> Self {
+        Self { rotation, translation }
+    }
+
+    /// The motion that moves nothing.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self::new(Rotation::identity(), Vector::ZERO)
+    }
+
+    /// A translation alone.
+    #[must_use]
+    pub fn translation(translation: Vector<f64, D>) -> Self {
+        Self::new(Rotation::identity(), translation)
+    }
+
+    /// A rotation about the origin alone.
+    #[must_use]
+    pub fn rotation(rotation: Rotation<D>) -> Self {
+        Self::new(rotation, Vector::ZERO)
+    }
+
+    /// Where the motion takes a point.
+    #[inline]
+    #[must_use]
+    pub fn transform_point(&self, point: Point<D>) -> Point<D> {
+        self.rotation.rotate(point) + self.translation
+    }
+
+    /// Where the motion takes a direction: the rotation alone.
+    #[inline]
+    #[must_use]
+    pub fn transform_vector(&self, vector: Vector<f64, D>) -> Vector<f64, D> {
+        self.rotation.rotate(vector)
+    }
+
+    /// The motion that undoes this one.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self::new(rotation, -rotation.rotate(self.translation))
+    }
+
+    /// `true` if no number is NaN or infinite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.translation.is_finite()
+            && self.rotation.matrix.iter().flatten().all(|x| x.is_finite())
+    }
+}
+
+impl<const D: usize> Mul for Pose<D> {
+    type Output = Self;
+
+    /// `a_from_b * b_from_c` is `a_from_c`.
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.rotation * other.rotation, self.transform_point(other.translation))
+    }
+}
+
+impl From<glam::DAffine2> for Pose<2> {
+    /// Takes the angle of the matrix: scale and shear are dropped.
+    fn from(affine: glam::DAffine2) -> Self {
+        let (_, angle, translation) = affine.to_scale_angle_translation();
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let rotation = Rotation { matrix: [[cos, -sin], [sin, cos]] };
+        Self::new(rotation, translation.into())
+    }
+}
+
+impl From<Pose<2>> for glam::DAffine2 {
+    fn from(pose: Pose<2>) -> Self {
+        Self::from_angle_translation(pose.rotation.angle(), pose.translation.into())
+    }
+}
+
+impl From<Pose<3>> for glam::DAffine3 {
+    fn from(pose: Pose<3>) -> Self {
+        Self::from_rotation_translation(pose.rotation.into(), pose.translation.into())
+    }
+}
+
+impl From<Rotation<3>> for glam::DQuat {
+    fn from(rotation: Rotation<3>) -> Self {
+        Self::from_array(rotation.quaternion())
+    }
+}
+
+impl TryFrom<glam::DQuat> for Rotation<3> {
+    type Error = ShapeError;
+
+    fn try_from(quaternion: glam::DQuat) -> Result<Self, ShapeError> {
+        Self::from_quaternion(quaternion.to_array())
+    }
+}
+
+impl TryFrom<glam::DMat3> for Rotation<3> {
+    type Error = ShapeError;
+
+    fn try_from(matrix: glam::DMat3) -> Result<Self, ShapeError> {
+        Self::from_matrix(matrix.transpose().to_cols_array_2d())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_turn_about_the_diagonal_permutes_the_axes() {
+        let third = std::f64::consts::TAU / 3.0;
+        let turn = Rotation::from_axis_angle(Vector([1.0, 1.0, 1.0]), third).unwrap();
+        let image = turn.rotate(Vector([1.0, 2.0, 3.0]));
+        assert!((image - Vector([3.0, 1.0, 2.0])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn quaternions_and_matrices_convert_there_and_back() {
+        for q in [
+            [0.1, -0.2, 0.3, 0.9],
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 1e-9, 0.0],
+            [0.3, 0.3, -0.9, -0.01],
+        ] {
+            let rotation = Rotation::from_quaternion(q).unwrap();
+            let again = Rotation::from_quaternion(rotation.quaternion()).unwrap();
+            let from_glam =
+                Rotation::try_from(glam::DMat3::from_quat(rotation.into())).unwrap();
+            for i in 0..3 {
+                for k in 0..3 {
+                    assert!((rotation.matrix[i][k] - again.matrix[i][k]).abs() < 1e-15);
+                    assert!((rotation.matrix[i][k] - from_glam.matrix[i][k]).abs() < 1e-15);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pose_and_its_inverse_cancel() {
+        let rotation = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.8).unwrap();
+        let pose = Pose::new(rotation, Vector([0.1, -0.2, 0.05]));
+        let p = Vector([0.3, 0.7, -1.1]);
+        assert!(((pose.inverse() * pose).transform_point(p) - p).norm() < 1e-15);
+    }
+
+    #[test]
+    fn what_is_not_a_rotation_is_refused() {
+        assert!(Rotation::from_matrix([[1.0, 0.1], [0.0, 1.0]]).is_err());
+        assert!(Rotation::from_matrix([[1.0, 0.0], [0.0, -1.0]]).is_err());
+        assert!(Rotation::from_matrix([[f64::NAN, 0.0], [0.0, 1.0]]).is_err());
+        assert!(Rotation::from_quaternion([0.0; 4]).is_err());
+        assert!(Rotation::from_axis_angle(Vector([0.0; 3]), 1.0).is_err());
+        assert!(Rotation::from_angle(f64::INFINITY).is_err());
+    }
+}

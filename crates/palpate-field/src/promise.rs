@@ -1,0 +1,208 @@
+//! What a field's distance says about the true distance.
+
+use crate::bounds::{BoundingBall, Bounds};
+use crate::pose::Pose;
+
+/// What the value `f` of a field says about `d`, the distance to its surface.
+///
+/// Ordered from the strongest promise to the weakest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// `|f| = d`.
+    Exact,
+    /// `|f| ≤ d`: safe to step by, possibly timid.
+    Bound,
+    /// `|f| ≤ L·d` with the field's Lipschitz constant `L`: divide before
+    /// stepping.
+    Lipschitz,
+}
+
+impl Quality {
+    /// `Exact` if both are, else `Bound`, or the weaker if one is weaker still.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        self.max(other)
+    }
+
+    /// The same, but at best a bound.
+    #[must_use]
+    pub fn bounded(self) -> Self {
+        self.max(Self::Bound)
+    }
+}
+
+/// The absolute error of `distance`, as a function of how far the point is from
+/// the origin.
+///
+/// Composed per node from the count of its rounded operations, and checked
+/// against double-double arithmetic on random trees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    /// The error at the origin [m].
+    pub constant: f64,
+    /// The further error for each metre from the origin.
+    pub per_metre: f64,
+}
+
+impl Rounding {
+    /// The error of a formula of `operations` rounded operations on numbers up
+    /// to `|p| + size` [m].
+    #[must_use]
+    pub fn of_operations(operations: f64, size: f64) -> Self {
+        let per_metre = operations * f64::EPSILON;
+        Self { constant: per_metre * size, per_metre }
+    }
+
+    /// The error for points at most `radius` [m] from the origin.
+    #[must_use]
+    pub fn within(&self, radius: f64) -> f64 {
+        self.constant + self.per_metre * radius
+    }
+
+    /// The larger error of both, at every radius.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        Self {
+            constant: self.constant.max(other.constant),
+            per_metre: self.per_metre.max(other.per_metre),
+        }
+    }
+
+    /// The error of a sum or of nested steps.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            constant: self.constant + other.constant,
+            per_metre: self.per_metre + other.per_metre,
+        }
+    }
+
+    /// The error at points that were up to `offset` [m] further out and
+    /// `stretch` times as far before.
+    #[must_use]
+    pub fn at(&self, stretch: f64, offset: f64) -> Self {
+        Self { constant: self.within(offset), per_metre: self.per_metre * stretch }
+    }
+
+    /// The error of `factor` times the value.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        Self { constant: self.constant * factor, per_metre: self.per_metre * factor }
+    }
+}
+
+/// What a field promises about its values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Promise<const D: usize> {
+    /// The quality where `f > 0`.
+    pub outside: Quality,
+    /// The quality where `f < 0`.
+    pub inside: Quality,
+    /// The least known `L` with `|f(p) − f(q)| ≤ L‖p − q‖`.
+    pub lipschitz: f64,
+    /// Where `lipschitz` holds; everywhere if `None`.
+    pub region: Option<BoundingBall<D>>,
+    /// Bounds of the set `f ≤ 0`; `None` if it has none.
+    pub bounds: Option<Bounds<D>>,
+    /// `true` if `f` is at least the distance to both bounds, everywhere outside
+    /// them. Exact fields are; what is not is guarded by
+    /// [`operator::guard`](crate::operator::guard) where an operator needs it.
+    pub above_bounds: bool,
+    /// `true` if `f` is a convex function.
+    pub convex: bool,
+    /// For each axis, `true` if mirroring the axis changes nothing.
+    pub symmetric: [bool; D],
+    /// `true` if points with `f < 0` may exist.
+    pub has_interior: bool,
+    /// The largest difference of two fields over which an operator in this tree
+    /// still blends them [m]; zero if all are sharp.
+    pub reach: f64,
+    /// The absolute error of `distance` in double precision.
+    pub rounding: Rounding,
+}
+
+impl<const D: usize> Promise<D> {
+    /// The promise of a closed formula that is exact on both sides.
+    ///
+    /// `operations` counts the rounded operations of the formula on numbers up
+    /// to `|p| + size`.
+    #[must_use]
+    pub fn exact(bounds: Option<Bounds<D>>, operations: f64, size: f64) -> Self {
+        Self {
+            outside: Quality::Exact,
+            inside: Quality::Exact,
+            lipschitz: 1.0,
+            region: None,
+            bounds,
+            above_bounds: true,
+            convex: false,
+            symmetric: [false; D],
+            has_interior: true,
+            reach: 0.0,
+            rounding: Rounding::of_operations(operations, size),
+        }
+    }
+
+    /// The promise of a field of which only its steepness is known: its
+    /// Lipschitz constant, rounded up.
+    #[must_use]
+    pub fn lipschitz(bounds: Option<Bounds<D>>, lipschitz: f64) -> Self {
+        Self {
+            outside: Quality::Lipschitz,
+            inside: Quality::Lipschitz,
+            lipschitz,
+            above_bounds: false,
+            ..Self::exact(bounds, 16.0, bounds.map_or(0.0, |b| b.radius_about_origin()))
+        }
+    }
+
+    /// As [`exact`](Self::exact), for a convex shape.
+    #[must_use]
+    pub fn exact_convex(bounds: Option<Bounds<D>>, operations: f64, size: f64) -> Self {
+        Self { convex: true, ..Self::exact(bounds, operations, size) }
+    }
+
+    /// The same shape, symmetric about every coordinate plane.
+    #[must_use]
+    pub fn symmetric(self) -> Self {
+        Self { symmetric: [true; D], ..self }
+    }
+
+    /// A lower bound of the distance that says no more.
+    #[must_use]
+    pub fn bound(self) -> Self {
+        Self { outside: self.outside.bounded(), inside: self.inside.bounded(), ..self }
+    }
+
+    /// The radius of a ball about a point with value `f` that is sure to hold no
+    /// surface [m].
+    ///
+    /// The rounding of `f` is not part of it: subtract
+    /// [`rounding`](Self::rounding) where it matters.
+    #[must_use]
+    pub fn safe_radius(&self, f: f64) -> f64 {
+        let quality = if f < 0.0 { self.inside } else { self.outside };
+        match quality {
+            Quality::Exact | Quality::Bound => f.abs(),
+            Quality::Lipschitz => f.abs() / self.lipschitz,
+        }
+    }
+
+    /// The promise after a rigid motion, which keeps everything but symmetry.
+    #[must_use]
+    pub fn placed(&self, pose: &Pose<D>) -> Self {
+        let offset = pose.translation.norm();
+        // Subtract, then D products and sums a coordinate.
+        let motion =
+            Rounding::of_operations(2.0 * D as f64 + 2.0, offset).times(self.lipschitz);
+        Self {
+            bounds: self.bounds.map(|b| b.placed(pose)),
+            region: self
+                .region
+                .map(|ball| BoundingBall { centre: pose.transform_point(ball.centre), ..ball }),
+            symmetric: [false; D],
+            rounding: self.rounding.at(1.0, offset).plus(&motion),
+            ..*self
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Numbers that carry their derivative.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Blend, Float, Scalar};
+
+/// A value and its gradient with respect to `D` coordinates (forward-mode
+/// differentiation).
+///
+/// At a kink the derivative is the one-sided limit of the branch that
+/// [`Scalar`] takes: the first argument of `min` and `max` at a tie, the
+/// positive side of `abs`, the first coordinate of `norm` and `orthant` at
+/// zero. It is never NaN where the value is finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<T, const D: usize> {
+    /// The value.
+    pub value: T,
+    /// The derivative with respect to each coordinate.
+    pub gradient: [T; D],
+}
+
+impl<T: Float, const D: usize> Dual<T, D> {
+    /// The coordinates of a point, each with itself as its derivative.
+    ///
+    /// ```
+    /// use palpate_field::scalar::{Dual, Scalar};
+    ///
+    /// let [x, y] = Dual::variables([3.0, 4.0]);
+    /// let r = Scalar::norm([x, y]);
+    /// assert_eq!((r.value, r.gradient), (5.0, [0.6, 0.8]));
+    /// ```
+    #[inline(always)]
+    pub fn variables(point: [T; D]) -> [Self; D] {
+        std::array::from_fn(|i| {
+            let mut gradient = [T::constant(0.0); D];
+            gradient[i] = T::constant(1.0);
+            Self { value: point[i], gradient }
+        })
+    }
+
+    /// `value` with derivative `slope · self.gradient`.
+    #[inline(always)]
+    fn chain(self, value: T, slope: T) -> Self {
+        Self { value, gradient: self.gradient.map(|g| slope * g) }
+    }
+
+    #[inline(always)]
+    fn select(a: T, b: T, if_less: Self, otherwise: Self) -> Self {
+        Self {
+            value: T::select_less(a, b, if_less.value, otherwise.value),
+            gradient: std::array::from_fn(|k| {
+                T::select_less(a, b, if_less.gradient[k], otherwise.gradient[k])
+            }),
+        }
+    }
+}
+
+impl<T: Float, const D: usize> Add for Dual<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
+        }
+    }
+}
+
+impl<T: Float, const D: usize> Sub for Dual<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            gradient: std::array::from_fn(|k| self.gradient[k] - other.gradient[k]),
+        }
+    }
+}
+
+impl<T: Float, const D: usize> Mul for Dual<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            gradient: std::array::from_fn(|k| {
+                self.value * other.gradient[k] + other.value * self.gradient[k]
+            }),
+        }
+    }
+}
+
+impl<T: Float, const D: usize> Div for Dual<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let inverse = T::constant(1.0) / other.value;
+        Self {
+            value,
+            gradient: std::array::from_fn(|k| {
+                (self.gradient[k] - value * other.gradient[k]) * inverse
+            }),
+        }
+    }
+}
+
+impl<T: Float, const D: usize> Neg for Dual<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, gradient: self.gradient.map(|g| -g) }
+    }
+}
+
+impl<T: Float, const D: usize> Scalar for Dual<T, D> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { value: T::constant(value), gradient: [T::constant(0.0); D] }
+    }
+
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self.chain(self.value.scale(factor), T::constant(factor))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let zero = T::constant(0.0);
+        let sign = T::select_less(self.value, zero, T::constant(-1.0), T::constant(1.0));
+        self.chain(self.value.abs(), sign)
+    }
+
+    #[inline(always)]
+    fn squared(self) -> Self {
+        self.chain(self.value.squared(), self.value + self.value)
+    }
+
+    /// At zero, where the root has no derivative, the gradient is zero.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, inverse_or_zero(root).scale(0.5))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(other.value, self.value, other, self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.value, other.value, other, self)
+    }
+
+    #[inline(always)]
+    fn select_less(a: Self, b: Self, if_less: Self, otherwise: Self) -> Self {
+        Self::select(a.value, b.value, if_less, otherwise)
+    }
+
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+
+    #[inline(always)]
+    fn norm<const N: usize>(x: [Self; N]) -> Self {
+        let zero = T::constant(0.0);
+        let value = T::norm(x.map(|x| x.value));
+        let inverse = inverse_or_zero(value);
+        let mut gradient = [zero; D];
+        for (i, x) in x.iter().enumerate() {
+            let at_zero = T::constant(if i == 0 { 1.0 } else { 0.0 });
+            let weight = T::select_less(zero, value, x.value * inverse, at_zero);
+            for k in 0..D {
+                gradient[k] = gradient[k] + weight * x.gradient[k];
+            }
+        }
+        Self { value, gradient }
+    }
+
+    #[inline(always)]
+    fn orthant<const N: usize>(q: [Self; N]) -> Self {
+        let zero = T::constant(0.0);
+        let one = T::constant(1.0);
+        let mut largest = q[0].value;
+        let mut sum = zero;
+        for q in q {
+            largest = largest.max(q.value);
+            sum = sum + q.value.max(zero).squared();
+        }
+        let outside = sum.sqrt();
+        let inverse = one / T::select_less(zero, outside, outside, one);
+        // Inside, the first face among those with the largest value decides.
+        let mut free = one;
+        let mut gradient = [zero; D];
+        for q in q {
+            let face = T::select_less(q.value, largest, zero, free);
+            free = free - face;
+            let weight = T::select_less(zero, outside, q.value.max(zero) * inverse, face);
+            for k in 0..D {
+                gradient[k] = gradient[k] + weight * q.gradient[k];
+            }
+        }
+        Self { value: outside + largest.min(zero), gradient }
+    }
+
+    #[inline(always)]
+    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
+        let (zero, one) = (T::constant(0.0), T::constant(1.0));
+        let x = (one - (self.value - other.value).abs().scale(1.0 / reach)).max(zero);
+        let larger = B::weight(x);
+        let weight = T::select_less(other.value, self.value, larger, one - larger);
+        let rest = one - weight;
+        Self {
+            value: self.value.smooth_min::<B>(other.value, reach),
+            gradient: std::array::from_fn(|k| {
+                weight * self.gradient[k] + rest * other.gradient[k]
+            }),
+        }
+    }
+}
+
+#[inline(always)]
+fn inverse_or_zero<T: Float>(value: T) -> T {
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
+    T::select_less(zero, value, one / T::select_less(zero, value, value, one), zero)
+}

@@ -1,0 +1,116 @@
+//! Plain floating-point numbers.
+
+use super::trigonometry;
+use super::{Blend, Scalar};
+
+/// A floating-point number: [`f32`] or [`f64`].
+pub trait Float:
+    Scalar + PartialOrd + Default + Send + Sync + std::fmt::Debug + 'static
+{
+    /// Spacing of the numbers just above one.
+    const EPSILON: f64;
+
+    /// Lanes in a 64-byte cache line: blocks are worked through in such lines.
+    const LINE: usize;
+
+    /// The same number in double precision.
+    fn to_f64(self) -> f64;
+}
+
+macro_rules! float {
+    ($t:ident, $line:literal) => {
+        impl Float for $t {
+            const EPSILON: f64 = $t::EPSILON as f64;
+            const LINE: usize = $line;
+
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+        }
+
+        impl Scalar for $t {
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                value as $t
+            }
+
+            #[inline(always)]
+            fn scale(self, factor: f64) -> Self {
+                self * factor as $t
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $t::abs(self)
+            }
+
+            #[inline(always)]
+            fn squared(self) -> Self {
+                self * self
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $t::sqrt(self)
+            }
+
+            // Not `$t::min`: its treatment of NaN costs three instructions
+            // where the comparison below is one.
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if other < self { other } else { self }
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if other > self { other } else { self }
+            }
+
+            #[inline(always)]
+            fn select_less(a: Self, b: Self, if_less: Self, otherwise: Self) -> Self {
+                if a < b { if_less } else { otherwise }
+            }
+
+            #[inline(always)]
+            fn sin(self) -> Self {
+                trigonometry::sin(self)
+            }
+
+            #[inline(always)]
+            fn cos(self) -> Self {
+                trigonometry::cos(self)
+            }
+
+            #[inline(always)]
+            fn norm<const N: usize>(x: [Self; N]) -> Self {
+                let mut sum = x[0] * x[0];
+                for i in 1..N {
+                    sum += x[i] * x[i];
+                }
+                sum.sqrt()
+            }
+
+            #[inline(always)]
+            fn orthant<const N: usize>(q: [Self; N]) -> Self {
+                let mut largest = q[0];
+                let mut sum = 0.0;
+                for i in 0..N {
+                    largest = Scalar::max(largest, q[i]);
+                    let positive = Scalar::max(q[i], 0.0);
+                    sum += positive * positive;
+                }
+                sum.sqrt() + Scalar::min(largest, 0.0)
+            }
+
+            #[inline(always)]
+            fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
+                let x = Scalar::max(1.0 - (self - other).abs() * (1.0 / reach) as $t, 0.0);
+                Scalar::min(self, other) - B::fill(x) * reach as $t
+            }
+        }
+    };
+}
+
+float!(f32, 16);
+float!(f64, 8);

@@ -1,0 +1,97 @@
+//! Numbers a formula can be evaluated with.
+//!
+//! A kernel is written once, over [`Scalar`]. Evaluating it with
+//!
+//! - [`f64`] or [`f32`] gives distances,
+//! - [`Dual`] gives distances and gradients,
+//! - [`Model`] gives bounds over a whole cell,
+//! - a recorder (see `tests/recorder.rs`) gives the formula itself.
+//!
+//! Choices are operations ([`Scalar::select_less`]) and not branches, so that a
+//! block of points vectorises and a recorder can see both sides.
+
+mod blend;
+mod dual;
+mod float;
+mod model;
+mod trigonometry;
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+pub use blend::{Blend, Cubic, Quadratic};
+pub use dual::Dual;
+pub use float::Float;
+pub use model::Model;
+
+/// A number that the formulas of this crate can be evaluated with.
+///
+/// The operations beyond arithmetic exist because their parts, taken one by
+/// one, would lose what makes a [`Model`] tight: the norm is convex, but a sum
+/// of squares under a root is not seen to be.
+///
+/// No operation rejects NaN: inputs are checked where they enter a shape.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The number `value`, rounded to what `Self` can hold.
+    fn constant(value: f64) -> Self;
+
+    /// `self · factor`.
+    fn scale(self, factor: f64) -> Self;
+
+    /// `|self|`.
+    fn abs(self) -> Self;
+
+    /// `self²`.
+    fn squared(self) -> Self;
+
+    /// The square root. Negative numbers are a caller's error and give NaN.
+    fn sqrt(self) -> Self;
+
+    /// The smaller of the two; `self` at a tie.
+    fn min(self, other: Self) -> Self;
+
+    /// The larger of the two; `self` at a tie.
+    fn max(self, other: Self) -> Self;
+
+    /// `if_less` where `a < b`, else `otherwise`.
+    fn select_less(a: Self, b: Self, if_less: Self, otherwise: Self) -> Self;
+
+    /// The sine of an angle in radians, by a polynomial of our own.
+    ///
+    /// Absolute error at most 4 ulp of one for `|self| ≤ 2¹⁶`.
+    fn sin(self) -> Self;
+
+    /// The cosine of an angle in radians; as [`sin`](Self::sin).
+    fn cos(self) -> Self;
+
+    /// The Euclidean norm `√Σxᵢ²`.
+    fn norm<const N: usize>(x: [Self; N]) -> Self;
+
+    /// The signed distance from `q` to the orthant `qᵢ ≤ 0`:
+    /// `‖max(q, 0)‖ + min(max qᵢ, 0)`.
+    ///
+    /// Every box, cylinder and extrusion ends in this form.
+    fn orthant<const N: usize>(q: [Self; N]) -> Self;
+
+    /// The smaller of the two, the crease between them filled by `B` where they
+    /// differ by less than `reach` [m].
+    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self;
+
+    /// `self` limited to `[low, high]`, for `low ≤ high`.
+    #[inline(always)]
+    fn clamp(self, low: f64, high: f64) -> Self {
+        self.max(Self::constant(low)).min(Self::constant(high))
+    }
+
+    /// `self` where `a < b`, else `-self`.
+    #[inline(always)]
+    fn negate_unless_less(self, a: Self, b: Self) -> Self {
+        Self::select_less(a, b, self, -self)
+    }
+}

@@ -1,0 +1,520 @@
+//! Numbers that bound a formula over a whole cell.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Blend, Scalar};
+
+/// Half the spacing of the numbers just above one: the largest relative error
+/// of one rounded operation.
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// Room for the roundings inside one bound: a sum of up to six positive terms
+/// and its product are off by at most eight units.
+const INFLATE: f64 = 1.0 + 8.0 * UNIT;
+
+/// What stands for "no bound": large beyond every length, small enough that
+/// products with it stay finite.
+const UNBOUNDED: f64 = 1e60;
+
+/// An affine function with remainders, which encloses a formula over a cell.
+///
+/// The cell is the image of the cube `|uₖ| ≤ 1` (in the plane, `u₂` is not
+/// used). For every `u` in it,
+///
+/// ```text
+/// value + gradient·u − lower  ≤  f  ≤  value + gradient·u + upper
+/// ```
+///
+/// Both remainders include the rounding of every operation, so the enclosure
+/// holds for the formula in real arithmetic. For convex formulas (balls,
+/// cuboids, cylinders, their intersections and rigid motions) `lower` is
+/// rounding alone: the tangent plane at the centre is a bound from below.
+///
+/// The rules of the operations that are neither convex nor concave in one
+/// argument are Taylor's with a bound of the second derivative over the cell.
+///
+/// ```
+/// use palpate_field::scalar::{Model, Scalar};
+///
+/// // The unit circle over the cell [1.9, 2.1] × [−0.1, 0.1].
+/// let [x, y] = Model::cell([2.0, 0.0], [0.1, 0.1]);
+/// let circle = Scalar::norm([x, y]) - Model::constant(1.0);
+/// assert!(circle.lower < 1e-14); // convex
+/// assert!(circle.minimum() <= 0.9 && circle.minimum() > 0.899_999);
+/// assert!(circle.maximum() >= 2.1_f64.hypot(0.1) - 1.0);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Model {
+    /// The value at the centre of the cell.
+    pub value: f64,
+    /// The change from the centre to the cell's side along each parameter.
+    pub gradient: [f64; 3],
+    /// How far `f` may lie below the affine function; never negative.
+    pub lower: f64,
+    /// How far `f` may lie above the affine function; never negative.
+    pub upper: f64,
+}
+
+impl Model {
+    /// The coordinates of the box with `centre` and `half` side lengths.
+    #[inline(always)]
+    pub fn cell<const D: usize>(centre: [f64; D], half: [f64; D]) -> [Self; D] {
+        std::array::from_fn(|i| {
+            let mut gradient = [0.0; 3];
+            gradient[i] = half[i];
+            Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
+        })
+    }
+
+    /// A number at least as small as every value over the cell.
+    #[inline(always)]
+    pub fn minimum(&self) -> f64 {
+        self.value - (self.slope() + self.lower) * INFLATE - 2.0 * UNIT * self.value.abs()
+    }
+
+    /// A number at least as large as every value over the cell.
+    #[inline(always)]
+    pub fn maximum(&self) -> f64 {
+        self.value + (self.slope() + self.upper) * INFLATE + 2.0 * UNIT * self.value.abs()
+    }
+
+    /// The largest distance of a value over the cell from `value`.
+    #[inline(always)]
+    pub fn deviation(&self) -> f64 {
+        (self.slope() + self.lower.max_of(self.upper)) * INFLATE
+    }
+
+    /// An upper bound of the distance of the cell's points from its centre,
+    /// given the models of its coordinates.
+    ///
+    /// The half diagonal of the box around the cell: exact for boxes along the
+    /// axes.
+    #[inline(always)]
+    pub fn radius<const D: usize>(cell: &[Self; D]) -> f64 {
+        let mut sum = 0.0;
+        for coordinate in cell {
+            let deviation = coordinate.deviation();
+            sum += deviation * deviation;
+        }
+        sum.sqrt() * INFLATE
+    }
+
+    /// Bounds a convex field that is exact on both sides by its tangent plane.
+    ///
+    /// `value` and the unit `normal` are the field's at the centre of `cell`,
+    /// `rounding` the absolute error of either over the cell. Below, the plane
+    /// is a bound, since the field is convex. Above, at distance `f` outside,
+    /// the distance to the one nearest point grows by at most
+    /// `|h|²/2(f − |h|)` beyond the plane; closer or inside, by `2|h|`.
+    #[inline(always)]
+    pub fn tangent<const D: usize>(
+        value: f64,
+        normal: [f64; D],
+        cell: &[Self; D],
+        rounding: f64,
+    ) -> Self {
+        let radius = Self::radius(cell);
+        let mut gradient = [0.0; 3];
+        let (mut lower, mut upper) = (0.0, 0.0);
+        for (normal, x) in normal.iter().zip(cell) {
+            let positive = *normal > 0.0;
+            let size = f64::abs(*normal);
+            lower += size * choose(positive, x.lower, x.upper);
+            upper += size * choose(positive, x.upper, x.lower);
+            for (sum, slope) in gradient.iter_mut().zip(x.gradient) {
+                *sum += normal * slope;
+            }
+        }
+        let far = value > 1.25 * radius;
+        let room = choose(far, value - radius, 1.0);
+        let curved = choose(far, 0.5 * radius * radius / room, 2.0 * radius);
+        let error = rounding + 8.0 * UNIT * (f64::abs(value) + radius);
+        Self {
+            value,
+            gradient,
+            lower: lower + error,
+            upper: (upper + curved) * INFLATE + error,
+        }
+    }
+
+    /// Bounds any field with Lipschitz constant `lipschitz` by a constant.
+    ///
+    /// `value` is the field's at the centre of `cell`, `rounding` its error.
+    #[inline(always)]
+    pub fn lipschitz<const D: usize>(
+        value: f64,
+        lipschitz: f64,
+        cell: &[Self; D],
+        rounding: f64,
+    ) -> Self {
+        let remainder = lipschitz * Self::radius(cell) * INFLATE + rounding;
+        Self { value, gradient: [0.0; 3], lower: remainder, upper: remainder }
+    }
+
+    /// `Σ|gradientₖ|`: how far the affine part moves over the cell.
+    #[inline(always)]
+    fn slope(&self) -> f64 {
+        f64::abs(self.gradient[0]) + f64::abs(self.gradient[1]) + f64::abs(self.gradient[2])
+    }
+
+    /// `Σ|self.gradientₖ − other.gradientₖ|`.
+    #[inline(always)]
+    fn slope_between(&self, other: &Self) -> f64 {
+        f64::abs(self.gradient[0] - other.gradient[0])
+            + f64::abs(self.gradient[1] - other.gradient[1])
+            + f64::abs(self.gradient[2] - other.gradient[2])
+    }
+
+    /// Widens both remainders by `units` roundings of the largest value over the
+    /// cell and of everything in `extra`.
+    #[inline(always)]
+    fn rounded(self, units: f64, extra: f64) -> Self {
+        let size = f64::abs(self.value) + self.slope() + (self.lower + self.upper) + extra;
+        let error = units * UNIT * size;
+        Self { lower: self.lower + error, upper: self.upper + error, ..self }
+    }
+
+    /// `φ(self)` from `φ` and `φ'` at the centre and the remainders that its
+    /// curvature adds; a negative slope exchanges the remainders of `self`.
+    #[inline(always)]
+    fn chain(self, value: f64, slope: f64, below: f64, above: f64) -> Self {
+        let size = f64::abs(slope);
+        let up = slope > 0.0;
+        Self {
+            value,
+            gradient: self.gradient.map(|g| slope * g),
+            lower: size * choose(up, self.lower, self.upper) + below,
+            upper: size * choose(up, self.upper, self.lower) + above,
+        }
+        .rounded(8.0, 0.0)
+    }
+
+    #[inline(always)]
+    fn choose(condition: bool, a: Self, b: Self) -> Self {
+        Self {
+            value: choose(condition, a.value, b.value),
+            gradient: std::array::from_fn(|k| choose(condition, a.gradient[k], b.gradient[k])),
+            lower: choose(condition, a.lower, b.lower),
+            upper: choose(condition, a.upper, b.upper),
+        }
+    }
+
+    /// `1 / self`; without bounds where the cell may hold a zero.
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        let nearest = (f64::abs(self.value) - self.deviation()) * (1.0 - 8.0 * UNIT);
+        let bounded = nearest > 0.0;
+        let value = 1.0 / choose(self.value == 0.0, 1.0, self.value);
+        let deviation = self.deviation();
+        // |1/x − tangent| = (x − v)² / |x| v² ≤ deviation² / nearest v².
+        let room = choose(bounded, nearest, 1.0);
+        let curved = deviation * deviation * value * value / room * INFLATE;
+        let positive = self.value > 0.0;
+        let exact = self.chain(
+            value,
+            -(value * value),
+            choose(positive, 0.0, curved),
+            choose(positive, curved, 0.0),
+        );
+        let unbounded = Self { value, gradient: [0.0; 3], lower: UNBOUNDED, upper: UNBOUNDED };
+        Self::choose(bounded, exact, unbounded)
+    }
+}
+
+#[inline(always)]
+fn choose(condition: bool, a: f64, b: f64) -> f64 {
+    if condition { a } else { b }
+}
+
+/// One-instruction maximum, without the treatment of NaN.
+trait MaxOf {
+    fn max_of(self, other: Self) -> Self;
+}
+
+impl MaxOf for f64 {
+    #[inline(always)]
+    fn max_of(self, other: Self) -> Self {
+        Scalar::max(self, other)
+    }
+}
+
+/// How far a norm or orthant distance of value `n` may exceed its tangent plane
+/// when its arguments move by at most `d`: `d²/2(n − d)`, or `2d` close by.
+#[inline(always)]
+fn excess(n: f64, d: f64) -> f64 {
+    let far = n > 1.25 * d;
+    choose(far, 0.5 * d * d / choose(far, n - d, 1.0), d + d) * INFLATE
+}
+
+impl Add for Model {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
+            lower: self.lower + other.lower,
+            upper: self.upper + other.upper,
+        }
+        .rounded(2.0, 0.0)
+    }
+}
+
+impl Neg for Model {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            gradient: self.gradient.map(|g| -g),
+            lower: self.upper,
+            upper: self.lower,
+        }
+    }
+}
+
+impl Sub for Model {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + (-other)
+    }
+}
+
+impl Mul for Model {
+    type Output = Self;
+
+    /// `ab = vₐv_b + vₐB + v_bA + AB`, where `A` and `B` are the deviations.
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        let mixed = a.deviation() * b.deviation();
+        let (size_a, size_b) = (f64::abs(a.value), f64::abs(b.value));
+        let (up_a, up_b) = (a.value > 0.0, b.value > 0.0);
+        Self {
+            value: a.value * b.value,
+            gradient: std::array::from_fn(|k| {
+                a.value * b.gradient[k] + b.value * a.gradient[k]
+            }),
+            lower: size_a * choose(up_a, b.lower, b.upper)
+                + size_b * choose(up_b, a.lower, a.upper)
+                + mixed,
+            upper: size_a * choose(up_a, b.upper, b.lower)
+                + size_b * choose(up_b, a.upper, a.lower)
+                + mixed,
+        }
+        .rounded(8.0, size_a * b.slope() + size_b * a.slope())
+    }
+}
+
+impl Div for Model {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self * other.reciprocal()
+    }
+}
+
+impl Scalar for Model {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { value, ..Self::default() }
+    }
+
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        let size = f64::abs(factor);
+        let up = factor > 0.0;
+        Self {
+            value: self.value * factor,
+            gradient: self.gradient.map(|g| g * factor),
+            lower: size * choose(up, self.lower, self.upper),
+            upper: size * choose(up, self.upper, self.lower),
+        }
+        .rounded(2.0, 0.0)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let folded = Self::choose(self.value < 0.0, -self, self);
+        let beyond = ((self.slope() + folded.lower) * INFLATE - folded.value).max_of(0.0);
+        Self { upper: folded.upper + (beyond + beyond), ..folded }
+    }
+
+    #[inline(always)]
+    fn squared(self) -> Self {
+        let deviation = self.deviation();
+        self.chain(self.value * self.value, 2.0 * self.value, 0.0, deviation * deviation)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let deviation = self.deviation();
+        let root = self.value.max_of(0.0).sqrt();
+        let far = self.value > 1.25 * deviation && root > 0.0;
+        let safe = choose(far, root, 1.0);
+        // √x lies below its tangent by (x − v)² / 2√v(√x + √v)².
+        let below = 0.5 * deviation * deviation / (safe * safe * safe) * INFLATE;
+        let tangent = self.chain(root, 0.5 / safe, below, 0.0);
+        let top = (self.value.max_of(0.0) + deviation).sqrt() * INFLATE;
+        let near = Self {
+            value: root,
+            gradient: [0.0; 3],
+            lower: root,
+            upper: (top - root) * INFLATE + UNIT * top,
+        };
+        Self::choose(far, tangent, near)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let swap = other.value < self.value;
+        let near = Self::choose(swap, other, self);
+        let far = Self::choose(swap, self, other);
+        let crossing =
+            near.value - far.value + (near.slope_between(&far) + far.lower) * INFLATE;
+        Self { lower: near.lower.max_of(crossing), ..near }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let swap = other.value > self.value;
+        let near = Self::choose(swap, other, self);
+        let far = Self::choose(swap, self, other);
+        let crossing =
+            far.value - near.value + (near.slope_between(&far) + far.upper) * INFLATE;
+        Self { upper: near.upper.max_of(crossing), ..near }
+    }
+
+    #[inline(always)]
+    fn select_less(a: Self, b: Self, if_less: Self, otherwise: Self) -> Self {
+        let difference = a - b;
+        let always = difference.maximum() < 0.0;
+        let never = difference.minimum() >= 0.0;
+        let less = a.value < b.value;
+        let near = Self::choose(less, if_less, otherwise);
+        let far = Self::choose(less, otherwise, if_less);
+        let between = near.slope_between(&far);
+        let apart = far.value - near.value;
+        let either = Self {
+            lower: near.lower.max_of((between + far.lower) * INFLATE - apart),
+            upper: near.upper.max_of((between + far.upper) * INFLATE + apart),
+            ..near
+        };
+        Self::choose(always, if_less, Self::choose(never, otherwise, either))
+    }
+
+    #[inline(always)]
+    fn sin(self) -> Self {
+        let deviation = self.deviation();
+        let curved = 0.5 * deviation * deviation;
+        self.chain(self.value.sin(), Scalar::cos(self.value), curved, curved).rounded(1.0, 8.0)
+    }
+
+    #[inline(always)]
+    fn cos(self) -> Self {
+        let deviation = self.deviation();
+        let curved = 0.5 * deviation * deviation;
+        self.chain(Scalar::cos(self.value), -Scalar::sin(self.value), curved, curved)
+            .rounded(1.0, 8.0)
+    }
+
+    /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
+    #[inline(always)]
+    fn norm<const N: usize>(x: [Self; N]) -> Self {
+        let n = <f64 as Scalar>::norm(x.map(|x| x.value));
+        let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
+        let mut gradient = [0.0; 3];
+        let (mut lower, mut upper, mut deviations) = (0.0, 0.0, 0.0);
+        for x in x {
+            let unit = x.value * inverse;
+            let size = f64::abs(unit);
+            let positive = unit > 0.0;
+            for k in 0..3 {
+                gradient[k] += unit * x.gradient[k];
+            }
+            lower += size * choose(positive, x.lower, x.upper);
+            upper += size * choose(positive, x.upper, x.lower);
+            let deviation = x.deviation();
+            deviations += deviation * deviation;
+        }
+        let d = deviations.sqrt() * INFLATE;
+        let error = 8.0 * UNIT * (n + d);
+        Self { value: n, gradient, lower: lower + error, upper: upper + excess(n, d) + error }
+    }
+
+    /// The orthant distance is convex and grows with each `qᵢ`: below, its
+    /// subgradient is a bound. Above, nothing is added where one face rules the
+    /// whole cell.
+    #[inline(always)]
+    fn orthant<const N: usize>(q: [Self; N]) -> Self {
+        let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
+        let (mut sum, mut deviations) = (0.0, 0.0);
+        for (i, q) in q.iter().enumerate() {
+            if i > 0 {
+                second = choose(q.value > largest, largest, second.max_of(q.value));
+                largest = largest.max_of(q.value);
+            }
+            let positive = q.value.max_of(0.0);
+            sum += positive * positive;
+            let deviation = q.deviation();
+            deviations += deviation * deviation;
+        }
+        let n = sum.sqrt();
+        let d = deviations.sqrt() * INFLATE;
+        let outside = n > 0.0;
+        let inverse = 1.0 / choose(outside, n, 1.0);
+        let mut free = 1.0;
+        let mut gradient = [0.0; 3];
+        let (mut lower, mut upper) = (0.0, 0.0);
+        for q in q {
+            let face = choose(q.value < largest, 0.0, free);
+            free -= face;
+            let weight = choose(outside, q.value.max_of(0.0) * inverse, face);
+            for k in 0..3 {
+                gradient[k] += weight * q.gradient[k];
+            }
+            lower += weight * q.lower;
+            upper += weight * q.upper;
+        }
+        let one_face = second + d < 0.0 && largest - second > d + d;
+        let curved = choose(one_face, 0.0, excess(n, d));
+        let error = 8.0 * UNIT * (n + f64::abs(largest) + d);
+        Self {
+            value: n + Scalar::min(largest, 0.0),
+            gradient,
+            lower: lower + error,
+            upper: upper + curved + error,
+        }
+    }
+
+    /// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
+    /// second derivative of the fill over the range of `a − b`.
+    #[inline(always)]
+    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
+        let apart = f64::abs(self.value - other.value);
+        let x = (1.0 - apart / reach).max_of(0.0);
+        let larger = B::weight(x);
+        let weight = choose(other.value < self.value, larger, 1.0 - larger);
+        let rest = 1.0 - weight;
+        let spread = (self.slope_between(&other)
+            + (self.lower + other.upper).max_of(self.upper + other.lower))
+            * INFLATE;
+        let widest = Scalar::min(x + spread / reach, 1.0);
+        let curved = 0.5 * B::curvature(widest) / reach * spread * spread * INFLATE;
+        let below = choose(apart - spread > reach, 0.0, curved);
+        Self {
+            value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, reach),
+            gradient: std::array::from_fn(|k| {
+                weight * self.gradient[k] + rest * other.gradient[k]
+            }),
+            lower: weight * self.lower + rest * other.lower + below,
+            upper: weight * self.upper + rest * other.upper,
+        }
+        .rounded(8.0, spread)
+    }
+}

@@ -1,0 +1,216 @@
+//! Vectors with one component per dimension.
+
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+use crate::scalar::{Float, Scalar};
+
+/// A vector of `D` numbers; also a point, as the vector from the origin [m].
+///
+/// ```
+/// use palpate_field::Vector;
+///
+/// let v = Vector([3.0, 4.0]);
+/// assert_eq!(v.norm(), 5.0);
+/// assert_eq!(v * 2.0 - Vector([6.0, 0.0]), Vector([0.0, 8.0]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<S, const D: usize>(pub [S; D]);
+
+/// A point in space, in metres.
+pub type Point<const D: usize> = Vector<f64, D>;
+
+impl<S: Scalar, const D: usize> Vector<S, D> {
+    /// The vector whose components are all `value`.
+    #[inline(always)]
+    pub fn constant(value: f64) -> Self {
+        Self([S::constant(value); D])
+    }
+
+    /// The given numbers as constants of `S`.
+    #[inline(always)]
+    pub fn of(components: &[f64; D]) -> Self {
+        Self(std::array::from_fn(|i| S::constant(components[i])))
+    }
+
+    /// The absolute value of each component.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self(self.0.map(S::abs))
+    }
+
+    /// The sum of the products of the components.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> S {
+        let mut sum = self.0[0] * other.0[0];
+        for i in 1..D {
+            sum = sum + self.0[i] * other.0[i];
+        }
+        sum
+    }
+
+    /// As [`dot`](Self::dot), with a constant vector.
+    #[inline(always)]
+    pub fn dot_constant(self, other: &[f64; D]) -> S {
+        let mut sum = self.0[0].scale(other[0]);
+        for i in 1..D {
+            sum = sum + self.0[i].scale(other[i]);
+        }
+        sum
+    }
+
+    /// Each component times `factor`.
+    #[inline(always)]
+    pub fn scale(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x.scale(factor)))
+    }
+
+    /// The Euclidean length.
+    #[inline(always)]
+    pub fn norm(self) -> S {
+        S::norm(self.0)
+    }
+}
+
+impl<const D: usize> Vector<f64, D> {
+    /// The origin, or the vector of no length.
+    pub const ZERO: Self = Self([0.0; D]);
+
+    /// The unit vector along axis `axis`.
+    #[must_use]
+    pub fn unit(axis: usize) -> Self {
+        Self(std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 }))
+    }
+
+    /// `true` if no component is NaN or infinite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.0.iter().all(|x| x.is_finite())
+    }
+
+    /// The vector of length one along `self`; `None` if `self` is shorter than
+    /// the smallest normal number, or not finite.
+    #[must_use]
+    pub fn normalized(self) -> Option<Self> {
+        // Scaling first keeps the squares of tiny and huge vectors in range.
+        let largest = self.0.iter().fold(0.0_f64, |m, x| f64::max(m, x.abs()));
+        if !self.is_finite() || largest < f64::MIN_POSITIVE {
+            return None;
+        }
+        let scaled = Self(self.0.map(|x| x / largest));
+        let length = scaled.norm();
+        Some(Self(scaled.0.map(|x| x / length)))
+    }
+}
+
+impl<S, const D: usize> From<[S; D]> for Vector<S, D> {
+    #[inline(always)]
+    fn from(components: [S; D]) -> Self {
+        Self(components)
+    }
+}
+
+impl<S, const D: usize> Index<usize> for Vector<S, D> {
+    type Output = S;
+
+    #[inline(always)]
+    fn index(&self, axis: usize) -> &S {
+        &self.0[axis]
+    }
+}
+
+impl<S, const D: usize> IndexMut<usize> for Vector<S, D> {
+    #[inline(always)]
+    fn index_mut(&mut self, axis: usize) -> &mut S {
+        &mut self.0[axis]
+    }
+}
+
+impl<S: Scalar, const D: usize> Add for Vector<S, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl<S: Scalar, const D: usize> Sub for Vector<S, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl<S: Scalar, const D: usize> Neg for Vector<S, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl<T: Float, const D: usize> Mul<T> for Vector<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl<const D: usize> AddAssign for Vector<f64, D> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const D: usize> SubAssign for Vector<f64, D> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl From<glam::DVec2> for Vector<f64, 2> {
+    fn from(v: glam::DVec2) -> Self {
+        Self(v.to_array())
+    }
+}
+
+impl From<Vector<f64, 2>> for glam::DVec2 {
+    fn from(v: Vector<f64, 2>) -> Self {
+        Self::from_array(v.0)
+    }
+}
+
+impl From<glam::DVec3> for Vector<f64, 3> {
+    fn from(v: glam::DVec3) -> Self {
+        Self(v.to_array())
+    }
+}
+
+impl From<Vector<f64, 3>> for glam::DVec3 {
+    fn from(v: Vector<f64, 3>) -> Self {
+        Self::from_array(v.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Vector;
+
+    #[test]
+    fn normalizing_survives_tiny_and_huge_vectors() {
+        for scale in [1e-300, 1.0, 1e300] {
+            let v = Vector([3.0 * scale, 4.0 * scale]).normalized().unwrap();
+            assert!((v - Vector([0.6, 0.8])).norm() < 1e-15);
+        }
+        assert_eq!(Vector([0.0, 0.0, 0.0]).normalized(), None);
+        assert_eq!(Vector([f64::NAN, 1.0]).normalized(), None);
+        assert_eq!(Vector([f64::INFINITY, 1.0]).normalized(), None);
+    }
+}
