@@ -12,6 +12,8 @@ pub enum ParameterKind {
     Length,
     /// A length of zero or more [m].
     LengthOrZero,
+    /// A coordinate or signed offset [m].
+    Coordinate,
     /// An angle [rad]; scene files give degrees and say so in the key.
     Angle,
     /// A whole number.

@@ -25,9 +25,9 @@ impl<T: Float, const D: usize> Dual<T, D> {
     /// ```
     /// use palpate_field::scalar::{Dual, Scalar};
     ///
-    /// let [x, y] = Dual::variables([3.0, 4.0]);
+    /// let [x, y] = Dual::variables([0.0, 4.0]);
     /// let r = Scalar::norm([x, y]);
-    /// assert_eq!((r.value, r.gradient), (5.0, [0.6, 0.8]));
+    /// assert_eq!((r.value, r.gradient), (4.0, [0.0, 1.0]));
     /// ```
     #[inline(always)]
     pub fn variables(point: [T; D]) -> [Self; D] {
@@ -119,6 +119,8 @@ impl<T: Float, const D: usize> Neg for Dual<T, D> {
 }
 
 impl<T: Float, const D: usize> Scalar for Dual<T, D> {
+    const EPSILON: f64 = T::EPSILON;
+
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value: T::constant(value), gradient: [T::constant(0.0); D] }

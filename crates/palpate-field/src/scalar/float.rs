@@ -7,9 +7,6 @@ use super::{Blend, Scalar};
 pub trait Float:
     Scalar + PartialOrd + Default + Send + Sync + std::fmt::Debug + 'static
 {
-    /// Spacing of the numbers just above one.
-    const EPSILON: f64;
-
     /// Lanes in a 64-byte cache line: blocks are worked through in such lines.
     const LINE: usize;
 
@@ -20,7 +17,6 @@ pub trait Float:
 macro_rules! float {
     ($t:ident, $line:literal) => {
         impl Float for $t {
-            const EPSILON: f64 = $t::EPSILON as f64;
             const LINE: usize = $line;
 
             #[inline(always)]
@@ -30,6 +26,8 @@ macro_rules! float {
         }
 
         impl Scalar for $t {
+            const EPSILON: f64 = $t::EPSILON as f64;
+
             #[inline(always)]
             fn constant(value: f64) -> Self {
                 value as $t

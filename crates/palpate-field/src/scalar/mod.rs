@@ -38,6 +38,9 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// Spacing of the numbers just above one.
+    const EPSILON: f64;
+
     /// The number `value`, rounded to what `Self` can hold.
     fn constant(value: f64) -> Self;
 

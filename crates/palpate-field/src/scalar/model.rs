@@ -320,6 +320,8 @@ impl Div for Model {
 }
 
 impl Scalar for Model {
+    const EPSILON: f64 = f64::EPSILON;
+
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value, ..Self::default() }

@@ -1,0 +1,200 @@
+//! Capsules: all points within a radius of a segment.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::field::Placement;
+use crate::kernel::{Kernel, primitive};
+use crate::pose::{Pose, Rotation};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::{Point, Vector};
+
+/// The distance to the segment `|y| ≤ h` on the y axis.
+///
+/// `‖(x, max(|y| − h, 0), …)‖`: past an end the distance to it, beside the
+/// segment the distance to the axis.
+#[inline(always)]
+fn to_segment<S: Scalar, const D: usize>(p: Vector<S, D>, half_length: f64) -> S {
+    let mut q = p.0;
+    q[1] = (p.0[1].abs() - S::constant(half_length)).max(S::constant(0.0));
+    S::norm(q)
+}
+
+/// A rod with round ends along the y axis, `height` from tip to tip. Exact.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Capsule};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let rod = Shape::from_kernel(Capsule::new(0.5, 3.0)?);
+/// assert_eq!(rod.distance(Vector([0.0, 2.5, 0.0])), 1.0); // above the tip
+/// assert_eq!(rod.distance(Vector([3.0, 0.5, 4.0])), 4.5); // beside it
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Capsule {
+    radius: f64,
+    half_length: f64,
+}
+
+impl Capsule {
+    /// A capsule of `radius` and full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or the height less than twice the radius.
+    pub fn new(radius: f64, height: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        positive("height", height, Unit::Metre)?;
+        if height < 2.0 * radius {
+            let rule = format!("at least twice the radius, {} m", 2.0 * radius);
+            return Err(ShapeError::number("height", rule, height, Unit::Metre));
+        }
+        Ok(Self { radius, half_length: 0.5 * height - radius })
+    }
+}
+
+impl<const D: usize> Kernel<D> for Capsule {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        to_segment(p, self.half_length) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<D> {
+        promise(self.half_length, self.radius).symmetric()
+    }
+}
+
+fn promise<const D: usize>(half_length: f64, radius: f64) -> Promise<D> {
+    let mut half = Vector::constant(radius);
+    half[1] += half_length;
+    let bounds = Bounds::centred(half, half[1]);
+    Promise { has_interior: radius > 0.0, ..Promise::exact_convex(Some(bounds), 5.0, half[1]) }
+}
+
+primitive! {
+    Capsule, "capsule", any,
+    about: "A rod with round ends along the y axis.",
+    model: ClosedForm,
+    parameters: {
+        radius: Length = "the radius of the rod",
+        height: Length = "the length from tip to tip",
+    },
+    example: (0.3, 1.4),
+}
+
+/// All points within `radius` of the segment between two points. Exact.
+///
+/// A [`Capsule`] in a frame of its own. With a radius of zero it has no inside.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Segment};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let wire = Segment::new(Vector([1.0, 0.0]), Vector([1.0, 4.0]), 0.0)?;
+/// let wire = Shape::from_kernel(wire);
+/// assert_eq!(wire.distance(Vector([3.0, 2.0])), 2.0);
+/// assert_eq!(wire.distance(Vector([1.0, 5.0])), 1.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Segment<const D: usize> {
+    radius: f64,
+    half_length: f64,
+    placement: Placement<D>,
+}
+
+impl<const D: usize> Segment<D> {
+    /// The segment between two points [m], with a `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is negative or a coordinate not finite.
+    pub fn new(from: Point<D>, to: Point<D>, radius: f64) -> Result<Self, ShapeError> {
+        for (name, point) in [("from", from), ("to", to)] {
+            for x in point.0 {
+                crate::error::finite(name, x, Unit::Metre)?;
+            }
+        }
+        not_negative("radius", radius, Unit::Metre)?;
+        let centre = (from + to) * 0.5;
+        let rotation = match (to - from).normalized() {
+            Some(direction) => turn_y_towards(direction)?,
+            None => Rotation::identity(),
+        };
+        Ok(Self {
+            radius,
+            half_length: 0.5 * (to - from).norm(),
+            placement: Placement::new(Pose::new(rotation, centre)),
+        })
+    }
+}
+
+/// A rotation that takes the y axis to the unit vector `direction`.
+///
+/// A reflection and a flip of one axis. Reflecting along `y + d` takes −y to
+/// `d`, along `y − d` it takes y to `d`; the longer of the two is taken, so that
+/// nothing cancels.
+fn turn_y_towards<const D: usize>(
+    direction: Vector<f64, D>,
+) -> Result<Rotation<D>, ShapeError> {
+    let y = Vector::<f64, D>::unit(1);
+    let (along, flipped) =
+        if direction[1] < 0.0 { (y - direction, 0) } else { (y + direction, 1) };
+    let along = along.normalized().unwrap_or(y);
+    let columns = std::array::from_fn(|axis| {
+        let unit = Vector::<f64, D>::unit(axis);
+        let image = unit - along * (2.0 * unit.dot(along));
+        if axis == flipped { (-image).0 } else { image.0 }
+    });
+    Ok(Rotation::from_matrix(columns)?.inverse())
+}
+
+impl<const D: usize> Kernel<D> for Segment<D> {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        to_segment(self.placement.to_body(p), self.half_length) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<D> {
+        promise(self.half_length, self.radius).placed(&self.placement.world_from_body)
+    }
+}
+
+primitive! {
+    Segment<D>, "segment", any,
+    about: "All points within a radius of the segment between two points.",
+    model: ClosedForm,
+    parameters: {
+        from: Vector = "one end",
+        to: Vector = "the other end",
+        radius: LengthOrZero = "the radius, zero for a curve without inside",
+    },
+    example: (
+        Vector(std::array::from_fn(|i| [-0.4, -0.3, 0.2][i])),
+        Vector(std::array::from_fn(|i| [0.5, 0.3, -0.1][i])),
+        0.2,
+    ),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_y_axis_turns_to_every_direction() {
+        for d in [
+            [0.0, 1.0, 0.0],
+            [0.0, -1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1e-9, -1.0, 0.0],
+            [0.3, -0.5, 0.8],
+        ] {
+            let d = Vector(d).normalized().unwrap();
+            let turned = turn_y_towards(d).unwrap().rotate(Vector::unit(1));
+            assert!((turned - d).norm() < 1e-15, "{d:?}");
+        }
+    }
+}

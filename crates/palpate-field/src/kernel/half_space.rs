@@ -1,0 +1,62 @@
+//! Half-spaces.
+
+use crate::error::{ShapeError, Unit, finite};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// All points behind a plane: `n·p ≤ offset`, with `n` pointing out. Exact,
+/// without bounds.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::HalfSpace};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 2.0, 0.0]), -0.5)?);
+/// assert_eq!(floor.distance(Vector([7.0, 1.0, 7.0])), 1.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct HalfSpace<const D: usize> {
+    normal: [f64; D],
+    offset: f64,
+}
+
+impl<const D: usize> HalfSpace<D> {
+    /// The half-space behind the plane at `offset` [m] from the origin along
+    /// `normal`, which need not be of length one.
+    ///
+    /// # Errors
+    ///
+    /// If the normal has no direction or the offset is not finite.
+    pub fn new(normal: Vector<f64, D>, offset: f64) -> Result<Self, ShapeError> {
+        let Some(unit) = normal.normalized() else {
+            return Err(ShapeError::number("normal", "a direction", normal.norm(), Unit::One));
+        };
+        Ok(Self { normal: unit.0, offset: finite("offset", offset, Unit::Metre)? })
+    }
+}
+
+impl<const D: usize> Kernel<D> for HalfSpace<D> {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        p.dot_constant(&self.normal) - S::constant(self.offset)
+    }
+
+    fn promise(&self) -> Promise<D> {
+        Promise::exact_convex(None, 6.0, self.offset.abs())
+    }
+}
+
+primitive! {
+    HalfSpace<D>, "half_space", any,
+    about: "All points behind a plane.",
+    model: ClosedForm,
+    parameters: {
+        normal: Vector = "the direction out of the half-space, of any length",
+        offset: Coordinate = "where the plane is along the normal",
+    },
+    example: (Vector(std::array::from_fn(|i| [0.3, 1.0, -0.2][i])), 0.1),
+}

@@ -1,0 +1,113 @@
+//! Circular arcs with a radius.
+
+use crate::bounds::{Aabb, Bounds};
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::{Promise, Quality};
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// All points within `radius` of an arc of a circle about the origin, open
+/// downwards.
+///
+/// Exact; inside a bound where the tube meets itself, at the centre or across
+/// the opening. With a radius of zero it has no inside.
+///
+/// # Derivation
+///
+/// Fold to `x ≥ 0`. With φ the angle from the y axis, the nearest point is on
+/// the arc at φ if φ is at most half the opening angle, else its end. That φ is
+/// larger shows in the sign of the distance from the line through the end and
+/// the origin, without an inverse function.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Arc};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let half = std::f64::consts::PI;
+/// let handle = Shape::from_kernel(Arc::new(2.0, half, 0.5)?);
+/// assert_eq!(handle.distance(Vector([3.0, 4.0])), 2.5); // above
+/// assert!((handle.distance(Vector([2.0, -3.0])) - 2.5).abs() < 1e-15); // from the end
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Arc {
+    ring_radius: f64,
+    radius: f64,
+    /// Half the angle.
+    half_angle: f64,
+    /// Its sine and cosine.
+    end: [f64; 2],
+}
+
+impl Arc {
+    /// An arc of a circle of `ring_radius` [m] that spans `angle` [rad] about the
+    /// +y axis, with a tube of `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the circle's radius is not positive, the tube's negative, or the angle
+    /// not in (0, 2π].
+    pub fn new(ring_radius: f64, angle: f64, radius: f64) -> Result<Self, ShapeError> {
+        positive("ring_radius", ring_radius, Unit::Metre)?;
+        not_negative("radius", radius, Unit::Metre)?;
+        if !(angle > 0.0 && angle <= std::f64::consts::TAU) {
+            let rule = "in (0, 2π], a full turn at most";
+            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
+        }
+        let half_angle = 0.5 * angle;
+        let end = [libm::sin(half_angle), libm::cos(half_angle)];
+        Ok(Self { ring_radius, radius, half_angle, end })
+    }
+}
+
+impl Kernel<2> for Arc {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let folded = Vector([p.0[0].abs(), p.0[1]]);
+        let [sin, cos] = self.end;
+        let past_end = folded.dot_constant(&[cos, -sin]);
+        let end = Vector([sin, cos]).scale(self.ring_radius);
+        let to_arc = (p.norm() - S::constant(self.ring_radius)).abs();
+        let to_end = (folded - Vector::of(&end.0)).norm();
+        S::select_less(S::constant(0.0), past_end, to_end, to_arc) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let [sin, cos] = self.end;
+        let widest = if cos < 0.0 { 1.0 } else { sin };
+        let aabb = Aabb {
+            min: Vector([-widest, cos]).scale(self.ring_radius),
+            max: Vector([widest, 1.0]).scale(self.ring_radius),
+        };
+        let bounds = Bounds::of_box(aabb.grown(4.0 * f64::EPSILON * self.ring_radius));
+        let gap = 2.0 * self.ring_radius * sin;
+        let opens = self.half_angle < std::f64::consts::PI;
+        let across = opens && self.half_angle > std::f64::consts::FRAC_PI_2;
+        let meets_itself =
+            self.radius > self.ring_radius || (across && gap < 2.0 * self.radius);
+        Promise {
+            inside: if meets_itself { Quality::Bound } else { Quality::Exact },
+            has_interior: self.radius > 0.0,
+            symmetric: [true, false],
+            ..Promise::exact(
+                Some(bounds.grown(self.radius)),
+                8.0,
+                self.ring_radius + self.radius,
+            )
+        }
+    }
+}
+
+primitive! {
+    Arc, "arc", 2,
+    about: "All points within a radius of an arc of a circle, open downwards.",
+    model: ClosedForm,
+    parameters: {
+        ring_radius: Length = "the radius of the circle",
+        angle: Angle = "how much of the circle, about the +y axis",
+        radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
+    },
+    example: (0.7, 4.0, 0.12),
+}

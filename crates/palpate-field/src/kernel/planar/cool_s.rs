@@ -1,0 +1,98 @@
+//! The Cool S.
+
+use super::line::Edge;
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// The S that every pupil draws: fourteen strokes, two fifths as wide as high.
+/// Exact.
+///
+/// Inside its outline, the strokes are part of the surface: the distance is
+/// that to the nearest stroke, negative inside the outline.
+///
+/// # Derivation
+///
+/// In units of half the height, folded to `x, y ≥ 0`, the outline has the edges
+/// (0, 1)–(0.4, 0.6)–(0.4, 0.2)–(0.2, 0); there is a stroke down the middle from
+/// 0.6 to 0.2. The strokes that cross are not mirror images but half turns of
+/// each other: one runs from (0, 0.2) to (0.2, 0), in x times the sign of y.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CoolS};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let s = Shape::from_kernel(CoolS::new(2.0)?);
+/// assert!((s.distance(Vector([0.0, 1.5])) - 0.5).abs() < 1e-15); // above the tip
+/// assert!((s.distance(Vector([0.2, 0.4])) + 0.2).abs() < 1e-15); // in a stripe
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CoolS {
+    half_height: f64,
+    roof: Edge,
+    side: Edge,
+    waist: Edge,
+    middle: Edge,
+    crossing: Edge,
+}
+
+impl CoolS {
+    /// A Cool S of full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the height is not positive.
+    pub fn new(height: f64) -> Result<Self, ShapeError> {
+        let half_height = 0.5 * positive("height", height, Unit::Metre)?;
+        // Counter-clockwise around the outline: outside is to the right.
+        let edge = |from: [f64; 2], to: [f64; 2]| {
+            Edge::new(Vector(from) * half_height, Vector(to) * half_height)
+        };
+        Ok(Self {
+            half_height,
+            roof: edge([0.4, 0.6], [0.0, 1.0]),
+            side: edge([0.4, 0.2], [0.4, 0.6]),
+            waist: edge([0.2, 0.0], [0.4, 0.2]),
+            middle: edge([0.0, 0.2], [0.0, 0.6]),
+            crossing: edge([0.2, 0.0], [0.0, 0.2]),
+        })
+    }
+}
+
+impl Kernel<2> for CoolS {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        let folded = p.abs();
+        let turned = Vector([p.0[0].negate_unless_less(zero, p.0[1]), folded.0[1]]);
+        // Of the outline, the nearest edge tells the side too.
+        let nearer = |a: S, b: S| S::select_less(b.abs(), a.abs(), b, a);
+        let outline = nearer(
+            nearer(self.side.signed_distance(folded), self.roof.signed_distance(folded)),
+            self.waist.signed_distance(folded),
+        );
+        let strokes = self.middle.distance(folded).min(self.crossing.distance(turned));
+        // The larger of two negative numbers is the nearer stroke; outside the
+        // outline no stroke is nearer than the outline.
+        S::select_less(outline, zero, outline.max(-strokes), outline)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let half = Vector([0.4, 1.0]) * self.half_height;
+        let bounds = Bounds::centred(half, self.half_height);
+        Promise::exact(Some(bounds), 24.0, self.half_height)
+    }
+}
+
+primitive! {
+    CoolS, "cool_s", 2,
+    about: "The S that every pupil draws, two fifths as wide as high.",
+    model: ClosedForm,
+    parameters: { height: Length = "the full height" },
+    example: (1.8),
+}

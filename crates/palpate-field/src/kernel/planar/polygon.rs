@@ -1,0 +1,193 @@
+//! Polygons with holes.
+
+use std::sync::Arc;
+
+use super::line::Edge;
+use crate::bounds::{Aabb, Bounds};
+use crate::error::{ShapeError, Unit, finite};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::{Dual, Float, Model, Scalar};
+use crate::vector::{Point, Vector};
+
+/// The most edges of one polygon: a distance looks at each.
+const MOST_EDGES: usize = 100_000;
+
+/// Closer to an edge than this share of the polygon's size, the gradient is the
+/// edge's normal: the direction from the nearest point is rounding there.
+const ON_EDGE: f64 = 1e-9;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 16.0;
+
+/// The inside of closed rings of straight edges, by the even-odd rule. Exact.
+///
+/// A point is inside if a ray from it crosses an odd number of edges: rings in
+/// rings are holes, whatever their direction. The distance is the least to an
+/// edge.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Polygon};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let square = |r: f64| vec![Vector([r, r]), Vector([-r, r]), Vector([-r, -r]), Vector([r, -r])];
+/// let frame = Shape::from_kernel(Polygon::new(vec![square(4.0), square(1.0)])?);
+/// assert_eq!(frame.distance(Vector([0.0, 0.0])), 1.0); // in the hole
+/// assert_eq!(frame.distance(Vector([0.0, 3.0])), -1.0); // in the frame
+/// assert_eq!(frame.distance(Vector([7.0, 8.0])), 5.0); // past a corner
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Polygon {
+    sides: Arc<[Side]>,
+    bounds: Bounds<2>,
+}
+
+/// An edge, and where rays along x cross it.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    edge: Edge,
+    /// The lower end; the crossing rule takes the edge upwards.
+    low: [f64; 2],
+    /// From the lower end to the upper.
+    rise: [f64; 2],
+    /// The y of the upper end.
+    top: f64,
+}
+
+impl Side {
+    fn new(from: Point<2>, to: Point<2>) -> Self {
+        let (low, high) = if to[1] < from[1] { (to, from) } else { (from, to) };
+        Self { edge: Edge::new(from, to), low: low.0, rise: (high - low).0, top: high[1] }
+    }
+
+    /// `-inside` if the ray from `p` towards +x crosses the edge, else `inside`.
+    #[inline(always)]
+    fn crossed<S: Scalar>(&self, p: Vector<S, 2>, inside: S) -> S {
+        let zero = S::constant(0.0);
+        let [x, y] = (p - Vector::of(&self.low)).0;
+        let right_of = x.scale(self.rise[1]) - y.scale(self.rise[0]);
+        let crossed = S::select_less(right_of, zero, -inside, inside);
+        let below_top = S::select_less(p.0[1], S::constant(self.top), crossed, inside);
+        S::select_less(y, zero, inside, below_top)
+    }
+}
+
+impl Polygon {
+    /// The inside of `rings` [m], each closed from its last point to its first.
+    ///
+    /// # Errors
+    ///
+    /// If there is no ring, a ring has fewer than 3 points, there are more than
+    /// 100 000 points, or a coordinate is not finite.
+    pub fn new(rings: Vec<Vec<Point<2>>>) -> Result<Self, ShapeError> {
+        let count = |rule: &'static str, count| {
+            Err(ShapeError::Count { parameter: "rings".into(), rule: rule.into(), count })
+        };
+        if rings.is_empty() {
+            return count("at least 1 ring", 0);
+        }
+        let edges: usize = rings.iter().map(Vec::len).sum();
+        if edges > MOST_EDGES {
+            return count("at most 100000 points", edges);
+        }
+        let mut sides = Vec::with_capacity(edges);
+        for ring in &rings {
+            if ring.len() < 3 {
+                return count("at least 3 points in each ring", ring.len());
+            }
+            for (i, from) in ring.iter().enumerate() {
+                for x in from.0 {
+                    finite("rings", x, Unit::Metre)?;
+                }
+                let to = ring[(i + 1) % ring.len()];
+                if *from != to {
+                    sides.push(Side::new(*from, to));
+                }
+            }
+        }
+        let aabb = Aabb::around(rings.into_iter().flatten());
+        let (Some(aabb), false) = (aabb, sides.is_empty()) else {
+            return count("two different points", 0);
+        };
+        Ok(Self { sides: sides.into(), bounds: Bounds::of_box(aabb) })
+    }
+
+    /// `-1` inside, `1` outside.
+    #[inline(always)]
+    fn side_of<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        self.sides.iter().fold(S::constant(1.0), |inside, side| side.crossed(p, inside))
+    }
+}
+
+impl Kernel<2> for Polygon {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        let mut nearest = self.sides[0].edge.distance(p);
+        for side in &self.sides[1..] {
+            nearest = nearest.min(side.edge.distance(p));
+        }
+        S::select_less(self.side_of(p), zero, -nearest, nearest)
+    }
+
+    /// On an edge, the edge's normal, towards the side where a point near by is
+    /// outside.
+    #[inline(always)]
+    fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
+        let zero = T::constant(0.0);
+        let mut nearest = &self.sides[0];
+        let mut distance = nearest.edge.distance(p);
+        for side in &self.sides[1..] {
+            let here = side.edge.distance(p);
+            if here < distance {
+                (distance, nearest) = (here, side);
+            }
+        }
+        let one = T::constant(1.0);
+        let inside = self.side_of(p) < zero;
+        let signed = if inside { -distance } else { distance };
+        let on_edge = ON_EDGE * self.bounds.radius_about_origin();
+        let normal = Vector::of(&nearest.edge.across());
+        let [_, past] = nearest.edge.offsets(p);
+        let gradient = if distance.to_f64() <= on_edge && past == zero {
+            let right_is_inside = self.side_of(p + normal.scale(2.0 * on_edge)) < zero;
+            normal * if right_is_inside { -one } else { one }
+        } else {
+            let away = nearest.edge.distance(Vector(Dual::variables(p.0))).gradient;
+            Vector(away) * if inside { -one } else { one }
+        };
+        (signed, gradient)
+    }
+
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        let centre = Vector(cell.0.map(|x| x.value));
+        let size = self.bounds.radius_about_origin();
+        let far = size + centre.norm() + Model::radius(&cell.0);
+        let rounding = OPERATIONS * f64::EPSILON * far;
+        Model::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let size = self.bounds.radius_about_origin();
+        Promise::exact(Some(self.bounds), OPERATIONS, size)
+    }
+}
+
+primitive! {
+    Polygon, "polygon", 2,
+    about: "The inside of closed rings by the even-odd rule: rings in rings are holes.",
+    model: Lipschitz,
+    parameters: { rings: Rings = "lists of at least 3 points, each closed by itself" },
+    example: (vec![
+        vec![
+            Vector([-0.8, -0.5]),
+            Vector([0.7, -0.6]),
+            Vector([0.9, 0.2]),
+            Vector([0.2, 0.1]),
+            Vector([-0.3, 0.8]),
+        ],
+        vec![Vector([-0.4, -0.3]), Vector([0.1, -0.4]), Vector([-0.2, 0.2])],
+    ]),
+}

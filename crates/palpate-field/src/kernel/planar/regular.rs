@@ -1,0 +1,225 @@
+//! Regular polygons and stars.
+
+use super::line::Edge;
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// The most corners or branches.
+const MOST_BRANCHES: u32 = 256;
+
+/// Reflections that fold [`MOST_BRANCHES`] branches into half of one, after the
+/// first, which folds left onto right.
+const FOLDS: usize = 8;
+
+/// How many rounded operations a folded distance takes at most.
+const OPERATIONS: f64 = 64.0;
+
+/// The symmetries of a regular polygon, as reflections that fold the plane onto
+/// the wedge between the +y axis and the angle π/n from it.
+///
+/// # Derivation
+///
+/// Every line at a multiple of π/n from the y axis is a mirror. Fold left onto
+/// right: the wedge is n times π/n wide. A wedge of m mirrors' widths folds onto
+/// its first ⌈m/2⌉ by the mirror there, so ⌈log₂ n⌉ reflections are enough. They
+/// need no inverse function, hold for odd n, and have no singular centre.
+#[derive(Clone, Debug)]
+struct Fold {
+    /// Normals of the mirrors, out of the part that is kept; zero when done.
+    mirrors: [[f64; 2]; FOLDS],
+    /// Sine and cosine of π/n.
+    half_branch: [f64; 2],
+}
+
+impl Fold {
+    fn new(branches: u32) -> Self {
+        let angle = |m: u32| std::f64::consts::PI * f64::from(m) / f64::from(branches);
+        let mut mirrors = [[0.0; 2]; FOLDS];
+        let mut width = branches;
+        for mirror in &mut mirrors {
+            if width > 1 {
+                width = width.div_ceil(2);
+                *mirror = [libm::cos(angle(width)), -libm::sin(angle(width))];
+            }
+        }
+        Self { mirrors, half_branch: [libm::sin(angle(1)), libm::cos(angle(1))] }
+    }
+
+    #[inline(always)]
+    fn apply<S: Scalar>(&self, p: Vector<S, 2>) -> Vector<S, 2> {
+        let mut q = Vector([p.0[0].abs(), p.0[1]]);
+        for mirror in &self.mirrors {
+            let beyond = q.dot_constant(mirror).max(S::constant(0.0)).scale(2.0);
+            q = Vector(std::array::from_fn(|i| q.0[i] - beyond.scale(mirror[i])));
+        }
+        q
+    }
+}
+
+fn check_branches(parameter: &'static str, count: u32) -> Result<u32, ShapeError> {
+    if (3..=MOST_BRANCHES).contains(&count) {
+        return Ok(count);
+    }
+    let rule = format!("from 3 to {MOST_BRANCHES}");
+    Err(ShapeError::number(parameter, rule, f64::from(count), Unit::One))
+}
+
+/// A regular polygon about the origin, one corner on the +y axis. Exact.
+///
+/// In the folded wedge there is one edge, from the corner on the y axis to its
+/// middle: `f = ‖(max(s, 0), min(t, 0))‖ + min(s, 0)`, with `s` the offset from
+/// the edge's line and `t` the place along it, from the corner.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RegularPolygon};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let square = Shape::from_kernel(RegularPolygon::new(4, 2.0)?);
+/// assert!((square.distance(Vector([0.0, -5.0])) - 3.0).abs() < 1e-15); // corner
+/// assert!((square.distance(Vector([2.0, 2.0])) - 2.0_f64.sqrt()).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RegularPolygon {
+    fold: Fold,
+    sides: u32,
+    radius: f64,
+}
+
+impl RegularPolygon {
+    /// A polygon with `sides` corners at `radius` from the centre [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or there are not 3 to 256 sides.
+    pub fn new(sides: u32, radius: f64) -> Result<Self, ShapeError> {
+        let sides = check_branches("sides", sides)?;
+        let radius = positive("radius", radius, Unit::Metre)?;
+        Ok(Self { fold: Fold::new(sides), sides, radius })
+    }
+
+    /// From the centre to a corner [m].
+    pub(in crate::kernel) fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Kernel<2> for RegularPolygon {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        let [sin, cos] = self.fold.half_branch;
+        let q = self.fold.apply(p) - Vector::of(&[0.0, self.radius]);
+        let out = q.dot_constant(&[sin, cos]);
+        let along = q.dot_constant(&[cos, -sin]);
+        S::norm([out.max(zero), along.min(zero)]) + out.min(zero)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.radius)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let bounds = Bounds::centred(Vector::constant(self.radius), self.radius);
+        Promise {
+            symmetric: [true, self.sides % 2 == 0],
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, self.radius)
+        }
+    }
+}
+
+primitive! {
+    RegularPolygon, "regular_polygon", 2,
+    about: "A regular polygon, one corner up.",
+    model: Tangent,
+    parameters: {
+        sides: Count = "how many sides, 3 to 256",
+        radius: Length = "from the centre to a corner",
+    },
+    example: (5, 0.8),
+}
+
+/// A regular star about the origin, one tip on the +y axis. Exact.
+///
+/// In the folded wedge there is one edge, from the tip on the y axis to the
+/// inner corner at the angle π/n.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RegularStar};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let star = Shape::from_kernel(RegularStar::new(5, 2.0, 1.0)?);
+/// assert!((star.distance(Vector([0.0, 3.0])) - 1.0).abs() < 1e-15); // above a tip
+/// // At the centre: the nearest points are the five inner corners.
+/// assert!((star.distance(Vector([0.0, 0.0])) + 1.0).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RegularStar {
+    fold: Fold,
+    branches: u32,
+    outer_radius: f64,
+    edge: Edge,
+}
+
+impl RegularStar {
+    /// A star with tips at `outer_radius` and inner corners at `inner_radius`
+    /// from the centre [m].
+    ///
+    /// # Errors
+    ///
+    /// If a radius is not positive, the inner not less than the outer, or there
+    /// are not 3 to 256 branches.
+    pub fn new(
+        branches: u32,
+        outer_radius: f64,
+        inner_radius: f64,
+    ) -> Result<Self, ShapeError> {
+        let branches = check_branches("branches", branches)?;
+        let outer_radius = positive("outer_radius", outer_radius, Unit::Metre)?;
+        positive("inner_radius", inner_radius, Unit::Metre)?;
+        if inner_radius >= outer_radius {
+            let rule = format!("less than the outer radius, {outer_radius} m");
+            return Err(ShapeError::number("inner_radius", rule, inner_radius, Unit::Metre));
+        }
+        let fold = Fold::new(branches);
+        // Counter-clockwise around the star: outside is to the right.
+        let inner = Vector(fold.half_branch) * inner_radius;
+        let edge = Edge::new(inner, Vector([0.0, outer_radius]));
+        Ok(Self { fold, branches, outer_radius, edge })
+    }
+}
+
+impl Kernel<2> for RegularStar {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        self.edge.signed_distance(self.fold.apply(p))
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let bounds = Bounds::centred(Vector::constant(self.outer_radius), self.outer_radius);
+        Promise {
+            symmetric: [true, self.branches % 2 == 0],
+            ..Promise::exact(Some(bounds), OPERATIONS, self.outer_radius)
+        }
+    }
+}
+
+primitive! {
+    RegularStar, "regular_star", 2,
+    about: "A regular star, one tip up.",
+    model: ClosedForm,
+    parameters: {
+        branches: Count = "how many branches, 3 to 256",
+        outer_radius: Length = "from the centre to a tip",
+        inner_radius: Length = "from the centre to an inner corner",
+    },
+    example: (7, 0.9, 0.5),
+}

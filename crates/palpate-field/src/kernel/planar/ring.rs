@@ -1,0 +1,73 @@
+//! The ring between two circles.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// All points between two circles about the origin. Exact.
+///
+/// `f = |‖p‖ − m| − w`, with `m` the mean radius and `2w` the width.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ring};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let washer = Shape::from_kernel(Ring::new(2.0, 4.0)?);
+/// assert_eq!(washer.distance(Vector([0.0, 0.5])), 1.5); // in the hole
+/// assert_eq!(washer.distance(Vector([3.0, 4.0])), 1.0); // outside
+/// assert_eq!(washer.distance(Vector([-3.0, 0.0])), -1.0); // in the middle
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ring {
+    mean_radius: f64,
+    half_width: f64,
+}
+
+impl Ring {
+    /// The ring between circles of `inner_radius` and `outer_radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the inner radius is not positive or the outer not larger.
+    pub fn new(inner_radius: f64, outer_radius: f64) -> Result<Self, ShapeError> {
+        positive("inner_radius", inner_radius, Unit::Metre)?;
+        positive("outer_radius", outer_radius, Unit::Metre)?;
+        if outer_radius <= inner_radius {
+            let rule = format!("more than the inner radius, {inner_radius} m");
+            return Err(ShapeError::number("outer_radius", rule, outer_radius, Unit::Metre));
+        }
+        Ok(Self {
+            mean_radius: 0.5 * (inner_radius + outer_radius),
+            half_width: 0.5 * (outer_radius - inner_radius),
+        })
+    }
+}
+
+impl Kernel<2> for Ring {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        (p.norm() - S::constant(self.mean_radius)).abs() - S::constant(self.half_width)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let radius = self.mean_radius + self.half_width;
+        let bounds = Bounds::centred(Vector::constant(radius), radius);
+        Promise::exact(Some(bounds), 5.0, radius).symmetric()
+    }
+}
+
+primitive! {
+    Ring, "ring", 2,
+    about: "All points between two circles.",
+    model: ClosedForm,
+    parameters: {
+        inner_radius: Length = "the radius of the hole",
+        outer_radius: Length = "the radius of the outer circle",
+    },
+    example: (0.4, 0.8),
+}

@@ -1,0 +1,205 @@
+//! Simplices: triangles in 2D, tetrahedra in 3D.
+
+use std::sync::Arc;
+
+use crate::bounds::{Aabb, Bounds};
+use crate::error::{ShapeError, Unit};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::{Point, Vector};
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 40.0;
+
+/// The convex hull of `D + 1` points: a solid triangle in 2D, a tetrahedron in
+/// 3D. Exact.
+///
+/// # Derivation
+///
+/// Inside, the nearest facet is the one with the largest signed distance to its
+/// plane. Outside, the nearest point lies in the relative interior of exactly
+/// one face (facet, edge or corner). So the distance is the least over all faces
+/// whose span's nearest point to `p` lies in the face: by its plane for a facet,
+/// by the norm of what remains for lower faces.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Simplex};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let corners = vec![Vector([0.0, 0.0]), Vector([4.0, 0.0]), Vector([0.0, 2.0])];
+/// let triangle = Shape::from_kernel(Simplex::new(corners)?);
+/// assert_eq!(triangle.distance(Vector([1.0, 0.5])), -0.5);
+/// assert_eq!(triangle.distance(Vector([-3.0, -4.0])), 5.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Simplex<const D: usize> {
+    facets: Arc<[Facet<D>]>,
+    faces: Arc<[Face<D>]>,
+    bounds: Bounds<D>,
+}
+
+/// A face of `D − 1` dimensions, with its outward plane.
+#[derive(Clone, Debug)]
+struct Facet<const D: usize> {
+    normal: [f64; D],
+    offset: f64,
+    face: Face<D>,
+}
+
+/// The convex hull of some of the corners.
+#[derive(Clone, Debug)]
+struct Face<const D: usize> {
+    origin: [f64; D],
+    /// From the first corner to each other.
+    edges: Vec<[f64; D]>,
+    /// `duals[i]·edges[j]` is one for `i = j`, else zero: they give the
+    /// barycentric coordinates.
+    duals: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Face<D> {
+    fn new(corners: &[Point<D>]) -> Self {
+        let origin = corners[0];
+        let edges: Vec<_> = corners[1..].iter().map(|c| *c - origin).collect();
+        // Each dual is its edge less its projection on all other edges, scaled.
+        let duals = (0..edges.len())
+            .map(|i| {
+                let mut basis: Vec<Vector<f64, D>> = Vec::new();
+                for (_, edge) in edges.iter().enumerate().filter(|(j, _)| *j != i) {
+                    let rest = without(*edge, &basis);
+                    basis.extend(rest.normalized());
+                }
+                let across = without(edges[i], &basis);
+                (across * (1.0 / across.dot(edges[i]))).0
+            })
+            .collect();
+        Self { origin: origin.0, edges: edges.iter().map(|e| e.0).collect(), duals }
+    }
+
+    /// What remains of `p` beside the face's span, and the least barycentric
+    /// coordinate: negative if the nearest point of the span is not in the face.
+    #[inline(always)]
+    fn rest<S: Scalar>(&self, p: Vector<S, D>) -> (Vector<S, D>, S) {
+        let mut rest = p - Vector::of(&self.origin);
+        let from_origin = rest;
+        let mut first = S::constant(1.0);
+        let mut least = S::constant(1.0);
+        for (edge, dual) in self.edges.iter().zip(&self.duals) {
+            let share = from_origin.dot_constant(dual);
+            first = first - share;
+            least = least.min(share);
+            rest = Vector(std::array::from_fn(|k| rest.0[k] - share.scale(edge[k])));
+        }
+        (rest, least.min(first))
+    }
+}
+
+/// `v` without its parts along an orthonormal `basis`.
+fn without<const D: usize>(v: Vector<f64, D>, basis: &[Vector<f64, D>]) -> Vector<f64, D> {
+    basis.iter().fold(v, |v, b| v - *b * v.dot(*b))
+}
+
+impl<const D: usize> Simplex<D> {
+    /// The convex hull of `D + 1` points [m], in any order.
+    ///
+    /// # Errors
+    ///
+    /// If there are not `D + 1` points, or they are flat: in 2D on a line, in 3D
+    /// in a plane.
+    pub fn new(points: Vec<Point<D>>) -> Result<Self, ShapeError> {
+        if points.len() != D + 1 {
+            let rule = format!("exactly {} points", D + 1).into();
+            let count = points.len();
+            return Err(ShapeError::Count { parameter: "points".into(), rule, count });
+        }
+        for x in points.iter().flat_map(|p| p.0) {
+            crate::error::finite("points", x, Unit::Metre)?;
+        }
+        let longest = points.iter().fold(0.0_f64, |m, p| m.max((*p - points[0]).norm()));
+        let mut facets = Vec::new();
+        for (i, opposite) in points.iter().enumerate() {
+            let corners: Vec<_> = (0..=D).filter(|j| *j != i).map(|j| points[j]).collect();
+            let mut basis: Vec<Vector<f64, D>> = Vec::new();
+            for corner in &corners[1..] {
+                basis.extend(without(*corner - corners[0], &basis).normalized());
+            }
+            // Twice, so that a thin simplex has square normals too.
+            let height = without(without(corners[0] - *opposite, &basis), &basis);
+            let flat = height.norm() <= 1e-9 * longest || basis.len() < D - 1;
+            let (Some(normal), false) = (height.normalized(), flat) else {
+                let rule = "the corners of a body with a volume, with heights of at least \
+                            1e-9 of its size";
+                let height = height.norm();
+                return Err(ShapeError::number("points", rule, height, Unit::Metre));
+            };
+            let offset = normal.dot(corners[0]);
+            facets.push(Facet { normal: normal.0, offset, face: Face::new(&corners) });
+        }
+        let faces = (1..(1_usize << (D + 1)) - 1)
+            .filter(|set| (set.count_ones() as usize) < D)
+            .map(|set| {
+                let corners: Vec<_> =
+                    (0..=D).filter(|j| set >> j & 1 == 1).map(|j| points[j]).collect();
+                Face::new(&corners)
+            })
+            .collect();
+        let bounds = Aabb::around(points).map(Bounds::of_box);
+        let bounds = bounds.unwrap_or_else(|| Bounds::centred(Vector::ZERO, 0.0));
+        Ok(Self { facets: facets.into(), faces, bounds })
+    }
+}
+
+impl<const D: usize> Kernel<D> for Simplex<D> {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        let zero = S::constant(0.0);
+        let mut inside = S::constant(-1e30);
+        let mut outside = S::constant(1e30);
+        for facet in self.facets.iter() {
+            let height = p.dot_constant(&facet.normal) - S::constant(facet.offset);
+            inside = inside.max(height);
+            let (_, least) = facet.face.rest(p);
+            let here = S::select_less(least, zero, outside, height.abs());
+            outside = outside.min(here);
+        }
+        for face in self.faces.iter() {
+            let (rest, least) = face.rest(p);
+            let here = S::select_less(least, zero, outside, rest.norm());
+            outside = outside.min(here);
+        }
+        S::select_less(inside, zero, inside, outside)
+    }
+
+    fn model(&self, cell: Vector<Model, D>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.bounds.radius_about_origin())
+    }
+
+    fn promise(&self) -> Promise<D> {
+        let size = self.bounds.radius_about_origin();
+        Promise::exact_convex(Some(self.bounds), OPERATIONS, size)
+    }
+}
+
+primitive! {
+    Simplex<2>, "triangle", 2,
+    about: "The solid triangle of three points.",
+    model: Tangent,
+    parameters: { points: Points = "the three corners" },
+    example: (vec![Vector([-0.6, -0.4]), Vector([0.7, -0.3]), Vector([0.1, 0.6])]),
+}
+
+primitive! {
+    Simplex<3>, "tetrahedron", 3,
+    about: "The solid tetrahedron of four points.",
+    model: Tangent,
+    parameters: { points: Points = "the four corners" },
+    example: (vec![
+        Vector([-0.6, -0.4, -0.3]),
+        Vector([0.7, -0.3, -0.4]),
+        Vector([0.1, -0.2, 0.6]),
+        Vector([0.0, 0.7, 0.1]),
+    ]),
+}

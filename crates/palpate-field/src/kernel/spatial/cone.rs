@@ -1,0 +1,172 @@
+//! Cones about the y axis, whole and capped.
+
+use super::cylinder::{from_axis, turned_bounds};
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 24.0;
+
+/// A cone about the y axis with its tip cut off. Exact.
+///
+/// # Derivation
+///
+/// The profile in `(ρ, y)`, with `ρ` the distance from the axis, is a convex
+/// quadrilateral: inside, the nearest of the caps' planes and the side's line
+/// decides. Outside, the nearest point is on the side where `p` projects into
+/// it, on a cap where `p` is above or below it, else on a rim.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CappedCone};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let bucket = Shape::from_kernel(CappedCone::new(4.0, 1.0, 4.0)?);
+/// assert_eq!(bucket.distance(Vector([0.0, 3.0, 0.0])), 1.0); // above
+/// assert_eq!(bucket.distance(Vector([7.0, -6.0, 0.0])), 5.0); // from the rim
+/// assert!((bucket.distance(Vector([0.0, 0.0, 0.0])) + 2.0).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CappedCone {
+    bottom_radius: f64,
+    top_radius: f64,
+    half_height: f64,
+    /// From the bottom rim along the side to the top rim, of length one.
+    slope: [f64; 2],
+    side: f64,
+}
+
+impl CappedCone {
+    /// A capped cone with the given radii at the bottom and top and full
+    /// `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the height is not positive, a radius is negative, or both are zero.
+    pub fn new(bottom_radius: f64, top_radius: f64, height: f64) -> Result<Self, ShapeError> {
+        not_negative("bottom_radius", bottom_radius, Unit::Metre)?;
+        not_negative("top_radius", top_radius, Unit::Metre)?;
+        let height = positive("height", height, Unit::Metre)?;
+        positive("bottom_radius or top_radius", bottom_radius.max(top_radius), Unit::Metre)?;
+        let side = (top_radius - bottom_radius).hypot(height);
+        let slope = [(top_radius - bottom_radius) / side, height / side];
+        Ok(Self { bottom_radius, top_radius, half_height: 0.5 * height, slope, side })
+    }
+}
+
+impl Kernel<3> for CappedCone {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let zero = S::constant(0.0);
+        let (rho, y) = (from_axis(p), p.0[1]);
+        let [along_rho, along_y] = self.slope;
+        // From the bottom rim: along the side and out of it.
+        let from_rim =
+            [rho - S::constant(self.bottom_radius), y + S::constant(self.half_height)];
+        let along = from_rim[0].scale(along_rho) + from_rim[1].scale(along_y);
+        let out = from_rim[0].scale(along_y) - from_rim[1].scale(along_rho);
+        let cap = y.abs() - S::constant(self.half_height);
+        let inside = out.max(cap);
+
+        let from_top = [rho - S::constant(self.top_radius), y - S::constant(self.half_height)];
+        let rims = S::norm(from_rim).min(S::norm(from_top));
+        let radius = S::select_less(
+            y,
+            zero,
+            S::constant(self.bottom_radius),
+            S::constant(self.top_radius),
+        );
+        let by_cap = S::select_less(radius, rho, rims, cap.abs());
+        let past_top = S::select_less(S::constant(self.side), along, rims, out.abs());
+        let by_side = S::select_less(along, zero, rims, past_top);
+        S::select_less(inside, zero, inside, by_cap.min(by_side))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        let size = self.side + self.bottom_radius + self.top_radius;
+        tangent_model(self, cell, OPERATIONS, size)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let widest = self.bottom_radius.max(self.top_radius);
+        let bounds = turned_bounds(widest, self.half_height);
+        let size = self.side + self.bottom_radius + self.top_radius;
+        Promise {
+            symmetric: [true, self.bottom_radius == self.top_radius, true],
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, size)
+        }
+    }
+}
+
+primitive! {
+    CappedCone, "capped_cone", 3,
+    about: "A cone about the y axis with its tip cut off.",
+    model: Tangent,
+    parameters: {
+        bottom_radius: LengthOrZero = "the radius at the bottom",
+        top_radius: LengthOrZero = "the radius at the top",
+        height: Length = "the full height",
+    },
+    example: (0.6, 0.25, 0.9),
+}
+
+/// A cone about the y axis, its tip up, centred at half its height. Exact.
+///
+/// A [`CappedCone`] whose top has no radius.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Cone};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let cone = Shape::from_kernel(Cone::new(3.0, 4.0)?);
+/// assert_eq!(cone.distance(Vector([0.0, 5.0, 0.0])), 3.0); // above the tip
+/// assert_eq!(cone.distance(Vector([0.0, -3.0, 0.0])), 1.0); // below the base
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Cone(CappedCone);
+
+impl Cone {
+    /// A cone with the given `radius` at the base and full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If either is not positive.
+    pub fn new(radius: f64, height: f64) -> Result<Self, ShapeError> {
+        let radius = positive("radius", radius, Unit::Metre)?;
+        Ok(Self(CappedCone::new(radius, 0.0, height)?))
+    }
+}
+
+impl Kernel<3> for Cone {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.0.distance(p)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        self.0.model(cell)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        self.0.promise()
+    }
+}
+
+primitive! {
+    Cone, "cone", 3,
+    about: "A cone about the y axis, its tip up.",
+    model: Tangent,
+    parameters: {
+        radius: Length = "the radius of the base",
+        height: Length = "the full height",
+    },
+    example: (0.6, 1.0),
+}

@@ -1,0 +1,193 @@
+//! Cylinders about the y axis: sharp, rounded and without ends.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// The distance from the y axis.
+#[inline(always)]
+pub(super) fn from_axis<S: Scalar>(p: Vector<S, 3>) -> S {
+    S::norm([p.0[0], p.0[2]])
+}
+
+/// The bounds of what a box of `half_width` and `half_height` holds when turned
+/// about the y axis.
+pub(super) fn turned_bounds(half_width: f64, half_height: f64) -> Bounds<3> {
+    let radius = half_width.hypot(half_height) * (1.0 + 4.0 * f64::EPSILON);
+    Bounds::centred(Vector([half_width, half_height, half_width]), radius)
+}
+
+/// A cylinder of a radius and full height about the y axis. Exact.
+///
+/// The orthant of `√(x² + z²) − r` and `|y| − h/2`: a rectangle, turned.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Cylinder};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let can = Shape::from_kernel(Cylinder::new(2.0, 6.0)?);
+/// assert_eq!(can.distance(Vector([3.0, 0.0, 4.0])), 3.0);
+/// assert_eq!(can.distance(Vector([5.0, 7.0, 0.0])), 5.0); // past the rim
+/// assert_eq!(can.distance(Vector([0.0, 2.5, 0.0])), -0.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Cylinder {
+    radius: f64,
+    half_height: f64,
+}
+
+impl Cylinder {
+    /// A cylinder of `radius` and full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If either is not positive.
+    pub fn new(radius: f64, height: f64) -> Result<Self, ShapeError> {
+        Ok(Self {
+            radius: positive("radius", radius, Unit::Metre)?,
+            half_height: 0.5 * positive("height", height, Unit::Metre)?,
+        })
+    }
+}
+
+impl Kernel<3> for Cylinder {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        S::orthant([
+            from_axis(p) - S::constant(self.radius),
+            p.0[1].abs() - S::constant(self.half_height),
+        ])
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let bounds = turned_bounds(self.radius, self.half_height);
+        Promise::exact_convex(Some(bounds), 8.0, bounds.ball.radius).symmetric()
+    }
+}
+
+primitive! {
+    Cylinder, "cylinder", 3,
+    about: "A cylinder about the y axis.",
+    model: ClosedForm,
+    parameters: { radius: Length = "the radius", height: Length = "the full height" },
+    example: (0.4, 1.0),
+}
+
+/// A cylinder about the y axis with its rims rounded inwards. Exact.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RoundedCylinder};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let pill = Shape::from_kernel(RoundedCylinder::new(2.0, 6.0, 0.5)?);
+/// assert_eq!(pill.distance(Vector([3.0, 0.0, 4.0])), 3.0); // the side stays
+/// assert_eq!(pill.distance(Vector([4.5, 6.5, 0.0])), 4.5); // √(3² + 4²) − 0.5
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RoundedCylinder {
+    core: Cylinder,
+    rounding: f64,
+}
+
+impl RoundedCylinder {
+    /// A cylinder of `radius` and full `height`, its rims rounded with radius
+    /// `rounding` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius or height is not positive, or the rounding is negative or
+    /// more than the radius or half the height.
+    pub fn new(radius: f64, height: f64, rounding: f64) -> Result<Self, ShapeError> {
+        let sharp = Cylinder::new(radius, height)?;
+        not_negative("rounding", rounding, Unit::Metre)?;
+        let most = sharp.radius.min(sharp.half_height);
+        if rounding > most {
+            let rule = format!("at most the radius and half the height, {most} m");
+            return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
+        }
+        let core = Cylinder {
+            radius: sharp.radius - rounding,
+            half_height: sharp.half_height - rounding,
+        };
+        Ok(Self { core, rounding })
+    }
+}
+
+impl Kernel<3> for RoundedCylinder {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.core.distance(p) - S::constant(self.rounding)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let core = &self.core;
+        let bounds =
+            turned_bounds(core.radius + self.rounding, core.half_height + self.rounding);
+        Promise::exact_convex(Some(bounds), 9.0, bounds.ball.radius).symmetric()
+    }
+}
+
+primitive! {
+    RoundedCylinder, "rounded_cylinder", 3,
+    about: "A cylinder about the y axis, its rims rounded inwards.",
+    model: ClosedForm,
+    parameters: {
+        radius: Length = "the radius",
+        height: Length = "the full height",
+        rounding: LengthOrZero = "the radius of the rims",
+    },
+    example: (0.4, 1.0, 0.1),
+}
+
+/// A cylinder without ends about the y axis. Exact, without bounds.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::InfiniteCylinder};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let pole = Shape::from_kernel(InfiniteCylinder::new(0.5)?);
+/// assert_eq!(pole.distance(Vector([3.0, 1e6, 4.0])), 4.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct InfiniteCylinder {
+    radius: f64,
+}
+
+impl InfiniteCylinder {
+    /// A cylinder of `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive.
+    pub fn new(radius: f64) -> Result<Self, ShapeError> {
+        Ok(Self { radius: positive("radius", radius, Unit::Metre)? })
+    }
+}
+
+impl Kernel<3> for InfiniteCylinder {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        from_axis(p) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        Promise::exact_convex(None, 4.0, self.radius).symmetric()
+    }
+}
+
+primitive! {
+    InfiniteCylinder, "infinite_cylinder", 3,
+    about: "A cylinder without ends about the y axis.",
+    model: ClosedForm,
+    parameters: { radius: Length = "the radius" },
+    example: (0.3),
+}

@@ -1,0 +1,159 @@
+//! Prisms along the y axis on regular polygons.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::planar::RegularPolygon;
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 32.0;
+
+/// A regular polygon in x and z, extruded along y: the orthant of the polygon's
+/// distance and `|y| − h/2`.
+#[derive(Clone, Debug)]
+struct Prism {
+    polygon: RegularPolygon,
+    half_height: f64,
+}
+
+impl Prism {
+    fn new(sides: u32, radius: f64, height: f64) -> Result<Self, ShapeError> {
+        let half_height = 0.5 * positive("height", height, Unit::Metre)?;
+        Ok(Self { polygon: RegularPolygon::new(sides, radius)?, half_height })
+    }
+
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        S::orthant([
+            self.polygon.distance(Vector([p.0[0], p.0[2]])),
+            p.0[1].abs() - S::constant(self.half_height),
+        ])
+    }
+
+    fn size(&self) -> f64 {
+        self.polygon.radius() + self.half_height
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let profile = self.polygon.promise();
+        let width = self.polygon.radius();
+        let radius = width.hypot(self.half_height) * (1.0 + 4.0 * f64::EPSILON);
+        let bounds = Bounds::centred(Vector([width, self.half_height, width]), radius);
+        Promise {
+            symmetric: [profile.symmetric[0], true, profile.symmetric[1]],
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, self.size())
+        }
+    }
+}
+
+/// A prism along y on a regular hexagon in x and z, two corners on the z axis.
+/// Exact.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::HexagonalPrism};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let nut = Shape::from_kernel(HexagonalPrism::new(2.0, 3.0)?);
+/// assert!((nut.distance(Vector([0.0, 0.0, 5.0])) - 3.0).abs() < 1e-14);
+/// assert_eq!(nut.distance(Vector([0.5, -2.5, 0.0])), 1.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct HexagonalPrism(Prism);
+
+impl HexagonalPrism {
+    /// A prism on a hexagon with corners at `radius`, of full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If either is not positive.
+    pub fn new(radius: f64, height: f64) -> Result<Self, ShapeError> {
+        Ok(Self(Prism::new(6, radius, height)?))
+    }
+}
+
+impl Kernel<3> for HexagonalPrism {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.0.distance(p)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.0.size())
+    }
+
+    fn promise(&self) -> Promise<3> {
+        self.0.promise()
+    }
+}
+
+primitive! {
+    HexagonalPrism, "hexagonal_prism", 3,
+    about: "A prism along y on a regular hexagon.",
+    model: Tangent,
+    parameters: {
+        radius: Length = "from the axis to a corner of the hexagon",
+        height: Length = "the full height",
+    },
+    example: (0.6, 0.5),
+}
+
+/// A prism along y on a regular triangle in x and z, one corner towards +z.
+/// Exact.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::TriangularPrism};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let roof = Shape::from_kernel(TriangularPrism::new(3.0_f64.sqrt(), 4.0)?);
+/// assert!((roof.distance(Vector([0.0, 0.0, 3.0])) - 2.0).abs() < 1e-14); // corner
+/// assert!((roof.distance(Vector([0.0, 0.0, -3.0])) - 2.5).abs() < 1e-14); // face
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct TriangularPrism(Prism);
+
+impl TriangularPrism {
+    /// A prism on a triangle of the given `side`, of full `height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If either is not positive.
+    pub fn new(side: f64, height: f64) -> Result<Self, ShapeError> {
+        let side = positive("side", side, Unit::Metre)?;
+        Ok(Self(Prism::new(3, side / 3.0_f64.sqrt(), height)?))
+    }
+}
+
+impl Kernel<3> for TriangularPrism {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.0.distance(p)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.0.size())
+    }
+
+    fn promise(&self) -> Promise<3> {
+        self.0.promise()
+    }
+}
+
+primitive! {
+    TriangularPrism, "triangular_prism", 3,
+    about: "A prism along y on a regular triangle.",
+    model: Tangent,
+    parameters: {
+        side: Length = "the edge of the triangle",
+        height: Length = "the full height",
+    },
+    example: (1.0, 0.6),
+}

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Line charts: a quantity over time, or over any other.
+
+use crate::axis::{Axis, BELOW};
+use crate::drawing::{Drawing, Path, Stroke, TextStyle};
+use crate::error::{PlotError, finite_points};
+use crate::geometry::{Point, Rect, distance};
+use crate::legend::{self, Entry, Key};
+use crate::overlay::Dash;
+use crate::palette::Color;
+use crate::text::{Anchor, CAP_HEIGHT};
+
+/// Height of a chart's plot [px].
+const HEIGHT: f64 = 210.0;
+/// Distance of ticks aimed at, across and up [px].
+const TICK_SPACING: [f64; 2] = [95.0, 34.0];
+/// Room above the highest and below the lowest value, of the span.
+const MARGIN: f64 = 0.06;
+/// Width of the lines [px].
+const LINE: f64 = 1.9;
+
+/// What an axis of a chart measures, and in which unit.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::Quantity;
+///
+/// assert_eq!(Quantity::new("force", "N").label(), "force [N]");
+/// assert_eq!(Quantity::new("friction", "").label(), "friction");
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    name: String,
+    unit: String,
+}
+
+impl Quantity {
+    /// The quantity `name` measured in `unit`; an empty unit for pure numbers.
+    #[must_use]
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
+    }
+
+    /// Name and unit as written at the axis.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} [{}]", self.name, self.unit)
+        }
+    }
+}
+
+/// A named line of a chart.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::Series;
+///
+/// let force = Series::new("normal force", [[0.0, 0.0], [0.001, 0.8]])?;
+/// assert!(Series::new("normal force", [[0.0, f64::INFINITY]]).is_err());
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    name: String,
+    points: Vec<[f64; 2]>,
+    color: Option<Color>,
+    dash: Option<Dash>,
+}
+
+impl Series {
+    /// The line through `points`, each `[x, y]` in the units of the chart's axes.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`].
+    pub fn new(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Result<Self, PlotError> {
+        let (name, points) = (name.into(), Vec::from_iter(points));
+        finite_points(&name, &points)?;
+        Ok(Self { name, points, color: None, dash: None })
+    }
+
+    /// With a colour of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_color(self, color: Color) -> Self {
+        Self { color: Some(color), ..self }
+    }
+
+    /// With a dash of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_dash(self, dash: Dash) -> Self {
+        Self { dash: Some(dash), ..self }
+    }
+}
+
+/// Lines over an axis, with ticks, grid and legend.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::{Chart, Figure, Quantity, Series};
+///
+/// let force = Series::new("normal", (0..1000).map(|i| {
+///     let time = f64::from(i) * 1e-3;
+///     [time, (6.0 * time).sin().max(0.0)]
+/// }))?;
+/// let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N")).with_series(force);
+/// let png = Figure::new("Press").with_chart(chart).to_png(800)?;
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    x: Quantity,
+    y: Quantity,
+    title: String,
+    series: Vec<Series>,
+}
+
+impl Chart {
+    /// An empty chart of `y` over `x`.
+    #[must_use]
+    pub fn new(x: Quantity, y: Quantity) -> Self {
+        Self { x, y, title: String::new(), series: Vec::new() }
+    }
+
+    /// With another line.
+    #[must_use]
+    pub fn with_series(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// With a heading of its own, for figures of several parts.
+    #[must_use]
+    pub fn with_title(self, title: impl Into<String>) -> Self {
+        Self { title: title.into(), ..self }
+    }
+
+    /// Room for the left axis [px].
+    pub(crate) fn gutter(&self) -> f64 {
+        self.axis(1, HEIGHT).gutter()
+    }
+
+    fn axis(&self, index: usize, length: f64) -> Axis {
+        let values = self.series.iter().flat_map(|s| &s.points).map(|p| p[index]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(v), high.max(v))
+        });
+        let margin = if index == 0 { 0.0 } else { MARGIN };
+        let name = if index == 0 { self.x.label() } else { self.y.label() };
+        Axis::new(&name, widened(low, high, margin), length, TICK_SPACING[index])
+    }
+
+    /// Draws the chart into `area` from its top; its plot starts `gutter` right of its left
+    /// edge. Returns the height used. All [px].
+    pub(crate) fn draw(&self, drawing: &mut Drawing, area: &Rect, gutter: f64) -> f64 {
+        let mut top = area.min[1];
+        let left = area.min[0] + gutter;
+        if !self.title.is_empty() {
+            let style = TextStyle::SUBTITLE;
+            let at = [left, top + CAP_HEIGHT * style.size];
+            drawing.label(&self.title, at, Anchor::Start, style);
+            top += 24.0;
+        }
+        let plot = Rect::new(left, top, area.max[0] - left, HEIGHT);
+        let (x, y) = (self.axis(0, plot.width()), self.axis(1, HEIGHT));
+        draw_grid(drawing, &plot, &x, &y);
+        let mut entries = Vec::new();
+        for (index, series) in self.series.iter().enumerate() {
+            let dash = series.dash.unwrap_or(Dash::of_series(index)).lengths(LINE);
+            let color = series.color.unwrap_or(Color::of_series(index));
+            let stroke = Stroke::new(color, LINE).with_dash(dash);
+            let pixels: Vec<Point> = series
+                .points
+                .iter()
+                .map(|p| {
+                    let (s, t) = (x.fraction(p[0]), y.fraction(p[1]));
+                    [plot.min[0] + s * plot.width(), plot.max[1] - t * plot.height()]
+                })
+                .collect();
+            drawing.stroke(Path::line(&thin(&pixels)), stroke.clone());
+            entries.push(Entry::new(Key::Line(stroke), &*series.name));
+        }
+        x.draw_below(drawing, &plot);
+        y.draw_left(drawing, &plot, area.min[0]);
+        let origin = [left, plot.max[1] + BELOW + 10.0];
+        let height = legend::draw(drawing, &entries, origin, plot.width());
+        origin[1] + height - area.min[1]
+    }
+}
+
+/// A range that shows all of `[low, high]` with a `margin` of its span, and never a point.
+fn widened(low: f64, high: f64, margin: f64) -> [f64; 2] {
+    if low > high {
+        return [0.0, 1.0]; // no data
+    }
+    let span = high - low;
+    // A span below rounding cannot be divided into ticks; show the value as a level line.
+    if span <= 1e-9 * low.abs().max(high.abs()) {
+        let room = if low == 0.0 { 1.0 } else { 0.5 * low.abs() };
+        return [low - room, high + room];
+    }
+    [low - margin * span, high + margin * span]
+}
+
+fn draw_grid(drawing: &mut Drawing, plot: &Rect, x: &Axis, y: &Axis) {
+    let mut grid = Path::default();
+    for &tick in &x.ticks {
+        let x = plot.min[0] + x.fraction(tick) * plot.width();
+        grid.add_line(&[[x, plot.min[1]], [x, plot.max[1]]]);
+    }
+    for &tick in &y.ticks {
+        let y = plot.max[1] - y.fraction(tick) * plot.height();
+        grid.add_line(&[[plot.min[0], y], [plot.max[0], y]]);
+    }
+    drawing.stroke(grid, Stroke::new(Color::RULE, 1.0));
+    if y.start < 0.0 && y.end > 0.0 {
+        let zero = plot.max[1] - y.fraction(0.0) * plot.height();
+        let line = Path::line(&[[plot.min[0], zero], [plot.max[0], zero]]);
+        drawing.stroke(line, Stroke::new(Color::MUTED, 1.0));
+    }
+    let axes = Path::line(&[plot.min, [plot.min[0], plot.max[1]], plot.max]);
+    drawing.stroke(axes, Stroke::new(Color::MUTED, 1.0));
+}
+
+/// Keeps what can be seen of many samples: of those in one column of pixels the first, the
+/// highest, the lowest and the last, in their order.
+fn thin(pixels: &[Point]) -> Vec<Point> {
+    /// Width of a column [px]: fine enough for a picture at twice the size.
+    const COLUMN: f64 = 0.5;
+    let mut thinned: Vec<Point> = Vec::new();
+    let column = |p: &Point| (p[0] / COLUMN).floor();
+    for run in pixels.chunk_by(|a, b| column(a) == column(b)) {
+        let extreme = |sign: f64| {
+            let order =
+                |a: &usize, b: &usize| (sign * run[*a][1]).total_cmp(&(sign * run[*b][1]));
+            (0..run.len()).max_by(order).unwrap_or(0)
+        };
+        let mut kept = [0, extreme(1.0), extreme(-1.0), run.len() - 1];
+        kept.sort_unstable();
+        for index in kept {
+            if thinned.last().is_none_or(|&last| distance(last, run[index]) > 0.02) {
+                thinned.push(run[index]);
+            }
+        }
+    }
+    thinned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_the_peaks() {
+        let noise: Vec<Point> = (0..100_000)
+            .map(|i| [f64::from(i) * 0.007, f64::from(i * 7919 % 1000) / 10.0])
+            .collect();
+        let thinned = thin(&noise);
+        assert!(thinned.len() <= 4 * 1401, "{}", thinned.len());
+        let highest = |points: &[Point]| points.iter().fold(0.0_f64, |m, p| m.max(p[1]));
+        assert_eq!(highest(&thinned), highest(&noise));
+    }
+
+    #[test]
+    fn ranges_are_never_empty() {
+        assert_eq!(widened(f64::INFINITY, f64::NEG_INFINITY, 0.1), [0.0, 1.0]);
+        assert_eq!(widened(0.0, 0.0, 0.1), [-1.0, 1.0]);
+        assert_eq!(widened(-4.0, -4.0, 0.1), [-6.0, -2.0]);
+        assert_eq!(widened(0.0, 10.0, 0.5), [-5.0, 15.0]);
+    }
+}

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Symbols and the legend that explains them.
+
+use crate::drawing::{Drawing, Path, Stroke, TextStyle};
+use crate::geometry::{Point, Rect, distance};
+use crate::palette::Color;
+use crate::text::{Anchor, CAP_HEIGHT, shorten};
+
+/// Width of a key [px].
+const KEY: f64 = 30.0;
+/// Between key and text [px].
+const GAP: f64 = 8.0;
+/// Between entries [px].
+const BETWEEN: f64 = 22.0;
+/// Height of a row [px].
+const ROW: f64 = 22.0;
+
+/// What stands for an entry in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Key {
+    /// Bands, from the surface outwards.
+    Bands(Vec<Color>),
+    /// A line, over a white one.
+    Line(Stroke),
+    /// An arrow of this length [px].
+    Arrow(Color, f64),
+    /// A point.
+    Point(Symbol, Color),
+    /// Words only.
+    None,
+}
+
+/// An entry of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Entry {
+    pub(crate) key: Key,
+    pub(crate) text: String,
+}
+
+impl Entry {
+    pub(crate) fn new(key: Key, text: impl Into<String>) -> Self {
+        Self { key, text: text.into() }
+    }
+}
+
+impl Key {
+    fn width(&self) -> f64 {
+        match self {
+            Self::Bands(_) | Self::Line(_) => KEY,
+            Self::Arrow(_, length) => length.max(12.0),
+            Self::Point(..) => 12.0,
+            Self::None => -GAP,
+        }
+    }
+
+    /// Draws the key with its left end at `x`, centred on `y` [px].
+    fn draw(&self, drawing: &mut Drawing, x: f64, y: f64) {
+        match self {
+            Self::Bands(colors) => {
+                let width = KEY / colors.len() as f64;
+                for (i, &color) in colors.iter().enumerate() {
+                    let rect = Rect::new(x + i as f64 * width, y - 6.0, width, 12.0);
+                    drawing.fill(Path::rect(&rect), color);
+                }
+                let frame = Rect::new(x, y - 6.0, KEY, 12.0);
+                drawing.stroke(Path::rect(&frame), Stroke::new(Color::MUTED, 0.75));
+            }
+            Self::Line(stroke) => {
+                let line = [[x + 2.0, y], [x + KEY - 2.0, y]];
+                drawing.stroke(Path::line(&line), stroke.clone());
+            }
+            Self::Arrow(color, length) => {
+                draw_arrow(drawing, [x, y], [x + length, y], *color);
+            }
+            Self::Point(symbol, color) => symbol.draw(drawing, [x + 6.0, y], *color),
+            Self::None => {}
+        }
+    }
+}
+
+/// Draws entries in rows of at most `width` from `[x, y]` down, all [px]; returns the height.
+pub(crate) fn draw(drawing: &mut Drawing, entries: &[Entry], [x, y]: Point, width: f64) -> f64 {
+    let style = TextStyle::LEGEND;
+    let (mut left, mut row) = (x, 0);
+    for entry in entries {
+        let before = entry.key.width() + GAP;
+        let text = shorten(&entry.text, style.size, style.weight, width - before);
+        let needed = before + style.width(&text);
+        if left > x && left + needed > x + width {
+            (left, row) = (x, row + 1);
+        }
+        let middle = y + ROW * (f64::from(row) + 0.5);
+        entry.key.draw(drawing, left, middle);
+        let at = [left + before, middle + CAP_HEIGHT * style.size / 2.0];
+        drawing.label(&text, at, Anchor::Start, style);
+        left += needed + BETWEEN;
+    }
+    if entries.is_empty() { 0.0 } else { ROW * f64::from(row + 1) }
+}
+
+/// The shape of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Symbol {
+    Disc,
+    Diamond,
+    Square,
+    Triangle,
+}
+
+impl Symbol {
+    /// Half the size of a symbol [px].
+    pub(crate) const RADIUS: f64 = 5.0;
+
+    pub(crate) fn of_series(index: usize) -> Self {
+        [Self::Disc, Self::Diamond, Self::Square, Self::Triangle][index % 4]
+    }
+
+    /// Draws the symbol at `center` [px] with a white rim.
+    pub(crate) fn draw(self, drawing: &mut Drawing, center: Point, color: Color) {
+        let r = Self::RADIUS;
+        let ring = |corners: &[Point]| {
+            Path::ring(&Vec::from_iter(
+                corners.iter().map(|p| [center[0] + p[0], center[1] + p[1]]),
+            ))
+        };
+        let path = match self {
+            Self::Disc => Path::circle(center, r),
+            Self::Diamond => {
+                ring(&[[0.0, -1.25 * r], [1.25 * r, 0.0], [0.0, 1.25 * r], [-1.25 * r, 0.0]])
+            }
+            Self::Square => {
+                let h = 0.9 * r;
+                ring(&[[-h, -h], [h, -h], [h, h], [-h, h]])
+            }
+            Self::Triangle => ring(&[[0.0, -1.2 * r], [1.1 * r, 0.8 * r], [-1.1 * r, 0.8 * r]]),
+        };
+        drawing.fill_with_rim(path, color, Stroke::new(Color::WHITE, 3.0));
+    }
+}
+
+/// Shorter arrows are not drawn: they have no direction to see [px].
+const SHORTEST: f64 = 0.5;
+/// Length of an arrow's head [px].
+const HEAD: f64 = 10.0;
+
+/// Draws an arrow with a white rim between two points [px]; its head shrinks with short ones.
+pub(crate) fn draw_arrow(drawing: &mut Drawing, tail: Point, tip: Point, color: Color) {
+    let length = distance(tail, tip);
+    if length < SHORTEST {
+        return;
+    }
+    let along = [(tip[0] - tail[0]) / length, (tip[1] - tail[1]) / length];
+    let head = HEAD.min(0.6 * length);
+    let (half_head, half_shaft) = (0.42 * head, 1.1_f64.min(0.1 * length));
+    let at = |s: f64, side: f64| {
+        [tail[0] + s * along[0] - side * along[1], tail[1] + s * along[1] + side * along[0]]
+    };
+    let neck = length - head;
+    let ring = [
+        at(0.0, -half_shaft),
+        at(neck, -half_shaft),
+        at(neck, -half_head),
+        at(length, 0.0),
+        at(neck, half_head),
+        at(neck, half_shaft),
+        at(0.0, half_shaft),
+    ];
+    drawing.fill_with_rim(
+        Path::ring(&ring),
+        color,
+        Stroke::new(Color::WHITE, 2.4).with_opacity(0.9),
+    );
+}

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a figure shows over the isolines: paths, arrows and points.
+
+use crate::error::{PlotError, finite_points};
+use crate::palette::Color;
+
+/// How a line is broken, so that it can be told apart without colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dash {
+    /// Unbroken.
+    Solid,
+    /// Long strokes.
+    Dashed,
+    /// Dots.
+    Dotted,
+}
+
+impl Dash {
+    /// The dash of the line number `index` that names none.
+    pub(crate) fn of_series(index: usize) -> Self {
+        [Self::Solid, Self::Dashed, Self::Dotted][index % 3]
+    }
+
+    /// Lengths of strokes and gaps [px] of a line `width` [px] wide with round ends.
+    pub(crate) fn lengths(self, width: f64) -> Vec<f64> {
+        match self {
+            Self::Solid => Vec::new(),
+            Self::Dashed => vec![3.2 * width, 2.8 * width],
+            Self::Dotted => vec![0.1, 2.7 * width],
+        }
+    }
+}
+
+/// A named path over the isolines, in plane coordinates \[m\].
+///
+/// Project points of space with [`Slice::project`](crate::Slice::project).
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::{Color, Dash, Polyline};
+///
+/// let hand = Polyline::new("hand", [[0.0, 0.0], [0.1, 0.02]])?
+///     .with_color(Color::PURPLE)
+///     .with_dash(Dash::Dashed);
+/// let error = Polyline::new("hand", [[0.0, f64::NAN]]).unwrap_err();
+/// assert_eq!(error.to_string(), "point 0 of \"hand\" must be finite, got (0, NaN)");
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) color: Option<Color>,
+    pub(crate) dash: Option<Dash>,
+}
+
+impl Polyline {
+    /// The path through `points` \[m\], called `name` in the legend.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`].
+    pub fn new(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Result<Self, PlotError> {
+        let (name, points) = (name.into(), Vec::from_iter(points));
+        finite_points(&name, &points)?;
+        Ok(Self { name, points, color: None, dash: None })
+    }
+
+    /// With a colour of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_color(self, color: Color) -> Self {
+        Self { color: Some(color), ..self }
+    }
+
+    /// With a dash of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_dash(self, dash: Dash) -> Self {
+        Self { dash: Some(dash), ..self }
+    }
+}
+
+/// A vector drawn from a point of the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrow {
+    /// Where it starts, in plane coordinates \[m\].
+    pub tail: [f64; 2],
+    /// The vector, along the axes of the plane, in its own unit.
+    pub vector: [f64; 2],
+}
+
+/// Named arrows over the isolines: forces, velocities, normals.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::{Arrow, Arrows};
+///
+/// let forces = [Arrow { tail: [0.02, 0.0], vector: [1.5, 0.0] }];
+/// let forces = Arrows::new("contact force", "N", forces)?; // the legend shows its scale
+/// let normals = [Arrow { tail: [0.02, 0.0], vector: [1.0, 0.0] }];
+/// let normals = Arrows::directions("normal", normals)?; // all of one length
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arrows {
+    pub(crate) name: String,
+    /// Unit of the vectors, or `None` where only the direction counts.
+    pub(crate) unit: Option<String>,
+    pub(crate) arrows: Vec<Arrow>,
+    pub(crate) color: Option<Color>,
+}
+
+impl Arrows {
+    /// Arrows in proportion to their vectors, whose `unit` the legend names.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`] for a tail or vector that is not finite.
+    pub fn new(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        arrows: impl IntoIterator<Item = Arrow>,
+    ) -> Result<Self, PlotError> {
+        Ok(Self { unit: Some(unit.into()), ..Self::directions(name, arrows)? })
+    }
+
+    /// Arrows of one length in the directions of their vectors; zero vectors are left out.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`] for a tail or vector that is not finite.
+    pub fn directions(
+        name: impl Into<String>,
+        arrows: impl IntoIterator<Item = Arrow>,
+    ) -> Result<Self, PlotError> {
+        let (name, arrows) = (name.into(), Vec::from_iter(arrows));
+        let points = |part: fn(&Arrow) -> [f64; 2]| Vec::from_iter(arrows.iter().map(part));
+        finite_points(&name, &points(|arrow| arrow.tail))?;
+        finite_points(&name, &points(|arrow| arrow.vector))?;
+        Ok(Self { name, unit: None, arrows, color: None })
+    }
+
+    /// With a colour of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_color(self, color: Color) -> Self {
+        Self { color: Some(color), ..self }
+    }
+
+    /// The largest length among the vectors, in their unit.
+    pub(crate) fn longest(&self) -> f64 {
+        self.arrows
+            .iter()
+            .map(|arrow| arrow.vector[0].hypot(arrow.vector[1]))
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Named points over the isolines, with or without labels, in plane coordinates \[m\].
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::Markers;
+///
+/// let contacts = Markers::new("contact", [[0.02, 0.0], [-0.02, 0.0]])?.with_labels(["A", "B"]);
+/// # Ok::<(), palpate_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Markers {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) labels: Vec<String>,
+    pub(crate) color: Option<Color>,
+}
+
+impl Markers {
+    /// Marks `points` \[m\], called `name` in the legend.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`].
+    pub fn new(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Result<Self, PlotError> {
+        let (name, points) = (name.into(), Vec::from_iter(points));
+        finite_points(&name, &points)?;
+        Ok(Self { name, points, labels: Vec::new(), color: None })
+    }
+
+    /// With a label at each point, in order; points beyond the last label have none.
+    #[must_use]
+    pub fn with_labels<T: Into<String>>(self, labels: impl IntoIterator<Item = T>) -> Self {
+        Self { labels: labels.into_iter().map(Into::into).collect(), ..self }
+    }
+
+    /// With a colour of its own instead of the next in the series.
+    #[must_use]
+    pub fn with_color(self, color: Color) -> Self {
+        Self { color: Some(color), ..self }
+    }
+}
+
+/// What lies over the isolines, in the order it was added.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Overlay {
+    Polyline(Polyline),
+    Arrows(Arrows),
+    Markers(Markers),
+}

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Whole figures: their bytes, their pixels, their words.
+
+use palpate_plot::{
+    Chart, Figure, Isolines, Markers, PlotError, Polyline, Quantity, Sampling, Series, Slice,
+    View,
+};
+
+fn disc(points: &[[f64; 2]], values: &mut [f64]) {
+    for (p, value) in points.iter().zip(values) {
+        *value = p[0].hypot(p[1]) - 0.03;
+    }
+}
+
+fn isolines(cells: usize) -> Result<Isolines, PlotError> {
+    let view = View::new([0.0, 0.0], 0.12, 0.08)?;
+    Isolines::sample(&Slice::planar(), &view, Sampling::new(cells)?, disc)
+}
+
+fn full_figure() -> Result<Figure, PlotError> {
+    let path = [[-0.05, 0.03], [0.0, 0.0], [0.05, 0.03]];
+    let isolines = isolines(200)?
+        .with_polyline(Polyline::new("hand <1>", path)?)
+        .with_markers(Markers::new("contact", [[0.03, 0.0]])?.with_labels(["A & B"]));
+    let force = Series::new("normal", [[0.0, 0.0], [1.0, 2.0], [2.0, 0.0]])?;
+    let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+    Ok(Figure::new("Disc \"of\" 3 cm")
+        .with_caption("exact")
+        .with_isolines(isolines)
+        .with_chart(chart.with_series(force)))
+}
+
+/// The words of a figure: titles, ticks, labels and legend.
+fn words(svg: &str) -> Vec<&str> {
+    svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn golden_figure() {
+    let svg = Figure::new("Disc").with_isolines(isolines(8).unwrap()).to_svg();
+    // Outlines of letters are the font's, not ours: the words stand for them.
+    let ours: Vec<String> = svg
+        .lines()
+        .map(|line| match line.split_once("aria-label=") {
+            Some((before, rest)) => format!("{before}{}", rest.split(" d=").next().unwrap()),
+            None => line.to_owned(),
+        })
+        .collect();
+    insta::assert_snapshot!(ours.join("\n"));
+}
+
+#[test]
+fn same_figure_same_bytes() {
+    let (a, b) = (full_figure().unwrap(), full_figure().unwrap());
+    assert_eq!(a.to_svg(), b.to_svg());
+    assert_eq!(a.to_png(400).unwrap(), b.to_png(400).unwrap());
+}
+
+#[test]
+fn figures_say_what_they_show() {
+    let svg = full_figure().unwrap().to_svg();
+    let words = words(&svg);
+    for expected in [
+        "Disc &quot;of&quot; 3 cm",
+        "exact",
+        "x [m]",
+        "y [m]",
+        "inside",
+        "surface",
+        "outside",
+        "isolines every 0.01 m, labelled in metres",
+        "20 mm",
+        "−0.01",
+        "0.01",
+        "hand &lt;1&gt;",
+        "A &amp; B",
+        "time [s]",
+        "force [N]",
+        "normal",
+    ] {
+        assert!(words.contains(&expected), "{expected} in {words:?}");
+    }
+}
+
+#[test]
+fn a_figure_without_surface_says_so() {
+    let view = View::new([1.0, 0.0], 0.1, 0.1).unwrap();
+    let isolines =
+        Isolines::sample(&Slice::planar(), &view, Sampling::default(), disc).unwrap();
+    let svg = Figure::new("").with_isolines(isolines).to_svg();
+    let words = words(&svg);
+    assert!(words.contains(&"no surface in view") && !words.contains(&"inside"), "{words:?}");
+}
+
+#[test]
+fn a_curve_without_interior_has_a_surface_line() {
+    let view = View::new([0.0, 0.0], 0.1, 0.1).unwrap();
+    let circle = |points: &[[f64; 2]], values: &mut [f64]| {
+        disc(points, values);
+        values.iter_mut().for_each(|value| *value = value.abs());
+    };
+    let isolines =
+        Isolines::sample(&Slice::planar(), &view, Sampling::default(), circle).unwrap();
+    let svg = Figure::new("").with_isolines(isolines).to_svg();
+    assert!(words(&svg).contains(&"surface") && !words(&svg).contains(&"inside"));
+    assert!(svg.contains("<path fill=\"#171a1f\" fill-rule=\"evenodd\" d="));
+}
+
+#[test]
+fn svg_and_png_are_the_same_picture() {
+    let figure = full_figure().unwrap();
+    let tree = resvg::usvg::Tree::from_str(&figure.to_svg(), &Default::default()).unwrap();
+    let size = tree.size().to_int_size();
+    let mut from_svg = resvg::tiny_skia::Pixmap::new(size.width(), size.height()).unwrap();
+    resvg::render(&tree, Default::default(), &mut from_svg.as_mut());
+    let png = figure.to_png(800).unwrap();
+    let ours = resvg::tiny_skia::Pixmap::decode_png(&png).unwrap();
+    assert_eq!((ours.width(), ours.height()), (from_svg.width(), from_svg.height()));
+    // The SVG rounds coordinates to hundredths of a pixel: greys of edges differ a little.
+    let differences = ours.data().iter().zip(from_svg.data()).map(|(a, b)| a.abs_diff(*b));
+    let largest = differences.clone().max().unwrap();
+    let mean = differences.map(f64::from).sum::<f64>() / ours.data().len() as f64;
+    assert!(largest <= 48 && mean < 0.05, "{largest} {mean}");
+}
+
+#[test]
+fn pictures_of_impossible_size_are_refused() {
+    let figure = full_figure().unwrap();
+    for width in [0, 63, 20_000, u32::MAX] {
+        let error = figure.to_png(width).unwrap_err();
+        assert!(matches!(error, PlotError::PictureSize { .. }), "{error}");
+    }
+    assert!(figure.to_png(64).is_ok());
+}
+
+#[test]
+fn bad_samples_are_named() {
+    let view = View::new([0.0, 0.0], 0.12, 0.08).unwrap();
+    let nan = |_: &[[f64; 2]], values: &mut [f64]| values.fill(f64::NAN);
+    let error =
+        Isolines::sample(&Slice::planar(), &view, Sampling::default(), nan).unwrap_err();
+    assert!(error.to_string().starts_with("the field is NaN at (-0.06"), "{error}");
+    assert!(isolines(20).unwrap().with_step(-1.0).is_err());
+    assert!(isolines(20).unwrap().with_step(1e-9).is_err());
+}
