@@ -1,7 +1,7 @@
 //! Blocks: many points evaluated together, one array a coordinate.
 
 use crate::scalar::{Float, Model, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// The most points that a block holds.
 pub const BLOCK: usize = 64;
@@ -191,7 +191,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Vector<S, D> {
-        Vector(std::array::from_fn(|k| self.0[k].get(i)))
+        Vector(array!(k < D => self.0[k].get(i)))
     }
 
     /// Puts a point into lane `i`.

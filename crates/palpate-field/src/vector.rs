@@ -4,6 +4,23 @@ use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 use crate::scalar::{Float, Scalar};
 
+/// `[e₀, e₁, …]`, each given by an expression of its index.
+///
+/// `std::array::from_fn` and `map` go through functions that are not always
+/// inlined, and what is not inlined is not compiled for the instruction set of
+/// its caller (see `dispatch`): a loop over a block would call them per lane.
+macro_rules! array {
+    ($index:ident < $length:expr => $element:expr) => {{
+        let mut elements = [$crate::scalar::Scalar::constant(0.0); $length];
+        for $index in 0..$length {
+            elements[$index] = $element;
+        }
+        elements
+    }};
+}
+
+pub(crate) use array;
+
 /// A vector of `D` numbers; also a point, as the vector from the origin [m].
 ///
 /// ```
@@ -29,13 +46,13 @@ impl<S: Scalar, const D: usize> Vector<S, D> {
     /// The given numbers as constants of `S`.
     #[inline(always)]
     pub fn of(components: &[f64; D]) -> Self {
-        Self(std::array::from_fn(|i| S::constant(components[i])))
+        Self(array!(i < D => S::constant(components[i])))
     }
 
     /// The absolute value of each component.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        Self(self.0.map(S::abs))
+        Self(array!(i < D => self.0[i].abs()))
     }
 
     /// The sum of the products of the components.
@@ -61,7 +78,7 @@ impl<S: Scalar, const D: usize> Vector<S, D> {
     /// Each component times `factor`.
     #[inline(always)]
     pub fn scale(self, factor: f64) -> Self {
-        Self(self.0.map(|x| x.scale(factor)))
+        Self(array!(i < D => self.0[i].scale(factor)))
     }
 
     /// The Euclidean length.
@@ -78,7 +95,7 @@ impl<const D: usize> Vector<f64, D> {
     /// The unit vector along axis `axis`.
     #[must_use]
     pub fn unit(axis: usize) -> Self {
-        Self(std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 }))
+        Self(array!(i < D => if i == axis { 1.0 } else { 0.0 }))
     }
 
     /// `true` if no component is NaN or infinite.
@@ -130,7 +147,7 @@ impl<S: Scalar, const D: usize> Add for Vector<S, D> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+        Self(array!(i < D => self.0[i] + other.0[i]))
     }
 }
 
@@ -139,7 +156,7 @@ impl<S: Scalar, const D: usize> Sub for Vector<S, D> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+        Self(array!(i < D => self.0[i] - other.0[i]))
     }
 }
 
@@ -148,7 +165,7 @@ impl<S: Scalar, const D: usize> Neg for Vector<S, D> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        Self(array!(i < D => -self.0[i]))
     }
 }
 
@@ -157,7 +174,7 @@ impl<T: Float, const D: usize> Mul<T> for Vector<T, D> {
 
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
-        Self(self.0.map(|x| x * factor))
+        Self(array!(i < D => self.0[i] * factor))
     }
 }
 

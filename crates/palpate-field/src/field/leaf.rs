@@ -10,7 +10,7 @@ use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// The change of coordinates from the world to a placed body.
 #[derive(Clone, Copy, Debug)]
@@ -33,14 +33,14 @@ impl<const D: usize> Placement<D> {
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
         let q = p - Vector::of(&self.world_from_body.translation.0);
-        Vector(std::array::from_fn(|i| q.dot_constant(&self.columns[i])))
+        Vector(array!(i < D => q.dot_constant(&self.columns[i])))
     }
 
     /// `R·v`: a gradient in the body's frame, back in the world's.
     #[inline(always)]
     pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
         let rows = self.world_from_body.rotation.matrix();
-        Vector(std::array::from_fn(|i| v.dot_constant(&rows[i])))
+        Vector(array!(i < D => v.dot_constant(&rows[i])))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::operator::boolean::Smaller;
 use crate::promise::{Promise, Quality};
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::{Point, Vector};
+use crate::vector::{Point, Vector, array};
 
 /// Below this many members, asking all is faster than choosing.
 const WORTH_CHOOSING: usize = 6;
@@ -96,7 +96,7 @@ impl<const D: usize> Job<Group<D>, Vector<f32, D>, Gaps> for ToBalls {
     fn run(&self, group: &Group<D>, centre: &Vector<f32, D>, _: usize, gaps: &mut Gaps) {
         for i in 0..GROUP {
             let between =
-                Vector::<f32, D>(std::array::from_fn(|k| group.centre[k][i] - centre[k]));
+                Vector::<f32, D>(array!(k < D => group.centre[k][i] - centre[k]));
             gaps.0[i] = between.norm() - group.radius[i];
         }
     }

@@ -5,7 +5,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Float, Model, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// Newton steps to the nearest point. From the start below, six reach the last
 /// bit for aspect ratios up to a million; two more are spare.
@@ -75,7 +75,7 @@ impl<const D: usize> Ellipsoid<D> {
     fn solve<S: Scalar>(&self, y: Vector<S, D>) -> (S, Vector<S, D>) {
         let excess = |i: usize| S::constant(self.excess[i]);
         let tiny = S::constant(self.smallest * S::EPSILON);
-        let scaled: [S; D] = std::array::from_fn(|i| {
+        let scaled: [S; D] = array!(i < D => {
             let thin = self.excess[i] == 0.0;
             let y = if thin { y.0[i].max(tiny) } else { y.0[i] };
             y.scale(self.radii[i])
@@ -96,14 +96,14 @@ impl<const D: usize> Ellipsoid<D> {
             s = s + (value / slope).scale(0.5);
         }
         // The shares xᵢ/rᵢ have length one, which their rounding is made to obey.
-        let shares: [S; D] = std::array::from_fn(|i| scaled[i] / (s + excess(i)));
+        let shares: [S; D] = array!(i < D => scaled[i] / (s + excess(i)));
         let inverse = S::constant(1.0) / S::norm(shares);
-        let shares = shares.map(|share| share * inverse);
-        let across: [S; D] = std::array::from_fn(|i| shares[i].scale(1.0 / self.radii[i]));
+        let shares = array!(i < D => shares[i] * inverse);
+        let across: [S; D] = array!(i < D => shares[i].scale(1.0 / self.radii[i]));
         let inverse = S::constant(1.0) / S::norm(across);
-        let normal = Vector(across.map(|n| n * inverse));
+        let normal = Vector(array!(i < D => across[i] * inverse));
         // Along the normal: an error of the nearest point is of second order.
-        let nearest = Vector(std::array::from_fn(|i| shares[i].scale(self.radii[i])));
+        let nearest = Vector(array!(i < D => shares[i].scale(self.radii[i])));
         ((y - nearest).dot(normal), normal)
     }
 }
@@ -120,7 +120,7 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
         let (distance, normal) = self.solve(p.abs());
         let zero = T::constant(0.0);
         let signed = |i: usize| T::select_less(p.0[i], zero, -normal.0[i], normal.0[i]);
-        (distance, Vector(std::array::from_fn(signed)))
+        (distance, Vector(array!(i < D => signed(i))))
     }
 
     #[inline(always)]

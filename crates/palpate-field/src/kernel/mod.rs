@@ -26,7 +26,7 @@ pub use spatial::*;
 
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Model, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// A closed formula for a signed distance.
 ///
@@ -92,7 +92,7 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     operations: f64,
     size: f64,
 ) -> Model {
-    let centre = Vector(cell.0.map(|x| x.value));
+    let centre = Vector(array!(i < D => cell.0[i].value));
     let (distance, normal) = kernel.distance_gradient(centre);
     let rounding = operations * f64::EPSILON * (size + centre.norm());
     Model::tangent(distance, normal.0, &cell.0, rounding)

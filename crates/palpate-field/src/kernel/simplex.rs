@@ -7,7 +7,7 @@ use crate::error::{ShapeError, Unit};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
-use crate::vector::{Point, Vector};
+use crate::vector::{Point, Vector, array};
 
 /// How many rounded operations the distance takes at most.
 const OPERATIONS: f64 = 40.0;
@@ -91,7 +91,7 @@ impl<const D: usize> Face<D> {
             let share = from_origin.dot_constant(dual);
             first = first - share;
             least = least.min(share);
-            rest = Vector(std::array::from_fn(|k| rest.0[k] - share.scale(edge[k])));
+            rest = Vector(array!(k < D => rest.0[k] - share.scale(edge[k])));
         }
         (rest, least.min(first))
     }

@@ -9,7 +9,7 @@ use crate::field::{Warp, Warped};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
 use crate::shape::Shape;
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// `f(|pₐ|, …)` along axis a.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ struct Mirror {
 impl<const D: usize> Warp<D, D> for Mirror {
     #[inline(always)]
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        Vector(std::array::from_fn(|i| if i == self.axis { p.0[i].abs() } else { p.0[i] }))
+        Vector(array!(i < D => if i == self.axis { p.0[i].abs() } else { p.0[i] }))
     }
 }
 
@@ -33,7 +33,7 @@ struct Elongation<const D: usize> {
 impl<const D: usize> Warp<D, D> for Elongation<D> {
     #[inline(always)]
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        Vector(std::array::from_fn(|i| {
+        Vector(array!(i < D => {
             let half = self.half[i];
             // max(p − h, 0) + min(p + h, 0): one of the two is always zero.
             let zero = S::constant(0.0);
@@ -95,7 +95,7 @@ impl<const D: usize> Shape<D> {
             region: child.region.map(|ball| BoundingBall {
                 // What lies on the positive side only.
                 radius: (ball.radius - ball.centre[axis].abs()).max(0.0),
-                centre: Vector(std::array::from_fn(|i| {
+                centre: Vector(array!(i < D => {
                     if i == axis { 0.0 } else { ball.centre[i] }
                 })),
             }),

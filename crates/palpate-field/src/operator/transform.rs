@@ -8,7 +8,7 @@ use crate::pose::{Pose, Rotation};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 impl<const D: usize> Warp<D, D> for Placement<D> {
     #[inline(always)]
@@ -67,7 +67,7 @@ struct AxisScale<const D: usize> {
 impl<const D: usize> Warp<D, D> for AxisScale<D> {
     #[inline(always)]
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        Vector(std::array::from_fn(|i| p.0[i].scale(self.inverse[i])))
+        Vector(array!(i < D => p.0[i].scale(self.inverse[i])))
     }
 
     #[inline(always)]
@@ -172,7 +172,7 @@ impl<const D: usize> Shape<D> {
             above_bounds: false,
             // In stretched space the region is an ellipsoid; a ball within it.
             region: child.region.map(|ball| crate::bounds::BoundingBall {
-                centre: Vector(std::array::from_fn(|i| ball.centre[i] * factors[i])),
+                centre: Vector(array!(i < D => ball.centre[i] * factors[i])),
                 radius: ball.radius * smallest,
             }),
             reach: child.reach * smallest,

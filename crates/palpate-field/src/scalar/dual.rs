@@ -3,6 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Blend, Float, Scalar};
+use crate::vector::array;
 
 /// A value and its gradient with respect to `D` coordinates (forward-mode
 /// differentiation).
@@ -31,7 +32,7 @@ impl<T: Float, const D: usize> Dual<T, D> {
     /// ```
     #[inline(always)]
     pub fn variables(point: [T; D]) -> [Self; D] {
-        std::array::from_fn(|i| {
+        array!(i < D => {
             let mut gradient = [T::constant(0.0); D];
             gradient[i] = T::constant(1.0);
             Self { value: point[i], gradient }
@@ -41,14 +42,14 @@ impl<T: Float, const D: usize> Dual<T, D> {
     /// `value` with derivative `slope · self.gradient`.
     #[inline(always)]
     fn chain(self, value: T, slope: T) -> Self {
-        Self { value, gradient: self.gradient.map(|g| slope * g) }
+        Self { value, gradient: array!(k < D => slope * self.gradient[k]) }
     }
 
     #[inline(always)]
     fn select(a: T, b: T, if_less: Self, otherwise: Self) -> Self {
         Self {
             value: T::select_less(a, b, if_less.value, otherwise.value),
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < D => {
                 T::select_less(a, b, if_less.gradient[k], otherwise.gradient[k])
             }),
         }
@@ -62,7 +63,7 @@ impl<T: Float, const D: usize> Add for Dual<T, D> {
     fn add(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,
-            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
+            gradient: array!(k < D => self.gradient[k] + other.gradient[k]),
         }
     }
 }
@@ -74,7 +75,7 @@ impl<T: Float, const D: usize> Sub for Dual<T, D> {
     fn sub(self, other: Self) -> Self {
         Self {
             value: self.value - other.value,
-            gradient: std::array::from_fn(|k| self.gradient[k] - other.gradient[k]),
+            gradient: array!(k < D => self.gradient[k] - other.gradient[k]),
         }
     }
 }
@@ -86,7 +87,7 @@ impl<T: Float, const D: usize> Mul for Dual<T, D> {
     fn mul(self, other: Self) -> Self {
         Self {
             value: self.value * other.value,
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < D => {
                 self.value * other.gradient[k] + other.value * self.gradient[k]
             }),
         }
@@ -102,7 +103,7 @@ impl<T: Float, const D: usize> Div for Dual<T, D> {
         let inverse = T::constant(1.0) / other.value;
         Self {
             value,
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < D => {
                 (self.gradient[k] - value * other.gradient[k]) * inverse
             }),
         }
@@ -114,7 +115,7 @@ impl<T: Float, const D: usize> Neg for Dual<T, D> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, gradient: self.gradient.map(|g| -g) }
+        Self { value: -self.value, gradient: array!(k < D => -self.gradient[k]) }
     }
 }
 
@@ -178,7 +179,7 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
     #[inline(always)]
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         let zero = T::constant(0.0);
-        let value = T::norm(x.map(|x| x.value));
+        let value = T::norm(array!(i < N => x[i].value));
         let inverse = inverse_or_zero(value);
         let mut gradient = [zero; D];
         for (i, x) in x.iter().enumerate() {
@@ -226,7 +227,7 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
         let rest = one - weight;
         Self {
             value: self.value.smooth_min::<B>(other.value, reach),
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < D => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),
         }

@@ -3,6 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Blend, Scalar};
+use crate::vector::array;
 
 /// Half the spacing of the numbers just above one: the largest relative error
 /// of one rounded operation.
@@ -59,7 +60,7 @@ impl Model {
     /// The coordinates of the box with `centre` and `half` side lengths.
     #[inline(always)]
     pub fn cell<const D: usize>(centre: [f64; D], half: [f64; D]) -> [Self; D] {
-        std::array::from_fn(|i| {
+        array!(i < D => {
             let mut gradient = [0.0; 3];
             gradient[i] = half[i];
             Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
@@ -182,7 +183,7 @@ impl Model {
         let up = slope > 0.0;
         Self {
             value,
-            gradient: self.gradient.map(|g| slope * g),
+            gradient: array!(k < 3 => slope * self.gradient[k]),
             lower: size * choose(up, self.lower, self.upper) + below,
             upper: size * choose(up, self.upper, self.lower) + above,
         }
@@ -193,7 +194,7 @@ impl Model {
     fn choose(condition: bool, a: Self, b: Self) -> Self {
         Self {
             value: choose(condition, a.value, b.value),
-            gradient: std::array::from_fn(|k| choose(condition, a.gradient[k], b.gradient[k])),
+            gradient: array!(k < 3 => choose(condition, a.gradient[k], b.gradient[k])),
             lower: choose(condition, a.lower, b.lower),
             upper: choose(condition, a.upper, b.upper),
         }
@@ -253,7 +254,7 @@ impl Add for Model {
     fn add(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,
-            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
+            gradient: array!(k < 3 => self.gradient[k] + other.gradient[k]),
             lower: self.lower + other.lower,
             upper: self.upper + other.upper,
         }
@@ -268,7 +269,7 @@ impl Neg for Model {
     fn neg(self) -> Self {
         Self {
             value: -self.value,
-            gradient: self.gradient.map(|g| -g),
+            gradient: array!(k < 3 => -self.gradient[k]),
             lower: self.upper,
             upper: self.lower,
         }
@@ -296,7 +297,7 @@ impl Mul for Model {
         let (up_a, up_b) = (a.value > 0.0, b.value > 0.0);
         Self {
             value: a.value * b.value,
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < 3 => {
                 a.value * b.gradient[k] + b.value * a.gradient[k]
             }),
             lower: size_a * choose(up_a, b.lower, b.upper)
@@ -333,7 +334,7 @@ impl Scalar for Model {
         let up = factor > 0.0;
         Self {
             value: self.value * factor,
-            gradient: self.gradient.map(|g| g * factor),
+            gradient: array!(k < 3 => self.gradient[k] * factor),
             lower: size * choose(up, self.lower, self.upper),
             upper: size * choose(up, self.upper, self.lower),
         }
@@ -428,7 +429,7 @@ impl Scalar for Model {
     /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
     #[inline(always)]
     fn norm<const N: usize>(x: [Self; N]) -> Self {
-        let n = <f64 as Scalar>::norm(x.map(|x| x.value));
+        let n = <f64 as Scalar>::norm(array!(i < N => x[i].value));
         let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
         let mut gradient = [0.0; 3];
         let (mut lower, mut upper, mut deviations) = (0.0, 0.0, 0.0);
@@ -511,7 +512,7 @@ impl Scalar for Model {
         let below = choose(apart - spread > reach, 0.0, curved);
         Self {
             value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, reach),
-            gradient: std::array::from_fn(|k| {
+            gradient: array!(k < 3 => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),
             lower: weight * self.lower + rest * other.lower + below,

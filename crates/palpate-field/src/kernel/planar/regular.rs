@@ -6,7 +6,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// The most corners or branches.
 const MOST_BRANCHES: u32 = 256;
@@ -54,7 +54,7 @@ impl Fold {
         let mut q = Vector([p.0[0].abs(), p.0[1]]);
         for mirror in &self.mirrors {
             let beyond = q.dot_constant(mirror).max(S::constant(0.0)).scale(2.0);
-            q = Vector(std::array::from_fn(|i| q.0[i] - beyond.scale(mirror[i])));
+            q = Vector(array!(i < 2 => q.0[i] - beyond.scale(mirror[i])));
         }
         q
     }

@@ -5,7 +5,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
-use crate::vector::Vector;
+use crate::vector::{Vector, array};
 
 /// How many rounded operations the distance takes at most.
 const OPERATIONS: f64 = 32.0;
@@ -84,7 +84,7 @@ impl Kernel<3> for Pyramid {
         let base_edge = S::norm([beyond, y, (b - half).max(zero)]);
         let corner = Vector([beyond, y, b - half]);
         let up_ridge = corner.dot_constant(&self.ridge).clamp(0.0, self.ridge_length);
-        let on_ridge = Vector(self.ridge.map(|x| up_ridge.scale(x)));
+        let on_ridge = Vector(array!(i < 3 => up_ridge.scale(self.ridge[i])));
         let ridge = (corner - on_ridge).norm();
         let edges = base_edge.min(ridge);
         let base = S::select_less(half, a, edges, y.abs());
