@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::block::{BLOCK, Block, Column, Gradients, Lane};
 use crate::error::ShapeError;
 use crate::field::{Custom, CustomField, DifferentiateBlock, EvaluateBlock, Field, Leaf};
 use crate::kernel::Kernel;
+use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
 use crate::promise::Promise;
 use crate::scalar::Float;
 use crate::vector::{Point, Vector};

@@ -4,22 +4,47 @@ use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 use crate::scalar::{Float, Scalar};
 
+/// A statement for each index below a length of at most four, one after the
+/// other.
+///
+/// Written out and not left to the optimiser: a loop over lanes vectorises only
+/// if every loop inside is unrolled, and LLVM gives up on large bodies.
+macro_rules! unrolled {
+    ($index:ident < $length:expr => $statement:expr) => {
+        const { assert!($length <= 4, "longer than what is unrolled") };
+        if 0 < $length {
+            let $index = 0;
+            $statement;
+        }
+        if 1 < $length {
+            let $index = 1;
+            $statement;
+        }
+        if 2 < $length {
+            let $index = 2;
+            $statement;
+        }
+        if 3 < $length {
+            let $index = 3;
+            $statement;
+        }
+    };
+}
+
 /// `[e₀, e₁, …]`, each given by an expression of its index.
 ///
 /// `std::array::from_fn` and `map` go through functions that are not always
 /// inlined, and what is not inlined is not compiled for the instruction set of
-/// its caller (see `dispatch`): a loop over a block would call them per lane.
+/// its caller (see `machine`): a loop over a block would call them per lane.
 macro_rules! array {
     ($index:ident < $length:expr => $element:expr) => {{
         let mut elements = [$crate::scalar::Scalar::constant(0.0); $length];
-        for $index in 0..$length {
-            elements[$index] = $element;
-        }
+        $crate::vector::unrolled!($index < $length => elements[$index] = $element);
         elements
     }};
 }
 
-pub(crate) use array;
+pub(crate) use {array, unrolled};
 
 /// A vector of `D` numbers; also a point, as the vector from the origin [m].
 ///
@@ -65,14 +90,10 @@ impl<S: Scalar, const D: usize> Vector<S, D> {
         sum
     }
 
-    /// As [`dot`](Self::dot), with a constant vector.
+    /// As [`dot`](Self::dot), with a constant vector: [`Scalar::weighted_sum`].
     #[inline(always)]
     pub fn dot_constant(self, other: &[f64; D]) -> S {
-        let mut sum = self.0[0].scale(other[0]);
-        for i in 1..D {
-            sum = sum + self.0[i].scale(other[i]);
-        }
-        sum
+        S::weighted_sum(self.0, other)
     }
 
     /// Each component times `factor`.

@@ -3,8 +3,7 @@
 use std::fmt::Debug;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane, lanes};
-use crate::dispatch::{self, Job};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
@@ -38,40 +37,21 @@ fn differentiate<T: Float, O: Combine, const D: usize>(
 
 struct Values<'a, O>(&'a O);
 
-impl<S: Lane, O: Combine, const W: usize> Job<Column<S, W>, Column<S, W>, Column<S, W>>
-    for Values<'_, O>
-{
+impl<S: Lane, O: Combine> Job<S, S, S> for Values<'_, O> {
     #[inline(always)]
-    fn run(&self, a: &Column<S, W>, b: &Column<S, W>, count: usize, out: &mut Column<S, W>) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, self.0.combine(a.get(i), b.get(i)));
-        }
+    fn lane(&self, a: S, b: S) -> S {
+        self.0.combine(a, b)
     }
 }
 
 struct ValuesAndGradients<'a, O>(&'a O);
 
-impl<T: Float + Lane, O: Combine, const D: usize, const W: usize>
-    Job<Gradients<T, D, W>, Gradients<T, D, W>, Gradients<T, D, W>>
-    for ValuesAndGradients<'_, O>
+impl<T: Float, O: Combine, const D: usize>
+    Job<(T, Vector<T, D>), (T, Vector<T, D>), (T, Vector<T, D>)> for ValuesAndGradients<'_, O>
 {
     #[inline(always)]
-    fn run(
-        &self,
-        a: &Gradients<T, D, W>,
-        b: &Gradients<T, D, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        for i in 0..lanes::<T, W>(count) {
-            let (distance, gradient) = differentiate(
-                self.0,
-                (a.distance.get(i), a.gradient.get(i)),
-                (b.distance.get(i), b.gradient.get(i)),
-            );
-            out.distance.set(i, distance);
-            out.gradient.set(i, gradient);
-        }
+    fn lane(&self, a: (T, Vector<T, D>), b: (T, Vector<T, D>)) -> (T, Vector<T, D>) {
+        differentiate(self.0, a, b)
     }
 }
 
@@ -109,12 +89,18 @@ pub(super) struct ValueFold<'a, S: Lane, O, const W: usize> {
     out: &'a mut Column<S, W>,
     scratch: Column<S, W>,
     next: Column<S, W>,
-    pushed: usize,
+    empty: bool,
+    /// The result so far is in `out`, else in `scratch`.
+    in_out: bool,
 }
 
 impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
-    pub(super) fn new(operation: &'a O, out: &'a mut Column<S, W>) -> Self {
-        Self { operation, out, scratch: Column::zero(), next: Column::zero(), pushed: 0 }
+    /// For `expected` children; if there are others, the result may have to be
+    /// copied.
+    pub(super) fn new(operation: &'a O, expected: usize, out: &'a mut Column<S, W>) -> Self {
+        let in_out = expected % 2 == 1;
+        let (scratch, next) = (Column::scratch(), Column::scratch());
+        Self { operation, out, scratch, next, empty: true, in_out }
     }
 
     pub(super) fn push<const D: usize>(
@@ -125,22 +111,24 @@ impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
     ) where
         dyn Field<D>: EvaluateBlock<S, D, W>,
     {
-        if self.pushed == 0 {
-            child.field().distances(p, count, self.out);
+        if self.empty {
+            let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
+            child.field().distances(p, count, first);
+            self.empty = false;
         } else {
             child.field().distances(p, count, &mut self.next);
             let job = Values(self.operation);
-            if self.pushed % 2 == 1 {
-                dispatch::run(&job, &*self.out, &self.next, count, &mut self.scratch);
+            if self.in_out {
+                run(&job, &*self.out, &self.next, count, &mut self.scratch);
             } else {
-                dispatch::run(&job, &self.scratch, &self.next, count, self.out);
+                run(&job, &self.scratch, &self.next, count, self.out);
             }
+            self.in_out = !self.in_out;
         }
-        self.pushed += 1;
     }
 
     pub(super) fn finish(self) {
-        if self.pushed % 2 == 0 {
+        if !self.in_out {
             self.out.clone_from(&self.scratch);
         }
     }
@@ -152,7 +140,9 @@ pub(super) struct GradientFold<'a, T: Float + Lane, O, const D: usize, const W: 
     out: &'a mut Gradients<T, D, W>,
     scratch: Gradients<T, D, W>,
     next: Gradients<T, D, W>,
-    pushed: usize,
+    empty: bool,
+    /// The result so far is in `out`, else in `scratch`.
+    in_out: bool,
 }
 
 impl<'a, T: Float + Lane, O: Combine, const D: usize, const W: usize>
@@ -160,27 +150,35 @@ impl<'a, T: Float + Lane, O: Combine, const D: usize, const W: usize>
 where
     dyn Field<D>: DifferentiateBlock<T, D, W>,
 {
-    pub(super) fn new(operation: &'a O, out: &'a mut Gradients<T, D, W>) -> Self {
-        Self { operation, out, scratch: Gradients::zero(), next: Gradients::zero(), pushed: 0 }
+    pub(super) fn new(
+        operation: &'a O,
+        expected: usize,
+        out: &'a mut Gradients<T, D, W>,
+    ) -> Self {
+        let in_out = expected % 2 == 1;
+        let (scratch, next) = (Gradients::scratch(), Gradients::scratch());
+        Self { operation, out, scratch, next, empty: true, in_out }
     }
 
     pub(super) fn push(&mut self, child: &Shape<D>, p: &Block<T, D, W>, count: usize) {
-        if self.pushed == 0 {
-            child.field().distances_gradients(p, count, self.out);
+        if self.empty {
+            let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
+            child.field().distances_gradients(p, count, first);
+            self.empty = false;
         } else {
             child.field().distances_gradients(p, count, &mut self.next);
             let job = ValuesAndGradients(self.operation);
-            if self.pushed % 2 == 1 {
-                dispatch::run(&job, &*self.out, &self.next, count, &mut self.scratch);
+            if self.in_out {
+                run(&job, &*self.out, &self.next, count, &mut self.scratch);
             } else {
-                dispatch::run(&job, &self.scratch, &self.next, count, self.out);
+                run(&job, &self.scratch, &self.next, count, self.out);
             }
+            self.in_out = !self.in_out;
         }
-        self.pushed += 1;
     }
 
     pub(super) fn finish(self) {
-        if self.pushed % 2 == 0 {
+        if !self.in_out {
             self.out.clone_from(&self.scratch);
         }
     }
@@ -192,7 +190,7 @@ where
     dyn Field<D>: EvaluateBlock<S, D, W>,
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut fold = ValueFold::new(&self.operation, out);
+        let mut fold = ValueFold::new(&self.operation, self.children.len(), out);
         self.children.iter().for_each(|child| fold.push(child, p, count));
         fold.finish();
     }
@@ -209,7 +207,7 @@ where
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        let mut fold = GradientFold::new(&self.operation, out);
+        let mut fold = GradientFold::new(&self.operation, self.children.len(), out);
         self.children.iter().for_each(|child| fold.push(child, p, count));
         fold.finish();
     }

@@ -1,7 +1,7 @@
 //! Fields that are not formulas: closures, and later grids and meshes.
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane};
+use crate::machine::{Block, Column, Gradients, Lane};
 use crate::promise::Promise;
 use crate::scalar::{Float, Model};
 use crate::vector::{Point, Vector};
@@ -72,9 +72,7 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     for Custom<F>
 {
     fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
-        for i in 0..count.min(W) {
-            out.set(i, EvaluatePoint::distance(self, &p.get(i)));
-        }
+        out.fill(count, |i| EvaluatePoint::distance(self, &p.get(i)));
     }
 }
 
@@ -83,13 +81,13 @@ impl<F: CustomField<D>, const D: usize, const W: usize> EvaluateBlock<Model, D, 
 {
     fn distances(&self, p: &Block<Model, D, W>, count: usize, out: &mut Column<Model, W>) {
         let promise = self.0.promise();
-        for i in 0..count.min(W) {
+        out.fill(count, |i| {
             let cell = p.get(i).0;
             let centre = Vector(cell.map(|x| x.value));
             let rounding = promise.rounding.within(centre.norm() + Model::radius(&cell));
             let value = self.0.distance(centre);
-            out.set(i, Model::lipschitz(value, promise.lipschitz, &cell, rounding));
-        }
+            Model::lipschitz(value, promise.lipschitz, &cell, rounding)
+        });
     }
 }
 
@@ -102,12 +100,10 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        for i in 0..count.min(W) {
+        out.fill(count, |i| {
             let mut gradient = Vector([T::default(); D]);
-            let distance = EvaluatePoint::distance_gradient(self, &p.get(i), &mut gradient);
-            out.distance.set(i, distance);
-            out.gradient.set(i, gradient);
-        }
+            (EvaluatePoint::distance_gradient(self, &p.get(i), &mut gradient), gradient)
+        });
     }
 }
 

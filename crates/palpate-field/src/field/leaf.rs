@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane, lanes};
-use crate::dispatch::{self, Job};
 use crate::kernel::Kernel;
+use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
@@ -61,70 +60,43 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
 
 struct Values<'a, K>(&'a K);
 
-impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize>
-    Job<Block<S, D, W>, (), Column<S, W>> for Values<'_, K>
-{
+impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
     #[inline(always)]
-    fn run(&self, p: &Block<S, D, W>, (): &(), count: usize, out: &mut Column<S, W>) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, S::evaluate(self.0, p.get(i)));
-        }
+    fn lane(&self, p: Vector<S, D>, (): ()) -> S {
+        S::evaluate(self.0, p)
     }
 }
 
 struct ValuesAndGradients<'a, K>(&'a K);
 
-impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize>
-    Job<Block<T, D, W>, (), Gradients<T, D, W>> for ValuesAndGradients<'_, K>
+impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T, D>)>
+    for ValuesAndGradients<'_, K>
 {
     #[inline(always)]
-    fn run(&self, p: &Block<T, D, W>, (): &(), count: usize, out: &mut Gradients<T, D, W>) {
-        for i in 0..lanes::<T, W>(count) {
-            let (distance, gradient) = self.0.distance_gradient(p.get(i));
-            out.distance.set(i, distance);
-            out.gradient.set(i, gradient);
-        }
+    fn lane(&self, p: Vector<T, D>, (): ()) -> (T, Vector<T, D>) {
+        self.0.distance_gradient(p)
     }
 }
 
-/// Moves a block of points into the body's frame.
-struct ToBody;
+/// Moves points into the body's frame.
+struct ToBody<'a, const D: usize>(&'a Placement<D>);
 
-impl<S: Lane, const D: usize, const W: usize> Job<Block<S, D, W>, Placement<D>, Block<S, D, W>>
-    for ToBody
-{
+impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for ToBody<'_, D> {
     #[inline(always)]
-    fn run(
-        &self,
-        p: &Block<S, D, W>,
-        placement: &Placement<D>,
-        count: usize,
-        out: &mut Block<S, D, W>,
-    ) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, placement.to_body(p.get(i)));
-        }
+    fn lane(&self, p: Vector<S, D>, (): ()) -> Vector<S, D> {
+        self.0.to_body(p)
     }
 }
 
-/// Turns a block of gradients from the body's frame into the world's.
-struct GradientsToWorld;
+/// Turns gradients from the body's frame into the world's.
+struct GradientsToWorld<'a, const D: usize>(&'a Placement<D>);
 
-impl<T: Float + Lane, const D: usize, const W: usize>
-    Job<Gradients<T, D, W>, Placement<D>, Gradients<T, D, W>> for GradientsToWorld
+impl<T: Float, const D: usize> Job<(T, Vector<T, D>), (), (T, Vector<T, D>)>
+    for GradientsToWorld<'_, D>
 {
     #[inline(always)]
-    fn run(
-        &self,
-        a: &Gradients<T, D, W>,
-        placement: &Placement<D>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        for i in 0..lanes::<T, W>(count) {
-            out.distance.set(i, a.distance.get(i));
-            out.gradient.set(i, placement.gradient_to_world(a.gradient.get(i)));
-        }
+    fn lane(&self, (distance, gradient): (T, Vector<T, D>), (): ()) -> (T, Vector<T, D>) {
+        (distance, self.0.gradient_to_world(gradient))
     }
 }
 
@@ -155,11 +127,11 @@ impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, 
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
         match &self.placement {
-            None => dispatch::run(&Values(&self.kernel), p, &(), count, out),
+            None => run(&Values(&self.kernel), p, &(), count, out),
             Some(placement) => {
-                let mut q = Block::zero();
-                dispatch::run(&ToBody, p, placement, count, &mut q);
-                dispatch::run(&Values(&self.kernel), &q, &(), count, out);
+                let mut q = Block::<S, D, W>::scratch();
+                run(&ToBody(placement), p, &(), count, &mut q);
+                run(&Values(&self.kernel), &q, &(), count, out);
             }
         }
     }
@@ -175,13 +147,13 @@ impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> Differentiat
         out: &mut Gradients<T, D, W>,
     ) {
         match &self.placement {
-            None => dispatch::run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
+            None => run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
             Some(placement) => {
-                let mut q = Block::zero();
-                let mut in_body = Gradients::zero();
-                dispatch::run(&ToBody, p, placement, count, &mut q);
-                dispatch::run(&ValuesAndGradients(&self.kernel), &q, &(), count, &mut in_body);
-                dispatch::run(&GradientsToWorld, &in_body, placement, count, out);
+                let mut q = Block::<T, D, W>::scratch();
+                let mut in_body = Gradients::<T, D, W>::scratch();
+                run(&ToBody(placement), p, &(), count, &mut q);
+                run(&ValuesAndGradients(&self.kernel), &q, &(), count, &mut in_body);
+                run(&GradientsToWorld(placement), &in_body, &(), count, out);
             }
         }
     }

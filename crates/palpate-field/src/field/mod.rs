@@ -14,7 +14,7 @@ mod warp;
 
 use std::fmt::Debug;
 
-use crate::block::{BLOCK, Block, Column, Gradients, Lane, SHORT};
+use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Model};

@@ -3,8 +3,7 @@
 use std::fmt::Debug;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane, lanes};
-use crate::dispatch::{self, Job};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
@@ -38,42 +37,21 @@ fn differentiate<T: Float, M: Remap<D>, const D: usize>(
 
 struct Values<'a, M>(&'a M);
 
-impl<S: Lane, M: Remap<D>, const D: usize, const W: usize>
-    Job<Block<S, D, W>, Column<S, W>, Column<S, W>> for Values<'_, M>
-{
+impl<S: Lane, M: Remap<D>, const D: usize> Job<Vector<S, D>, S, S> for Values<'_, M> {
     #[inline(always)]
-    fn run(
-        &self,
-        p: &Block<S, D, W>,
-        child: &Column<S, W>,
-        count: usize,
-        out: &mut Column<S, W>,
-    ) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, self.0.value(p.get(i), child.get(i)));
-        }
+    fn lane(&self, p: Vector<S, D>, child: S) -> S {
+        self.0.value(p, child)
     }
 }
 
 struct ValuesAndGradients<'a, M>(&'a M);
 
-impl<T: Float + Lane, M: Remap<D>, const D: usize, const W: usize>
-    Job<Block<T, D, W>, Gradients<T, D, W>, Gradients<T, D, W>> for ValuesAndGradients<'_, M>
+impl<T: Float, M: Remap<D>, const D: usize>
+    Job<Vector<T, D>, (T, Vector<T, D>), (T, Vector<T, D>)> for ValuesAndGradients<'_, M>
 {
     #[inline(always)]
-    fn run(
-        &self,
-        p: &Block<T, D, W>,
-        child: &Gradients<T, D, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        for i in 0..lanes::<T, W>(count) {
-            let (distance, gradient) =
-                differentiate(self.0, p.get(i), child.distance.get(i), child.gradient.get(i));
-            out.distance.set(i, distance);
-            out.gradient.set(i, gradient);
-        }
+    fn lane(&self, p: Vector<T, D>, (child, gradient): (T, Vector<T, D>)) -> (T, Vector<T, D>) {
+        differentiate(self.0, p, child, gradient)
     }
 }
 
@@ -99,9 +77,9 @@ where
     dyn Field<D>: EvaluateBlock<S, D, W>,
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut child = Column::zero();
+        let mut child = Column::scratch();
         self.child.field().distances(p, count, &mut child);
-        dispatch::run(&Values(&self.map), p, &child, count, out);
+        run(&Values(&self.map), p, &child, count, out);
     }
 }
 
@@ -116,9 +94,9 @@ where
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        let mut child = Gradients::zero();
+        let mut child = Gradients::scratch();
         self.child.field().distances_gradients(p, count, &mut child);
-        dispatch::run(&ValuesAndGradients(&self.map), p, &child, count, out);
+        run(&ValuesAndGradients(&self.map), p, &child, count, out);
     }
 }
 

@@ -5,19 +5,18 @@
 
 use super::combine::{GradientFold, ValueFold};
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane};
-use crate::dispatch::{self, Job};
+use crate::machine::{BLOCK, Block, Column, Gradients, Job, Lane, run};
 use crate::operator::boolean::Smaller;
 use crate::promise::{Promise, Quality};
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::{Point, Vector, array};
+use crate::vector::{Point, Vector};
 
 /// Below this many members, asking all is faster than choosing.
 const WORTH_CHOOSING: usize = 6;
 
 /// Members looked at together.
-const GROUP: usize = 64;
+const GROUP: usize = BLOCK;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits
 /// of single precision: every member is asked.
@@ -33,22 +32,19 @@ pub(crate) struct Union<const D: usize> {
     promise: Promise<D>,
 }
 
-/// The balls around up to [`GROUP`] members, one array a coordinate.
+/// The balls around up to [`GROUP`] members.
 ///
 /// Single precision is enough: what it rounds is part of the [`Slack`].
 #[derive(Debug)]
-#[repr(C, align(64))]
 struct Group<const D: usize> {
-    centre: [[f32; GROUP]; D],
+    centres: Block<f32, D, GROUP>,
     /// Infinite for a member that may not be skipped; minus infinity past the
     /// last member.
-    radius: [f32; GROUP],
+    radii: Column<f32, GROUP>,
 }
 
 /// How far each member of a group is from a query at least.
-#[derive(Debug)]
-#[repr(C, align(64))]
-struct Gaps([f32; GROUP]);
+type Gaps = Column<f32, GROUP>;
 
 /// How much smaller than its ball's distance a member's value may come out: the
 /// rounding of the balls, and of the members themselves in single precision.
@@ -67,18 +63,19 @@ struct Query<const D: usize> {
 
 impl<const D: usize> Group<D> {
     fn new(members: &[Shape<D>]) -> Self {
-        let mut group = Self { centre: [[0.0; GROUP]; D], radius: [f32::NEG_INFINITY; GROUP] };
-        for (i, member) in members.iter().enumerate() {
-            let promise = member.promise();
-            group.radius[i] = f32::INFINITY;
-            let bounds = match promise.bounds {
-                Some(bounds) if may_be_skipped(promise) => bounds,
-                _ => continue,
+        let mut group = Self { centres: Block::zero(), radii: Column::zero() };
+        for i in 0..GROUP {
+            let (centre, radius) = match members.get(i).map(Shape::promise) {
+                None => (Vector::ZERO, f64::NEG_INFINITY),
+                Some(promise) => match promise.bounds {
+                    Some(bounds) if may_be_skipped(promise) => {
+                        (bounds.ball.centre, bounds.ball.radius)
+                    }
+                    _ => (Vector::ZERO, f64::INFINITY),
+                },
             };
-            group.radius[i] = bounds.ball.radius as f32;
-            for k in 0..D {
-                group.centre[k][i] = bounds.ball.centre[k] as f32;
-            }
+            group.centres.set(i, Vector::of(&centre.0));
+            group.radii.set(i, radius as f32);
         }
         group
     }
@@ -89,31 +86,27 @@ fn may_be_skipped<const D: usize>(promise: &Promise<D>) -> bool {
     promise.above_bounds && promise.inside != Quality::Lipschitz
 }
 
-struct ToBalls;
+/// The distance of a point from balls.
+struct ToBalls<const D: usize>(Vector<f32, D>);
 
-impl<const D: usize> Job<Group<D>, Vector<f32, D>, Gaps> for ToBalls {
+impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
     #[inline(always)]
-    fn run(&self, group: &Group<D>, centre: &Vector<f32, D>, _: usize, gaps: &mut Gaps) {
-        for i in 0..GROUP {
-            let between =
-                Vector::<f32, D>(array!(k < D => group.centre[k][i] - centre[k]));
-            gaps.0[i] = between.norm() - group.radius[i];
-        }
+    fn lane(&self, centre: Vector<f32, D>, radius: f32) -> f32 {
+        (centre - self.0).norm() - radius
     }
 }
 
-impl Gaps {
-    /// The first member with the smallest gap, and the gap.
-    #[inline(always)]
-    fn smallest(&self) -> (usize, f32) {
-        let mut best = (0, self.0[0]);
-        for (i, gap) in self.0.iter().enumerate() {
-            if *gap < best.1 {
-                best = (i, *gap);
-            }
+/// The first member with the smallest gap, and the gap.
+#[inline(always)]
+fn smallest(gaps: &Gaps) -> (usize, f32) {
+    let mut best = (0, gaps.get(0));
+    for i in 1..GROUP {
+        let gap = gaps.get(i);
+        if gap < best.1 {
+            best = (i, gap);
         }
-        best
     }
+    best
 }
 
 impl<const D: usize> Union<D> {
@@ -136,6 +129,11 @@ impl<const D: usize> Union<D> {
         Self { members, groups, slack, promise }
     }
 
+    /// How many members a block is likely to need.
+    fn expected(&self) -> usize {
+        if self.groups.is_empty() { self.members.len() } else { 1 }
+    }
+
     /// Calls `near` with every member that may be the smallest somewhere in the
     /// ball, in their order.
     ///
@@ -155,19 +153,19 @@ impl<const D: usize> Union<D> {
         } else {
             f64::INFINITY
         };
-        let mut gaps = Gaps([0.0; GROUP]);
+        let mut gaps = Gaps::scratch();
         let mut bound = f64::INFINITY;
         for (g, group) in self.groups.iter().enumerate() {
-            dispatch::run(&ToBalls, group, &centre, GROUP, &mut gaps);
+            run(&ToBalls(centre), &group.centres, &group.radii, GROUP, &mut gaps);
             let base = g * GROUP;
-            let (nearest, gap) = gaps.smallest();
+            let (nearest, gap) = smallest(&gaps);
             if f64::from(gap) <= bound {
                 bound = bound.min(value(base + nearest));
             }
             let mut limit = (bound + slack) as f32;
             let count = GROUP.min(self.members.len() - base);
-            for (i, gap) in gaps.0[..count].iter().enumerate() {
-                if *gap <= limit {
+            for i in 0..count {
+                if gaps.get(i) <= limit {
                     bound = bound.min(near(base + i));
                     limit = (bound + slack) as f32;
                 }
@@ -277,7 +275,7 @@ where
     dyn Field<D>: EvaluateBlock<S, D, W>,
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut fold = ValueFold::new(&Smaller, out);
+        let mut fold = ValueFold::new(&Smaller, self.expected(), out);
         self.near_block(p, count, |member| fold.push(member, p, count));
         fold.finish();
     }
@@ -293,7 +291,7 @@ where
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        let mut fold = GradientFold::new(&Smaller, out);
+        let mut fold = GradientFold::new(&Smaller, self.expected(), out);
         self.near_block(p, count, |member| fold.push(member, p, count));
         fold.finish();
     }

@@ -3,8 +3,7 @@
 use std::fmt::Debug;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
-use crate::block::{Block, Column, Gradients, Lane, lanes};
-use crate::dispatch::{self, Job};
+use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
@@ -55,58 +54,37 @@ pub(crate) struct Warped<M, const D: usize, const E: usize> {
 
 struct Points<'a, M>(&'a M);
 
-impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize, const W: usize>
-    Job<Block<S, D, W>, (), Block<S, E, W>> for Points<'_, M>
+impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize> Job<Vector<S, D>, (), Vector<S, E>>
+    for Points<'_, M>
 {
     #[inline(always)]
-    fn run(&self, p: &Block<S, D, W>, (): &(), count: usize, out: &mut Block<S, E, W>) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, self.0.point(p.get(i)));
-        }
+    fn lane(&self, p: Vector<S, D>, (): ()) -> Vector<S, E> {
+        self.0.point(p)
     }
 }
 
 struct Values<'a, M, const E: usize>(&'a M);
 
-impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize, const W: usize>
-    Job<Block<S, D, W>, Column<S, W>, Column<S, W>> for Values<'_, M, E>
+impl<S: Lane, M: Warp<D, E>, const D: usize, const E: usize> Job<Vector<S, D>, S, S>
+    for Values<'_, M, E>
 {
     #[inline(always)]
-    fn run(
-        &self,
-        p: &Block<S, D, W>,
-        child: &Column<S, W>,
-        count: usize,
-        out: &mut Column<S, W>,
-    ) {
-        for i in 0..lanes::<S, W>(count) {
-            out.set(i, self.0.value(p.get(i), child.get(i)));
-        }
+    fn lane(&self, p: Vector<S, D>, child: S) -> S {
+        self.0.value(p, child)
     }
 }
 
 struct PulledBack<'a, M>(&'a M);
 
-impl<T, M, const D: usize, const E: usize, const W: usize>
-    Job<Block<T, D, W>, Gradients<T, E, W>, Gradients<T, D, W>> for PulledBack<'_, M>
+impl<T, M, const D: usize, const E: usize>
+    Job<Vector<T, D>, (T, Vector<T, E>), (T, Vector<T, D>)> for PulledBack<'_, M>
 where
     T: Float + Lane,
     M: Warp<D, E>,
 {
     #[inline(always)]
-    fn run(
-        &self,
-        p: &Block<T, D, W>,
-        child: &Gradients<T, E, W>,
-        count: usize,
-        out: &mut Gradients<T, D, W>,
-    ) {
-        for i in 0..lanes::<T, W>(count) {
-            let (distance, gradient) =
-                self.0.gradient(p.get(i), child.distance.get(i), child.gradient.get(i));
-            out.distance.set(i, distance);
-            out.gradient.set(i, gradient);
-        }
+    fn lane(&self, p: Vector<T, D>, (child, gradient): (T, Vector<T, E>)) -> (T, Vector<T, D>) {
+        self.0.gradient(p, child, gradient)
     }
 }
 
@@ -139,11 +117,11 @@ where
     dyn Field<E>: EvaluateBlock<S, E, W>,
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut q = Block::<S, E, W>::zero();
-        let mut child = Column::zero();
-        dispatch::run(&Points(&self.map), p, &(), count, &mut q);
+        let mut q = Block::<S, E, W>::scratch();
+        let mut child = Column::scratch();
+        run(&Points(&self.map), p, &(), count, &mut q);
         self.child.field().distances(&q, count, &mut child);
-        dispatch::run(&Values::<M, E>(&self.map), p, &child, count, out);
+        run(&Values::<M, E>(&self.map), p, &child, count, out);
     }
 }
 
@@ -160,11 +138,11 @@ where
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        let mut q = Block::<T, E, W>::zero();
-        let mut child = Gradients::<T, E, W>::zero();
-        dispatch::run(&Points(&self.map), p, &(), count, &mut q);
+        let mut q = Block::<T, E, W>::scratch();
+        let mut child = Gradients::<T, E, W>::scratch();
+        run(&Points(&self.map), p, &(), count, &mut q);
         self.child.field().distances_gradients(&q, count, &mut child);
-        dispatch::run(&PulledBack(&self.map), p, &child, count, out);
+        run(&PulledBack(&self.map), p, &child, count, out);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Blend, Float, Scalar};
-use crate::vector::array;
+use crate::vector::{array, unrolled};
 
 /// A value and its gradient with respect to `D` coordinates (forward-mode
 /// differentiation).
@@ -182,13 +182,11 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
         let value = T::norm(array!(i < N => x[i].value));
         let inverse = inverse_or_zero(value);
         let mut gradient = [zero; D];
-        for (i, x) in x.iter().enumerate() {
+        unrolled!(i < N => {
             let at_zero = T::constant(if i == 0 { 1.0 } else { 0.0 });
-            let weight = T::select_less(zero, value, x.value * inverse, at_zero);
-            for k in 0..D {
-                gradient[k] = gradient[k] + weight * x.gradient[k];
-            }
-        }
+            let weight = T::select_less(zero, value, x[i].value * inverse, at_zero);
+            unrolled!(k < D => gradient[k] = gradient[k] + weight * x[i].gradient[k]);
+        });
         Self { value, gradient }
     }
 
@@ -198,23 +196,22 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
         let one = T::constant(1.0);
         let mut largest = q[0].value;
         let mut sum = zero;
-        for q in q {
-            largest = largest.max(q.value);
-            sum = sum + q.value.max(zero).squared();
-        }
+        unrolled!(i < N => {
+            largest = largest.max(q[i].value);
+            sum = sum + q[i].value.max(zero).squared();
+        });
         let outside = sum.sqrt();
         let inverse = one / T::select_less(zero, outside, outside, one);
         // Inside, the first face among those with the largest value decides.
         let mut free = one;
         let mut gradient = [zero; D];
-        for q in q {
-            let face = T::select_less(q.value, largest, zero, free);
+        unrolled!(i < N => {
+            let face = T::select_less(q[i].value, largest, zero, free);
             free = free - face;
-            let weight = T::select_less(zero, outside, q.value.max(zero) * inverse, face);
-            for k in 0..D {
-                gradient[k] = gradient[k] + weight * q.gradient[k];
-            }
-        }
+            let weight = T::select_less(zero, outside, q[i].value.max(zero) * inverse, face);
+            unrolled!(k < D => gradient[k] = gradient[k] + weight * q[i].gradient[k]);
+        });
+        debug_assert!(free <= zero, "some face has the largest value");
         Self { value: outside + largest.min(zero), gradient }
     }
 

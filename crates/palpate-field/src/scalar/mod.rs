@@ -50,6 +50,16 @@ pub trait Scalar:
     /// `|self|`.
     fn abs(self) -> Self;
 
+    /// `Σ weightsᵢ·xᵢ`: a row of a rotation.
+    #[inline(always)]
+    fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
+        let mut sum = x[0].scale(weights[0]);
+        for i in 1..N {
+            sum = sum + x[i].scale(weights[i]);
+        }
+        sum
+    }
+
     /// `self²`.
     fn squared(self) -> Self;
 

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Blend, Scalar};
-use crate::vector::array;
+use crate::vector::{array, unrolled};
 
 /// Half the spacing of the numbers just above one: the largest relative error
 /// of one rounded operation.
@@ -60,7 +60,7 @@ impl Model {
     /// The coordinates of the box with `centre` and `half` side lengths.
     #[inline(always)]
     pub fn cell<const D: usize>(centre: [f64; D], half: [f64; D]) -> [Self; D] {
-        array!(i < D => {
+        std::array::from_fn(|i| {
             let mut gradient = [0.0; 3];
             gradient[i] = half[i];
             Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
@@ -93,10 +93,10 @@ impl Model {
     #[inline(always)]
     pub fn radius<const D: usize>(cell: &[Self; D]) -> f64 {
         let mut sum = 0.0;
-        for coordinate in cell {
-            let deviation = coordinate.deviation();
+        unrolled!(i < D => {
+            let deviation = cell[i].deviation();
             sum += deviation * deviation;
-        }
+        });
         sum.sqrt() * INFLATE
     }
 
@@ -117,15 +117,13 @@ impl Model {
         let radius = Self::radius(cell);
         let mut gradient = [0.0; 3];
         let (mut lower, mut upper) = (0.0, 0.0);
-        for (normal, x) in normal.iter().zip(cell) {
-            let positive = *normal > 0.0;
-            let size = f64::abs(*normal);
-            lower += size * choose(positive, x.lower, x.upper);
-            upper += size * choose(positive, x.upper, x.lower);
-            for (sum, slope) in gradient.iter_mut().zip(x.gradient) {
-                *sum += normal * slope;
-            }
-        }
+        unrolled!(i < D => {
+            let positive = normal[i] > 0.0;
+            let size = f64::abs(normal[i]);
+            lower += size * choose(positive, cell[i].lower, cell[i].upper);
+            upper += size * choose(positive, cell[i].upper, cell[i].lower);
+            unrolled!(k < 3 => gradient[k] += normal[i] * cell[i].gradient[k]);
+        });
         let far = value > 1.25 * radius;
         let room = choose(far, value - radius, 1.0);
         let curved = choose(far, 0.5 * radius * radius / room, 2.0 * radius);
@@ -341,6 +339,23 @@ impl Scalar for Model {
         .rounded(2.0, 0.0)
     }
 
+    /// One remainder for the roundings of the whole sum.
+    #[inline(always)]
+    fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
+        let mut sum = Self::constant(0.0);
+        let mut size = 0.0;
+        unrolled!(i < N => {
+            let weight = f64::abs(weights[i]);
+            let up = weights[i] > 0.0;
+            sum.value += weights[i] * x[i].value;
+            unrolled!(k < 3 => sum.gradient[k] += weights[i] * x[i].gradient[k]);
+            sum.lower += weight * choose(up, x[i].lower, x[i].upper);
+            sum.upper += weight * choose(up, x[i].upper, x[i].lower);
+            size += weight * (f64::abs(x[i].value) + x[i].slope());
+        });
+        sum.rounded(N as f64 + 2.0, size)
+    }
+
     #[inline(always)]
     fn abs(self) -> Self {
         let folded = Self::choose(self.value < 0.0, -self, self);
@@ -433,18 +448,16 @@ impl Scalar for Model {
         let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
         let mut gradient = [0.0; 3];
         let (mut lower, mut upper, mut deviations) = (0.0, 0.0, 0.0);
-        for x in x {
-            let unit = x.value * inverse;
+        unrolled!(i < N => {
+            let unit = x[i].value * inverse;
             let size = f64::abs(unit);
             let positive = unit > 0.0;
-            for k in 0..3 {
-                gradient[k] += unit * x.gradient[k];
-            }
-            lower += size * choose(positive, x.lower, x.upper);
-            upper += size * choose(positive, x.upper, x.lower);
-            let deviation = x.deviation();
+            unrolled!(k < 3 => gradient[k] += unit * x[i].gradient[k]);
+            lower += size * choose(positive, x[i].lower, x[i].upper);
+            upper += size * choose(positive, x[i].upper, x[i].lower);
+            let deviation = x[i].deviation();
             deviations += deviation * deviation;
-        }
+        });
         let d = deviations.sqrt() * INFLATE;
         let error = 8.0 * UNIT * (n + d);
         Self { value: n, gradient, lower: lower + error, upper: upper + excess(n, d) + error }
@@ -457,16 +470,17 @@ impl Scalar for Model {
     fn orthant<const N: usize>(q: [Self; N]) -> Self {
         let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
         let (mut sum, mut deviations) = (0.0, 0.0);
-        for (i, q) in q.iter().enumerate() {
+        unrolled!(i < N => {
+            let value = q[i].value;
             if i > 0 {
-                second = choose(q.value > largest, largest, second.max_of(q.value));
-                largest = largest.max_of(q.value);
+                second = choose(value > largest, largest, second.max_of(value));
+                largest = largest.max_of(value);
             }
-            let positive = q.value.max_of(0.0);
+            let positive = value.max_of(0.0);
             sum += positive * positive;
-            let deviation = q.deviation();
+            let deviation = q[i].deviation();
             deviations += deviation * deviation;
-        }
+        });
         let n = sum.sqrt();
         let d = deviations.sqrt() * INFLATE;
         let outside = n > 0.0;
@@ -474,16 +488,15 @@ impl Scalar for Model {
         let mut free = 1.0;
         let mut gradient = [0.0; 3];
         let (mut lower, mut upper) = (0.0, 0.0);
-        for q in q {
-            let face = choose(q.value < largest, 0.0, free);
+        unrolled!(i < N => {
+            let face = choose(q[i].value < largest, 0.0, free);
             free -= face;
-            let weight = choose(outside, q.value.max_of(0.0) * inverse, face);
-            for k in 0..3 {
-                gradient[k] += weight * q.gradient[k];
-            }
-            lower += weight * q.lower;
-            upper += weight * q.upper;
-        }
+            let weight = choose(outside, q[i].value.max_of(0.0) * inverse, face);
+            unrolled!(k < 3 => gradient[k] += weight * q[i].gradient[k]);
+            lower += weight * q[i].lower;
+            upper += weight * q[i].upper;
+        });
+        debug_assert!(free <= 0.0, "some face has the largest value");
         let one_face = second + d < 0.0 && largest - second > d + d;
         let curved = choose(one_face, 0.0, excess(n, d));
         let error = 8.0 * UNIT * (n + f64::abs(largest) + d);

@@ -1,15 +1,13 @@
 //! Runs the loops over blocks with the best instruction set of the machine.
 //!
-//! A loop over lanes is an ordinary generic function, written once. Here it is
-//! compiled three times, with the instructions that every x86-64 machine has,
-//! with AVX2 and with AVX-512, and the copy to run is chosen once at run time;
-//! LLVM vectorises each. Other architectures have one copy. All copies give the
-//! same bits, since no formula uses a fused multiply-add.
-//!
-//! This is the one module of the crate where `unsafe` is allowed.
-#![allow(unsafe_code, reason = "calls functions compiled for a checked instruction set")]
+//! A loop over lanes is compiled three times, with the instructions that every
+//! x86-64 machine has, with AVX2 and with AVX-512, and the copy to run is chosen
+//! once at run time; LLVM vectorises each. Other architectures have one copy. All
+//! copies give the same bits, since no formula uses a fused multiply-add.
 
 use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::block::{Rows, RowsMut, filled};
 
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,24 +80,48 @@ impl InstructionSet {
     }
 }
 
-/// A loop over the lanes of a block.
+/// What to do in one lane of a block.
 ///
-/// `run` must be `#[inline(always)]`, and so must all that it calls, to be
-/// compiled with the instructions of its caller here. Inputs and output are
-/// arguments, not fields, so that LLVM knows that they do not overlap.
+/// `lane` must be `#[inline(always)]`, and so must all that it calls, to be
+/// compiled with the instructions of the loop around it.
 pub(crate) trait Job<A, B, Out> {
-    fn run(&self, a: &A, b: &B, count: usize, out: &mut Out);
+    /// The output for the inputs `a` and `b`.
+    fn lane(&self, a: A, b: B) -> Out;
 }
 
-/// Runs `job` with the instruction set in use.
+/// The loop: `job` in the lanes of the first `count` points, with their line
+/// completed.
+///
+/// Inputs and output are arguments, not fields of the job, so that LLVM knows
+/// that they do not overlap.
 #[inline(always)]
-pub(crate) fn run<A, B, Out, J: Job<A, B, Out>>(
-    job: &J,
-    a: &A,
-    b: &B,
-    count: usize,
-    out: &mut Out,
-) {
+fn for_each_lane<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
+    let lanes = filled::<Out>(count);
+    assert!(lanes <= a.written() && lanes <= b.written(), "{lanes} lanes are not written");
+    for i in 0..lanes {
+        // SAFETY: `i` is less than `lanes`, which was checked against both.
+        let (a, b) = unsafe { (a.read(i), b.read(i)) };
+        out.write(i, job.lane(a, b));
+    }
+    // SAFETY: the loop wrote them.
+    unsafe { out.set_written(lanes) };
+}
+
+/// Runs `job` on the lanes of `a` and `b` with the instruction set in use.
+#[inline(always)]
+pub(crate) fn run<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
     #[cfg(target_arch = "x86_64")]
     match InstructionSet::in_use() {
         // SAFETY: in_use() returns only sets for which is_available() found
@@ -113,24 +135,36 @@ pub(crate) fn run<A, B, Out, J: Job<A, B, Out>>(
 }
 
 #[inline(never)]
-fn baseline<A, B, Out, J: Job<A, B, Out>>(job: &J, a: &A, b: &B, count: usize, out: &mut Out) {
-    job.run(a, b, count, out);
+fn baseline<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
+    for_each_lane(job, a, b, count, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2")]
-fn with_avx2<A, B, Out, J: Job<A, B, Out>>(job: &J, a: &A, b: &B, count: usize, out: &mut Out) {
-    job.run(a, b, count, out);
+fn with_avx2<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
+    for_each_lane(job, a, b, count, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2,avx512f,avx512vl,avx512dq,avx512bw")]
-fn with_avx512<A, B, Out, J: Job<A, B, Out>>(
-    job: &J,
-    a: &A,
-    b: &B,
-    count: usize,
-    out: &mut Out,
-) {
-    job.run(a, b, count, out);
+fn with_avx512<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+where
+    A: Rows,
+    B: Rows,
+    Out: RowsMut,
+    J: Job<A::Item, B::Item, Out::Item>,
+{
+    for_each_lane(job, a, b, count, out);
 }

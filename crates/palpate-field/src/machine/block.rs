@@ -1,0 +1,325 @@
+//! Blocks: many points evaluated together, one array a coordinate.
+
+use std::fmt;
+
+use super::lanes::{Lane, LaneArray};
+use crate::vector::{Vector, array};
+
+/// The most points that a block holds.
+pub const BLOCK: usize = 64;
+
+/// The points of the short block, for searches that look at a few at a time.
+pub const SHORT: usize = 8;
+
+/// Something with one item a lane, of which the first lanes are written.
+pub(crate) trait Rows {
+    type Item: Copy;
+
+    /// How many lanes, from the first on, are written.
+    fn written(&self) -> usize;
+
+    /// The item in lane `i`.
+    ///
+    /// # Safety
+    ///
+    /// `i` must be less than `written()`.
+    unsafe fn read(&self, i: usize) -> Self::Item;
+}
+
+/// [`Rows`] that a loop can fill.
+pub(crate) trait RowsMut: Rows {
+    /// All lanes there are.
+    const WIDTH: usize;
+    /// Lanes are filled in lines of this many.
+    const LINE: usize;
+
+    /// Puts an item into lane `i`.
+    fn write(&mut self, i: usize, item: Self::Item);
+
+    /// Declares the first `count` lanes written.
+    ///
+    /// # Safety
+    ///
+    /// They must be.
+    unsafe fn set_written(&mut self, count: usize);
+}
+
+/// The lanes to fill for `count` points: whole lines, so that no scalar remainder
+/// is left over.
+#[inline(always)]
+pub(super) fn filled<R: RowsMut>(count: usize) -> usize {
+    if R::WIDTH <= R::LINE {
+        R::WIDTH
+    } else {
+        (count.div_ceil(R::LINE) * R::LINE).min(R::WIDTH)
+    }
+}
+
+/// No input.
+impl Rows for () {
+    type Item = ();
+
+    #[inline(always)]
+    fn written(&self) -> usize {
+        usize::MAX
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, _: usize) {}
+}
+
+/// Up to `W` numbers, one a point.
+#[derive(Clone)]
+pub struct Column<S: Lane, const W: usize> {
+    lanes: S::Lanes<W>,
+    written: usize,
+}
+
+impl<S: Lane, const W: usize> Column<S, W> {
+    /// All zero.
+    #[must_use]
+    pub fn zero() -> Self {
+        let mut column = Self::scratch();
+        column.fill(W, |_| S::constant(0.0));
+        column
+    }
+
+    /// Memory for an output.
+    #[inline(always)]
+    pub(crate) fn scratch() -> Self {
+        Self { lanes: S::Lanes::unwritten(), written: 0 }
+    }
+
+    /// The number in lane `i`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no lane `i`, or the last evaluation did not write it.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, i: usize) -> S {
+        assert!(i < self.written, "lane {i} of {} is not written", self.written);
+        // SAFETY: checked.
+        unsafe { self.lanes.read(i) }
+    }
+
+    /// Puts a number into lane `i`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, number: S) {
+        assert!(i < self.written, "lane {i} of {} is not written", self.written);
+        self.lanes.write(i, number);
+    }
+
+    /// Writes the first `count` lanes, and what completes their line with the
+    /// last of them.
+    pub(crate) fn fill(&mut self, count: usize, mut number: impl FnMut(usize) -> S) {
+        let lanes = filled::<Self>(count);
+        for i in 0..lanes {
+            self.lanes.write(i, number(i.min(count.max(1) - 1)));
+        }
+        self.written = lanes;
+    }
+}
+
+impl<S: Lane, const W: usize> Rows for Column<S, W> {
+    type Item = S;
+
+    #[inline(always)]
+    fn written(&self) -> usize {
+        self.written
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, i: usize) -> S {
+        // SAFETY: the caller promises that `i` is less than `written`.
+        unsafe { self.lanes.read(i) }
+    }
+}
+
+impl<S: Lane, const W: usize> RowsMut for Column<S, W> {
+    const WIDTH: usize = W;
+    const LINE: usize = S::LINE;
+
+    #[inline(always)]
+    fn write(&mut self, i: usize, number: S) {
+        self.lanes.write(i, number);
+    }
+
+    #[inline(always)]
+    unsafe fn set_written(&mut self, count: usize) {
+        self.written = count;
+    }
+}
+
+impl<S: Lane + fmt::Debug, const W: usize> fmt::Debug for Column<S, W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries((0..self.written).map(|i| self.get(i))).finish()
+    }
+}
+
+/// Up to `W` points in `D` dimensions.
+///
+/// ```
+/// use palpate_field::{BLOCK, Block, Vector};
+///
+/// let mut points = Block::<f64, 2, BLOCK>::zero();
+/// points.set(3, Vector([1.0, 2.0]));
+/// assert_eq!(points.get(3), Vector([1.0, 2.0]));
+/// ```
+#[derive(Clone)]
+pub struct Block<S: Lane, const D: usize, const W: usize>([Column<S, W>; D]);
+
+impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
+    /// All points at the origin.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self(std::array::from_fn(|_| Column::zero()))
+    }
+
+    /// Memory for an output.
+    #[inline(always)]
+    pub(crate) fn scratch() -> Self {
+        Self(std::array::from_fn(|_| Column::scratch()))
+    }
+
+    /// The point in lane `i`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no lane `i`, or the last evaluation did not write it.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, i: usize) -> Vector<S, D> {
+        Vector(array!(k < D => self.0[k].get(i)))
+    }
+
+    /// Puts a point into lane `i`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no lane `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, point: Vector<S, D>) {
+        for k in 0..D {
+            self.0[k].set(i, point.0[k]);
+        }
+    }
+}
+
+impl<S: Lane, const D: usize, const W: usize> Rows for Block<S, D, W> {
+    type Item = Vector<S, D>;
+
+    #[inline(always)]
+    fn written(&self) -> usize {
+        self.0.iter().fold(usize::MAX, |least, column| least.min(column.written))
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, i: usize) -> Vector<S, D> {
+        // SAFETY: the caller promises that `i` is less than `written` of every
+        // column.
+        Vector(array!(k < D => unsafe { self.0[k].lanes.read(i) }))
+    }
+}
+
+impl<S: Lane, const D: usize, const W: usize> RowsMut for Block<S, D, W> {
+    const WIDTH: usize = W;
+    const LINE: usize = S::LINE;
+
+    #[inline(always)]
+    fn write(&mut self, i: usize, point: Vector<S, D>) {
+        for k in 0..D {
+            self.0[k].lanes.write(i, point.0[k]);
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn set_written(&mut self, count: usize) {
+        for column in &mut self.0 {
+            column.written = count;
+        }
+    }
+}
+
+impl<S: Lane + fmt::Debug, const D: usize, const W: usize> fmt::Debug for Block<S, D, W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(&self.0).finish()
+    }
+}
+
+/// The distances at up to `W` points, and their gradients.
+#[derive(Clone, Debug)]
+pub struct Gradients<T: Lane + fmt::Debug, const D: usize, const W: usize> {
+    /// The distances [m].
+    pub distance: Column<T, W>,
+    /// The gradients.
+    pub gradient: Block<T, D, W>,
+}
+
+impl<T: Lane + fmt::Debug, const D: usize, const W: usize> Gradients<T, D, W> {
+    /// All zero.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { distance: Column::zero(), gradient: Block::zero() }
+    }
+
+    /// Memory for an output.
+    #[inline(always)]
+    pub(crate) fn scratch() -> Self {
+        Self { distance: Column::scratch(), gradient: Block::scratch() }
+    }
+
+    /// Writes the first `count` lanes, and what completes their line with the
+    /// last of them.
+    pub(crate) fn fill(
+        &mut self,
+        count: usize,
+        mut item: impl FnMut(usize) -> (T, Vector<T, D>),
+    ) {
+        let lanes = filled::<Self>(count);
+        for i in 0..lanes {
+            self.write(i, item(i.min(count.max(1) - 1)));
+        }
+        // SAFETY: the loop wrote them.
+        unsafe { self.set_written(lanes) };
+    }
+}
+
+impl<T: Lane + fmt::Debug, const D: usize, const W: usize> Rows for Gradients<T, D, W> {
+    type Item = (T, Vector<T, D>);
+
+    #[inline(always)]
+    fn written(&self) -> usize {
+        self.distance.written.min(self.gradient.written())
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, i: usize) -> (T, Vector<T, D>) {
+        // SAFETY: the caller promises that `i` is less than `written` of both.
+        unsafe { (self.distance.read(i), self.gradient.read(i)) }
+    }
+}
+
+impl<T: Lane + fmt::Debug, const D: usize, const W: usize> RowsMut for Gradients<T, D, W> {
+    const WIDTH: usize = W;
+    const LINE: usize = T::LINE;
+
+    #[inline(always)]
+    fn write(&mut self, i: usize, (distance, gradient): (T, Vector<T, D>)) {
+        self.distance.write(i, distance);
+        self.gradient.write(i, gradient);
+    }
+
+    #[inline(always)]
+    unsafe fn set_written(&mut self, count: usize) {
+        // SAFETY: the caller promises it of both.
+        unsafe {
+            self.distance.set_written(count);
+            self.gradient.set_written(count);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Numbers in memory order, as many as a block has points.
+
+use std::mem::MaybeUninit;
+
+use crate::kernel::Kernel;
+use crate::scalar::{Float, Model, Scalar};
+use crate::vector::Vector;
+
+/// Room for `W` numbers, aligned to a cache line.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Lanes<T: Copy, const W: usize>([MaybeUninit<T>; W]);
+
+/// Room for `W` models, one array for each of their parts.
+#[derive(Clone, Copy)]
+pub struct ModelLanes<const W: usize> {
+    value: Lanes<f64, W>,
+    gradient: [Lanes<f64, W>; 3],
+    lower: Lanes<f64, W>,
+    upper: Lanes<f64, W>,
+}
+
+/// A place for as many numbers as a block has points.
+pub trait LaneArray<S>: Copy + Send + Sync {
+    /// Memory that holds nothing yet.
+    fn unwritten() -> Self;
+
+    /// The number in lane `i`.
+    ///
+    /// # Safety
+    ///
+    /// A number must have been written to lane `i`.
+    unsafe fn read(&self, i: usize) -> S;
+
+    /// Puts a number into lane `i`.
+    fn write(&mut self, i: usize, number: S);
+}
+
+/// A number of which a block can hold many.
+pub trait Lane: Scalar + Send + Sync + 'static {
+    /// Where `W` of them are kept.
+    type Lanes<const W: usize>: LaneArray<Self>;
+
+    /// Lanes are worked through in lines of this many.
+    const LINE: usize;
+
+    /// The smallest and the largest value that the number stands for.
+    fn range(&self) -> (f64, f64);
+
+    /// `kernel` at `p`, by the best rule the kernel has for this number.
+    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
+}
+
+impl<T: Float, const W: usize> LaneArray<T> for Lanes<T, W> {
+    #[inline(always)]
+    fn unwritten() -> Self {
+        Self([MaybeUninit::uninit(); W])
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, i: usize) -> T {
+        // SAFETY: the caller promises that lane `i` was written.
+        unsafe { self.0[i].assume_init() }
+    }
+
+    #[inline(always)]
+    fn write(&mut self, i: usize, number: T) {
+        self.0[i].write(number);
+    }
+}
+
+impl<const W: usize> LaneArray<Model> for ModelLanes<W> {
+    #[inline(always)]
+    fn unwritten() -> Self {
+        let none = Lanes::unwritten();
+        Self { value: none, gradient: [none; 3], lower: none, upper: none }
+    }
+
+    #[inline(always)]
+    unsafe fn read(&self, i: usize) -> Model {
+        // SAFETY: the caller promises that lane `i` was written, and `write`
+        // writes every part.
+        unsafe {
+            Model {
+                value: self.value.read(i),
+                gradient: [
+                    self.gradient[0].read(i),
+                    self.gradient[1].read(i),
+                    self.gradient[2].read(i),
+                ],
+                lower: self.lower.read(i),
+                upper: self.upper.read(i),
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn write(&mut self, i: usize, number: Model) {
+        self.value.write(i, number.value);
+        self.gradient[0].write(i, number.gradient[0]);
+        self.gradient[1].write(i, number.gradient[1]);
+        self.gradient[2].write(i, number.gradient[2]);
+        self.lower.write(i, number.lower);
+        self.upper.write(i, number.upper);
+    }
+}
+
+macro_rules! float_lane {
+    ($t:ident) => {
+        impl Lane for $t {
+            type Lanes<const W: usize> = Lanes<$t, W>;
+            const LINE: usize = <$t as Float>::LINE;
+
+            #[inline(always)]
+            fn range(&self) -> (f64, f64) {
+                (f64::from(*self), f64::from(*self))
+            }
+
+            #[inline(always)]
+            fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
+                kernel.distance(p)
+            }
+        }
+    };
+}
+
+float_lane!(f32);
+float_lane!(f64);
+
+impl Lane for Model {
+    type Lanes<const W: usize> = ModelLanes<W>;
+    const LINE: usize = 8;
+
+    #[inline(always)]
+    fn range(&self) -> (f64, f64) {
+        (self.minimum(), self.maximum())
+    }
+
+    #[inline(always)]
+    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
+        kernel.model(p)
+    }
+}

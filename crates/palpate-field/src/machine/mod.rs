@@ -1,0 +1,21 @@
+//! What knows the machine: blocks of lanes in memory, and the instruction sets
+//! that work through them.
+//!
+//! The loops over lanes are here and nowhere else. The rest of the crate gives
+//! [`Job`]s: what to do in one lane. This is the one module of the crate where
+//! `unsafe` is allowed: to call functions compiled for an instruction set that
+//! was found at run time, and to leave scratch memory unwritten, which would cost
+//! more to clear than a leaf takes to evaluate.
+#![allow(
+    unsafe_code,
+    reason = "calls code for a checked instruction set; scratch memory starts unwritten"
+)]
+
+mod block;
+mod instruction_set;
+mod lanes;
+
+pub use block::{BLOCK, Block, Column, Gradients, SHORT};
+pub use instruction_set::InstructionSet;
+pub(crate) use instruction_set::{Job, run};
+pub use lanes::{Lane, LaneArray, Lanes, ModelLanes};

@@ -1,0 +1,117 @@
+//! Promises never overclaim, on every primitive and on random trees.
+
+use arbitrary::Unstructured;
+use palpate_field::{Point, Shape, Vector};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::{cases, laws};
+
+/// Deepest trees drawn.
+const DEEPEST: u64 = 6;
+
+type Law<const D: usize> = fn(&mut Unstructured<'_>, &Shape<D>, Point<D>) -> Outcome;
+type Outcome = arbitrary::Result<Result<(), String>>;
+
+/// Checks a law at `points` points of each of `count` trees: as many leaves as
+/// trees of each other depth.
+fn on_trees<const D: usize>(count: u64, points: usize, law: Law<D>)
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let mut seed = 0;
+    cases::check(count, |u| {
+        let depth = 1 + seed % DEEPEST;
+        seed += 1;
+        let tree: Tree<D> = draw::tree(u, depth as usize)?;
+        let shape = match tree.shape() {
+            Ok(shape) => shape,
+            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
+        };
+        for _ in 0..points {
+            let p = draw::point(u, &shape)?;
+            if let Err(complaint) = law(u, &shape, p)? {
+                return Ok(Err(format!("{complaint}\n  {tree:?}")));
+            }
+        }
+        Ok(Ok(()))
+    });
+}
+
+fn overclaims<const D: usize>(
+    u: &mut Unstructured<'_>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    let directions = [draw::direction(u)?, draw::direction(u)?];
+    Ok(laws::never_overclaims(shape, p, &directions))
+}
+
+/// Near pairs, and pairs across the shape.
+fn lipschitz<const D: usize>(
+    u: &mut Unstructured<'_>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    let far = draw::point(u, shape)?;
+    let step = draw::size(shape) * 10.0_f64.powf(draw::within(u, -9.0, 0.0)?);
+    let near = p + draw::direction(u)? * step;
+    let mut flipped = p;
+    for x in &mut flipped.0 {
+        // Across a plane of symmetry, where folds meet.
+        if u.arbitrary()? {
+            *x = -*x * draw::unit(u)?;
+        }
+    }
+    let pairs = [far, near, flipped];
+    Ok(pairs.into_iter().try_for_each(|q| laws::lipschitz_holds(shape, p, q)))
+}
+
+fn bounds<const D: usize>(u: &mut Unstructured<'_>, shape: &Shape<D>, p: Point<D>) -> Outcome {
+    let mut outcome = laws::bounds_hold(shape, p);
+    if let Some(bounds) = shape.promise().bounds {
+        // Just outside the ball, and just outside a face of the box.
+        let out = 1.0 + 10.0_f64.powf(draw::within(u, -12.0, 0.5)?);
+        let direction = draw::direction(u)?;
+        let q = bounds.ball.centre + direction * (bounds.ball.radius * out);
+        outcome = outcome.and_then(|()| laws::bounds_hold(shape, q));
+        let half = bounds.aabb.half_extents();
+        let mut q = bounds.aabb.centre();
+        for k in 0..D {
+            q[k] += half[k] * draw::within(u, -1.0, 1.0)?;
+        }
+        let axis = u.int_in_range(0..=D - 1)?;
+        q[axis] = bounds.aabb.centre()[axis] + half[axis] * direction[axis].signum() * out;
+        outcome = outcome.and_then(|()| laws::bounds_hold(shape, q));
+    }
+    Ok(outcome.and_then(|()| laws::symmetric_where_promised(shape, p)))
+}
+
+fn convex<const D: usize>(u: &mut Unstructured<'_>, shape: &Shape<D>, p: Point<D>) -> Outcome {
+    let q = draw::point(u, shape)?;
+    let near: Vector<f64, D> = p + draw::direction(u)? * (0.01 * draw::size(shape));
+    Ok([q, near].into_iter().try_for_each(|q| laws::convex_where_promised(shape, p, q)))
+}
+
+macro_rules! in_both_dimensions {
+    ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
+        $(mod $name {
+            #[test]
+            fn in_the_plane() {
+                super::on_trees::<2>($count, $points, super::$law);
+            }
+
+            #[test]
+            fn in_space() {
+                super::on_trees::<3>($count, $points, super::$law);
+            }
+        })*
+    };
+}
+
+in_both_dimensions! {
+    values_never_exceed_the_distance: overclaims, 1800, 40;
+    values_are_no_steeper_than_promised: lipschitz, 1800, 60;
+    shapes_stay_in_their_bounds: bounds, 1800, 60;
+    convex_fields_lie_below_their_chords: convex, 1800, 60;
+}
