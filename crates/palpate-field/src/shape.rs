@@ -76,7 +76,8 @@ impl<const D: usize> Shape<D> {
     #[inline]
     #[must_use]
     pub fn distance(&self, p: Point<D>) -> f64 {
-        self.field.distance(&p)
+        let (x, y, z) = p.coordinates();
+        self.field.distance(x, y, z)
     }
 
     /// The signed distance at `p` [m] and its gradient.
@@ -84,7 +85,8 @@ impl<const D: usize> Shape<D> {
     #[must_use]
     pub fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let mut gradient = Vector::ZERO;
-        let distance = self.field.distance_gradient(&p, &mut gradient);
+        let (x, y, z) = p.coordinates();
+        let distance = self.field.distance_gradient(x, y, z, &mut gradient);
         (distance, gradient)
     }
 
@@ -148,7 +150,8 @@ impl<const D: usize> Shape<D> {
     #[inline]
     #[must_use]
     pub fn distance_f32(&self, p: Vector<f32, D>) -> f32 {
-        self.field.distance(&p)
+        let (x, y, z) = p.coordinates();
+        self.field.distance(x, y, z)
     }
 
     /// The distance and its gradient in single precision.
@@ -156,7 +159,8 @@ impl<const D: usize> Shape<D> {
     #[must_use]
     pub fn distance_gradient_f32(&self, p: Vector<f32, D>) -> (f32, Vector<f32, D>) {
         let mut gradient = Vector([0.0; D]);
-        let distance = self.field.distance_gradient(&p, &mut gradient);
+        let (x, y, z) = p.coordinates();
+        let distance = self.field.distance_gradient(x, y, z, &mut gradient);
         (distance, gradient)
     }
 

@@ -109,6 +109,21 @@ impl<S: Scalar, const D: usize> Vector<S, D> {
     }
 }
 
+impl<T: Float, const D: usize> Vector<T, D> {
+    /// The first `D` of three coordinates.
+    #[inline(always)]
+    pub(crate) fn of_coordinates(x: T, y: T, z: T) -> Self {
+        Self(array!(i < D => [x, y, z][i.min(2)]))
+    }
+
+    /// Three coordinates, those past `D` zero.
+    #[inline(always)]
+    pub(crate) fn coordinates(self) -> (T, T, T) {
+        let at = |i: usize| if i < D { self.0[i] } else { T::constant(0.0) };
+        (at(0), at(1), at(2))
+    }
+}
+
 impl<const D: usize> Vector<f64, D> {
     /// The origin, or the vector of no length.
     pub const ZERO: Self = Self([0.0; D]);

@@ -59,19 +59,19 @@ impl<T: Float, O: Combine, const D: usize> EvaluatePoint<T, D> for Combined<O, D
 where
     dyn Field<D>: EvaluatePoint<T, D>,
 {
-    fn distance(&self, p: &Vector<T, D>) -> T {
-        let mut distance = self.children[0].field().distance(p);
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        let mut distance = self.children[0].field().distance(x, y, z);
         for child in &self.children[1..] {
-            distance = self.operation.combine(distance, child.field().distance(p));
+            distance = self.operation.combine(distance, child.field().distance(x, y, z));
         }
         distance
     }
 
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
-        let mut distance = self.children[0].field().distance_gradient(p, gradient);
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let mut distance = self.children[0].field().distance_gradient(x, y, z, gradient);
         let mut other = Vector([T::constant(0.0); D]);
         for child in &self.children[1..] {
-            let value = child.field().distance_gradient(p, &mut other);
+            let value = child.field().distance_gradient(x, y, z, &mut other);
             (distance, *gradient) =
                 differentiate(&self.operation, (distance, *gradient), (value, other));
         }

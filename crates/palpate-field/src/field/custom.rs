@@ -51,18 +51,17 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
 #[derive(Debug)]
 pub(crate) struct Custom<F>(pub(crate) F);
 
-#[inline(always)]
-fn widened<T: Float, const D: usize>(p: &Vector<T, D>) -> Point<D> {
-    Vector(p.0.map(T::to_f64))
+fn widened<T: Float, const D: usize>(x: T, y: T, z: T) -> Point<D> {
+    Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64())
 }
 
 impl<T: Float, F: CustomField<D>, const D: usize> EvaluatePoint<T, D> for Custom<F> {
-    fn distance(&self, p: &Vector<T, D>) -> T {
-        T::constant(self.0.distance(widened(p)))
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        T::constant(self.0.distance(widened(x, y, z)))
     }
 
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
-        let (distance, slope) = self.0.distance_gradient(widened(p));
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let (distance, slope) = self.0.distance_gradient(widened(x, y, z));
         *gradient = Vector::of(&slope.0);
         T::constant(distance)
     }
@@ -72,7 +71,10 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize> Evaluat
     for Custom<F>
 {
     fn distances(&self, p: &Block<T, D, W>, count: usize, out: &mut Column<T, W>) {
-        out.fill(count, |i| EvaluatePoint::distance(self, &p.get(i)));
+        out.fill(count, |i| {
+            let (x, y, z) = p.get(i).coordinates();
+            EvaluatePoint::distance(self, x, y, z)
+        });
     }
 }
 
@@ -102,7 +104,8 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
     ) {
         out.fill(count, |i| {
             let mut gradient = Vector([T::default(); D]);
-            (EvaluatePoint::distance_gradient(self, &p.get(i), &mut gradient), gradient)
+            let (x, y, z) = p.get(i).coordinates();
+            (EvaluatePoint::distance_gradient(self, x, y, z, &mut gradient), gradient)
         });
     }
 }

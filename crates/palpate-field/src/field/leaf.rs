@@ -101,20 +101,22 @@ impl<T: Float, const D: usize> Job<(T, Vector<T, D>), (), (T, Vector<T, D>)>
 }
 
 impl<T: Float, K: Kernel<D>, const D: usize> EvaluatePoint<T, D> for Leaf<K, D> {
-    fn distance(&self, p: &Vector<T, D>) -> T {
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        let p = Vector::of_coordinates(x, y, z);
         match &self.placement {
-            None => self.kernel.distance(*p),
-            Some(placement) => self.kernel.distance(placement.to_body(*p)),
+            None => self.kernel.distance(p),
+            Some(placement) => self.kernel.distance(placement.to_body(p)),
         }
     }
 
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let p = Vector::of_coordinates(x, y, z);
         let distance;
         match &self.placement {
-            None => (distance, *gradient) = self.kernel.distance_gradient(*p),
+            None => (distance, *gradient) = self.kernel.distance_gradient(p),
             Some(placement) => {
                 let in_body;
-                (distance, in_body) = self.kernel.distance_gradient(placement.to_body(*p));
+                (distance, in_body) = self.kernel.distance_gradient(placement.to_body(p));
                 *gradient = placement.gradient_to_world(in_body);
             }
         }

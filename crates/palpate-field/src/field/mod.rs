@@ -31,12 +31,16 @@ pub(crate) use union::Union;
 pub(crate) use warp::{Warp, Warped};
 
 /// Answers for one point.
+///
+/// Coordinates are three arguments, in the plane the last one zero: they travel
+/// in registers, where an array would be written and read again at every node,
+/// which doubles the latency of a tree.
 pub trait EvaluatePoint<T: Float, const D: usize> {
-    /// The signed distance at `p` [m].
-    fn distance(&self, p: &Vector<T, D>) -> T;
+    /// The signed distance at a point [m].
+    fn distance(&self, x: T, y: T, z: T) -> T;
 
-    /// The signed distance at `p` [m]; puts its gradient into `gradient`.
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T;
+    /// The signed distance at a point [m]; puts its gradient into `gradient`.
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T;
 }
 
 /// Answers for a block of points or cells.

@@ -59,14 +59,16 @@ impl<T: Float, M: Remap<D>, const D: usize> EvaluatePoint<T, D> for Remapped<M, 
 where
     dyn Field<D>: EvaluatePoint<T, D>,
 {
-    fn distance(&self, p: &Vector<T, D>) -> T {
-        self.map.value(*p, self.child.field().distance(p))
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        let p = Vector::of_coordinates(x, y, z);
+        self.map.value(p, self.child.field().distance(x, y, z))
     }
 
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
-        let child = self.child.field().distance_gradient(p, gradient);
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let p = Vector::of_coordinates(x, y, z);
+        let child = self.child.field().distance_gradient(x, y, z, gradient);
         let distance;
-        (distance, *gradient) = differentiate(&self.map, *p, child, *gradient);
+        (distance, *gradient) = differentiate(&self.map, p, child, *gradient);
         distance
     }
 }

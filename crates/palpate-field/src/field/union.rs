@@ -96,17 +96,31 @@ impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
     }
 }
 
-/// The first member with the smallest gap, and the gap.
+/// Gaps looked at together: a cache line of them.
+const LINE: usize = 16;
+
+/// The smallest gap of a line, halving it without a branch.
 #[inline(always)]
-fn smallest(gaps: &Gaps) -> (usize, f32) {
-    let mut best = (0, gaps.get(0));
-    for i in 1..GROUP {
-        let gap = gaps.get(i);
-        if gap < best.1 {
-            best = (i, gap);
+fn smallest_of(line: &[f32; LINE]) -> f32 {
+    let mut least = *line;
+    let mut width = LINE / 2;
+    while width > 0 {
+        for i in 0..width {
+            least[i] = Scalar::min(least[i], least[i + width]);
         }
+        width /= 2;
     }
-    best
+    least[0]
+}
+
+/// The gaps of a line that are at most `limit`, one bit each.
+#[inline(always)]
+fn at_most(line: &[f32; LINE], limit: f32) -> u32 {
+    let mut bits = 0;
+    for (i, gap) in line.iter().enumerate() {
+        bits |= u32::from(*gap <= limit) << i;
+    }
+    bits
 }
 
 impl<const D: usize> Union<D> {
@@ -157,17 +171,27 @@ impl<const D: usize> Union<D> {
         let mut bound = f64::INFINITY;
         for (g, group) in self.groups.iter().enumerate() {
             run(&ToBalls(centre), &group.centres, &group.radii, GROUP, &mut gaps);
-            let base = g * GROUP;
-            let (nearest, gap) = smallest(&gaps);
-            if f64::from(gap) <= bound {
-                bound = bound.min(value(base + nearest));
+            let (lines, _) = gaps.as_slice().as_chunks::<LINE>();
+            // The member whose ball is nearest gives the first bound.
+            let mut nearest = (0, f32::INFINITY);
+            for (k, line) in lines.iter().enumerate() {
+                let gap = smallest_of(line);
+                nearest = if gap < nearest.1 { (k, gap) } else { nearest };
             }
-            let mut limit = (bound + slack) as f32;
-            let count = GROUP.min(self.members.len() - base);
-            for i in 0..count {
-                if gaps.get(i) <= limit {
-                    bound = bound.min(near(base + i));
-                    limit = (bound + slack) as f32;
+            let (k, gap) = nearest;
+            if f64::from(gap) <= bound + slack {
+                let first = at_most(&lines[k], gap).trailing_zeros() as usize;
+                bound = bound.min(value(g * GROUP + k * LINE + first));
+            }
+            for (k, line) in lines.iter().enumerate() {
+                let mut bits = at_most(line, (bound + slack) as f32);
+                while bits != 0 {
+                    let i = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    // The bound may have fallen since the bits were found.
+                    if f64::from(line[i]) <= bound + slack {
+                        bound = bound.min(near(g * GROUP + k * LINE + i));
+                    }
                 }
             }
         }
@@ -175,11 +199,11 @@ impl<const D: usize> Union<D> {
 
     /// The smallest value at a point, and which member has it.
     #[inline(always)]
-    fn winner<T: Float>(&self, p: &Vector<T, D>) -> (T, usize)
+    fn winner<T: Float>(&self, x: T, y: T, z: T) -> (T, usize)
     where
         dyn Field<D>: EvaluatePoint<T, D>,
     {
-        let ask = |i: usize| self.members[i].field().distance(p);
+        let ask = |i: usize| self.members[i].field().distance(x, y, z);
         let mut best: Option<(T, usize)> = None;
         let mut offer = |value: T, i: usize| match best {
             Some((smallest, _)) if !(value < smallest) => {}
@@ -190,7 +214,8 @@ impl<const D: usize> Union<D> {
                 offer(ask(i), i);
             }
         } else {
-            let query = Query { centre: Vector(p.0.map(T::to_f64)), radius: 0.0 };
+            let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
+            let query = Query { centre, radius: 0.0 };
             let first = std::cell::Cell::new((usize::MAX, T::default()));
             let value = |i| {
                 let value = ask(i);
@@ -241,7 +266,8 @@ impl<const D: usize> Union<D> {
                 let promise = member.promise();
                 match promise.region {
                     None => {
-                        let value: f64 = member.field().distance(&query.centre);
+                        let (x, y, z) = query.centre.coordinates();
+                        let value: f64 = member.field().distance(x, y, z);
                         value + promise.lipschitz * query.radius
                     }
                     Some(_) => f64::INFINITY,
@@ -259,14 +285,14 @@ impl<T: Float, const D: usize> EvaluatePoint<T, D> for Union<D>
 where
     dyn Field<D>: EvaluatePoint<T, D>,
 {
-    fn distance(&self, p: &Vector<T, D>) -> T {
-        self.winner(p).0
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        self.winner(x, y, z).0
     }
 
     /// All values first, then the gradient of the one member that is smallest.
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
-        let (_, winner) = self.winner(p);
-        self.members[winner].field().distance_gradient(p, gradient)
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let (_, winner) = self.winner(x, y, z);
+        self.members[winner].field().distance_gradient(x, y, z, gradient)
     }
 }
 

@@ -94,17 +94,19 @@ where
     M: Warp<D, E>,
     dyn Field<E>: EvaluatePoint<T, E>,
 {
-    fn distance(&self, p: &Vector<T, D>) -> T {
-        let child: T = self.child.field().distance(&self.map.point(*p));
-        self.map.value(*p, child)
+    fn distance(&self, x: T, y: T, z: T) -> T {
+        let p = Vector::of_coordinates(x, y, z);
+        let (u, v, w) = self.map.point(p).coordinates();
+        self.map.value(p, self.child.field().distance(u, v, w))
     }
 
-    fn distance_gradient(&self, p: &Vector<T, D>, gradient: &mut Vector<T, D>) -> T {
+    fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        let p = Vector::of_coordinates(x, y, z);
+        let (u, v, w) = self.map.point(p).coordinates();
         let mut child_gradient = Vector([T::constant(0.0); E]);
-        let child =
-            self.child.field().distance_gradient(&self.map.point(*p), &mut child_gradient);
+        let child = self.child.field().distance_gradient(u, v, w, &mut child_gradient);
         let distance;
-        (distance, *gradient) = self.map.gradient(*p, child, child_gradient);
+        (distance, *gradient) = self.map.gradient(p, child, child_gradient);
         distance
     }
 }

@@ -125,6 +125,15 @@ impl<S: Lane, const W: usize> Column<S, W> {
     }
 }
 
+impl<const W: usize> Column<f32, W> {
+    /// The numbers written.
+    #[inline(always)]
+    pub(crate) fn as_slice(&self) -> &[f32] {
+        // SAFETY: the first `written` lanes are.
+        unsafe { self.lanes.as_slice(self.written) }
+    }
+}
+
 impl<S: Lane, const W: usize> Rows for Column<S, W> {
     type Item = S;
 

@@ -1,5 +1,6 @@
 //! Numbers in memory order, as many as a block has points.
 
+use std::fmt;
 use std::mem::MaybeUninit;
 
 use crate::kernel::Kernel;
@@ -18,6 +19,18 @@ pub struct ModelLanes<const W: usize> {
     gradient: [Lanes<f64, W>; 3],
     lower: Lanes<f64, W>,
     upper: Lanes<f64, W>,
+}
+
+impl<T: Copy, const W: usize> fmt::Debug for Lanes<T, W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Lanes<{W}>")
+    }
+}
+
+impl<const W: usize> fmt::Debug for ModelLanes<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "ModelLanes<{W}>")
+    }
 }
 
 /// A place for as many numbers as a block has points.
@@ -66,6 +79,20 @@ impl<T: Float, const W: usize> LaneArray<T> for Lanes<T, W> {
     #[inline(always)]
     fn write(&mut self, i: usize, number: T) {
         self.0[i].write(number);
+    }
+}
+
+impl<const W: usize> Lanes<f32, W> {
+    /// The first `written` lanes.
+    ///
+    /// # Safety
+    ///
+    /// Numbers must have been written to all of them.
+    #[inline(always)]
+    pub(super) unsafe fn as_slice(&self, written: usize) -> &[f32] {
+        // SAFETY: the caller promises that they are written, and a written
+        // `MaybeUninit<f32>` has the layout of an `f32`.
+        unsafe { self.0[..written].assume_init_ref() }
     }
 }
 

@@ -202,17 +202,21 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
         });
         let outside = sum.sqrt();
         let inverse = one / T::select_less(zero, outside, outside, one);
-        // Inside, the first face among those with the largest value decides.
-        let mut free = one;
-        let mut gradient = [zero; D];
+        // Outside, each face counts by its share; inside, the first face among
+        // those with the largest value decides.
+        let mut shares = [zero; D];
+        let mut nearest = q[0];
         unrolled!(i < N => {
-            let face = T::select_less(q[i].value, largest, zero, free);
-            free = free - face;
-            let weight = T::select_less(zero, outside, q[i].value.max(zero) * inverse, face);
-            unrolled!(k < D => gradient[k] = gradient[k] + weight * q[i].gradient[k]);
+            let share = q[i].value.max(zero) * inverse;
+            unrolled!(k < D => shares[k] = shares[k] + share * q[i].gradient[k]);
+            nearest = nearest.max(q[i]);
         });
-        debug_assert!(free <= zero, "some face has the largest value");
-        Self { value: outside + largest.min(zero), gradient }
+        Self {
+            value: outside + largest.min(zero),
+            gradient: array!(k < D => {
+                T::select_less(zero, outside, shares[k], nearest.gradient[k])
+            }),
+        }
     }
 
     #[inline(always)]

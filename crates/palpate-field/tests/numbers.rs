@@ -1,0 +1,147 @@
+//! Gradients, rounding and models, on every primitive and on random trees.
+
+use arbitrary::Unstructured;
+use palpate_field::{Point, Shape, Vector};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::kernels::Space;
+use palpate_testkit::laws::Cell;
+use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::{cases, laws};
+
+/// Deepest trees drawn.
+const DEEPEST: u64 = 6;
+
+/// Room for the length of a gradient that promises one, in ulp: 4 of the kernel,
+/// and 4 for each node that turns or scales it.
+const GRADIENT_ULP: f64 = 4.0;
+
+type Law<const D: usize> = fn(&mut Unstructured<'_>, &Tree<D>, &Shape<D>, Point<D>) -> Outcome;
+type Outcome = arbitrary::Result<Result<(), String>>;
+
+/// Checks a law at `points` points of each of `count` trees.
+fn on_trees<const D: usize>(count: u64, points: usize, law: Law<D>)
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let mut seed = 0;
+    cases::check(count, |u| {
+        let depth = 1 + seed % DEEPEST;
+        seed += 1;
+        let tree: Tree<D> = draw::tree(u, depth as usize)?;
+        let shape = match tree.shape() {
+            Ok(shape) => shape,
+            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
+        };
+        for _ in 0..points {
+            let p = draw::point(u, &shape)?;
+            if let Err(complaint) = law(u, &tree, &shape, p)? {
+                return Ok(Err(format!("{complaint}\n  {tree:?}")));
+            }
+        }
+        Ok(Ok(()))
+    });
+}
+
+fn bounded<const D: usize>(
+    _: &mut Unstructured<'_>,
+    tree: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome
+where
+    Space: Solid<D>,
+{
+    Ok(laws::gradient_is_bounded(shape, p, GRADIENT_ULP * tree.depth() as f64))
+}
+
+fn slope<const D: usize>(
+    _: &mut Unstructured<'_>,
+    _: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    Ok(laws::gradient_is_the_slope(shape, p))
+}
+
+fn rounding<const D: usize>(
+    _: &mut Unstructured<'_>,
+    tree: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome
+where
+    Space: Solid<D>,
+{
+    Ok(laws::rounding_holds(tree, shape, p))
+}
+
+/// Cells about a point, from a millionth of the scene to all of it, long and
+/// flat ones too.
+fn models<const D: usize>(
+    u: &mut Unstructured<'_>,
+    _: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    let size = draw::size(shape);
+    let mut cells = Vec::new();
+    for _ in 0..4 {
+        let largest = size * 10.0_f64.powf(draw::within(u, -6.0, 0.0)?);
+        let mut half = Vector::ZERO;
+        for h in &mut half.0 {
+            *h = match u.int_in_range(0..=7_u8)? {
+                0 => 0.0,
+                1 => largest,
+                _ => largest * draw::within(u, 0.02, 1.0)?,
+            };
+        }
+        // With the point at the centre, a corner or anywhere.
+        let mut centre = p;
+        let place = u.int_in_range(0..=2_u8)?;
+        for k in 0..D {
+            centre[k] += half[k]
+                * match place {
+                    0 => 0.0,
+                    1 => f64::from(u.int_in_range(-1..=1_i8)?),
+                    _ => draw::within(u, -1.0, 1.0)?,
+                };
+        }
+        cells.push(Cell { centre, half });
+    }
+    let mut samples = Vec::new();
+    for _ in 0..12 {
+        let mut sample = [0.0; D];
+        for x in &mut sample {
+            *x = if u.ratio(1_u8, 3_u8)? {
+                f64::from(u.int_in_range(-1..=1_i8)?)
+            } else {
+                draw::within(u, -1.0, 1.0)?
+            };
+        }
+        samples.push(sample);
+    }
+    Ok(laws::model_encloses(shape, &cells, &samples))
+}
+
+macro_rules! in_both_dimensions {
+    ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
+        $(mod $name {
+            #[test]
+            fn in_the_plane() {
+                super::on_trees::<2>($count, $points, super::$law);
+            }
+
+            #[test]
+            fn in_space() {
+                super::on_trees::<3>($count, $points, super::$law);
+            }
+        })*
+    };
+}
+
+in_both_dimensions! {
+    gradients_are_as_long_as_promised: bounded, 1800, 60;
+    gradients_are_slopes: slope, 1800, 60;
+    rounding_is_as_promised: rounding, 1200, 30;
+    models_enclose_their_samples: models, 1800, 24;
+}
