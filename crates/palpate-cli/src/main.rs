@@ -1,2 +1,42 @@
-//! The palpate program.
-fn main() {}
+//! The palpate program: signed distance functions that can be touched.
+
+mod arguments;
+mod check;
+mod eval;
+mod feel;
+mod hand_csv;
+mod input;
+mod outcome;
+mod picture;
+mod plot;
+mod schema;
+mod shapes;
+mod trace;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use outcome::Outcome;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command.unwrap_or_default() {
+        Command::Feel(options) => feel::run(&options),
+        Command::Eval(options) => eval::run(&options),
+        Command::Plot(options) => plot::run(&options),
+        Command::Check(options) => check::run(&options),
+        Command::Schema => schema::run(),
+        Command::Shapes(options) => shapes::run(&options),
+    };
+    match result {
+        Ok(Outcome::Yes) => ExitCode::SUCCESS,
+        Ok(Outcome::No) => ExitCode::from(1),
+        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("palpate: {failure}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::error::ShapeError;
-use crate::field::{Custom, CustomField, DifferentiateBlock, EvaluateBlock, Field, Leaf};
+use crate::field::{
+    Custom, CustomField, DifferentiateBlock, EvaluateBlock, Field, FromClosure, Leaf,
+};
 use crate::kernel::Kernel;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
 use crate::promise::Promise;
-use crate::scalar::Float;
+use crate::scalar::{Dual, Float};
 use crate::vector::{Point, Vector};
 
 /// The deepest nesting of operators, after nested unions are flattened.
@@ -31,6 +33,32 @@ impl<const D: usize> Shape<D> {
     /// A field that is no formula as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
         Self::from_node(Arc::new(Custom(field)))
+    }
+
+    /// A closure as a shape, with what it promises.
+    ///
+    /// The closure computes with [`Dual`] numbers, which give the gradient. For
+    /// speed write a [`Kernel`]: its blocks vectorise, and it bounds cells better
+    /// than by its Lipschitz constant.
+    ///
+    /// ```
+    /// use palpate_field::scalar::{Dual, Scalar};
+    /// use palpate_field::{Promise, Shape, Vector};
+    ///
+    /// // A wavy floor, at most √(1 + 0.2²) steep.
+    /// let promise = Promise::lipschitz(None, 1.02);
+    /// let floor = Shape::from_fn(promise, |Vector([x, y])| {
+    ///     y - x.scale(20.0).sin().scale(0.01)
+    /// });
+    /// let (distance, gradient) = floor.distance_gradient(Vector([0.0, 0.5]));
+    /// assert_eq!(distance, 0.5);
+    /// assert_eq!(gradient, Vector([-0.2, 1.0]));
+    /// ```
+    pub fn from_fn(
+        promise: Promise<D>,
+        closure: impl Fn(Vector<Dual<f64, D>, D>) -> Dual<f64, D> + Send + Sync + 'static,
+    ) -> Self {
+        Self::custom(FromClosure { closure, promise })
     }
 
     pub(crate) fn from_node(field: Arc<dyn Field<D>>) -> Self {
@@ -171,5 +199,40 @@ impl<const D: usize> Shape<D> {
         let promise = self.promise();
         let radius = promise.safe_radius(self.distance(p));
         (radius - promise.rounding.within(p.norm())).max(0.0)
+    }
+
+    /// A point of the surface near `p` [m]: the nearest one where the promise is
+    /// exact, else one close by.
+    ///
+    /// Newton's method along the gradient, which need not be of length one:
+    /// `p − f·∇f/|∇f|²`, until the distance is rounding. `None` if the gradient
+    /// vanishes on the way, or it takes more than 64 steps.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::Ball};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let ball = Shape::from_kernel(Ball::new(0.5)?);
+    /// assert_eq!(ball.surface_point(Vector([0.0, 2.0])), Some(Vector([0.0, 0.5])));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn surface_point(&self, p: Point<D>) -> Option<Point<D>> {
+        const MOST_STEPS: usize = 64;
+        const SMALLEST_SLOPE: f64 = 1e-6;
+        let mut p = p;
+        for _ in 0..MOST_STEPS {
+            let (distance, gradient) = self.distance_gradient(p);
+            if distance.abs() <= self.promise().rounding.within(p.norm()) {
+                return Some(p);
+            }
+            let steepness = gradient.dot(gradient);
+            if !(steepness >= SMALLEST_SLOPE * SMALLEST_SLOPE) {
+                return None;
+            }
+            p -= gradient * (distance / steepness);
+        }
+        None
     }
 }

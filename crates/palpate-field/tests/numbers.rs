@@ -123,6 +123,27 @@ fn models<const D: usize>(
     Ok(laws::model_encloses(shape, &cells, &samples))
 }
 
+fn tight<const D: usize>(
+    u: &mut Unstructured<'_>,
+    _: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    let half = Vector::constant(draw::size(shape) * 10.0_f64.powf(draw::within(u, -6.0, 0.0)?));
+    Ok(laws::convex_models_are_tight(shape, &[Cell { centre: p, half }]))
+}
+
+/// What the culling of unions relies on: single precision is off by at most its
+/// own rounding, 2²⁹ times that of double, of point and value.
+fn single<const D: usize>(
+    _: &mut Unstructured<'_>,
+    _: &Tree<D>,
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Outcome {
+    Ok(laws::single_precision_holds(shape, p))
+}
+
 macro_rules! in_both_dimensions {
     ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
         $(mod $name {
@@ -143,5 +164,7 @@ in_both_dimensions! {
     gradients_are_as_long_as_promised: bounded, 1800, 60;
     gradients_are_slopes: slope, 1800, 60;
     rounding_is_as_promised: rounding, 1200, 30;
+    single_precision_is_as_good_as_it_can_be: single, 1800, 60;
     models_enclose_their_samples: models, 1800, 24;
+    models_of_convex_fields_are_tight: tight, 1800, 24;
 }

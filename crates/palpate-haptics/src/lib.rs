@@ -1,1 +1,85 @@
-//! Under construction.
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Touching signed distance fields: the haptic proxy, its force and its servo loop.
+//!
+//! A [`Proxy`] follows a device point but cannot enter the shape; a [`Material`] turns the
+//! distance between the two into a force; a [`Servo`] does both for every contact point of a
+//! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
+//! counts, records and reports.
+//!
+//! Without hardware, a [`SimulatedDevice`] follows a [`HandPath`], recorded or made up by a
+//! [`Tour`] of the shape.
+//!
+//! # What is promised
+//!
+//! - *Nothing is crossed.* The proxy moves only where an evaluation and the field's Lipschitz
+//!   constant prove the way free, at any speed of the hand.
+//! - *The step is total.* [`Servo::step`] allocates nothing, takes no lock, does not panic and
+//!   evaluates the shape at most [`Probe::budget`] times a point. Out of budget, a proxy lags
+//!   behind; it never ends up inside.
+//! - *The force never pulls*, is finite, and no larger than the device's largest.
+//! - *No lengths are built in.* Every tolerance follows from the shape's size, the probe and the
+//!   motion, so scenes of a micrometre and of a kilometre feel alike.
+//!
+//! # Examples
+//!
+//! ```
+//! use palpate_field::{Shape, kernel::Ball};
+//! use palpate_haptics::{
+//!     Pace, RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
+//! let bounds = ball.promise().bounds.ok_or("a ball has bounds")?;
+//! let hand = Tour::new(bounds.aabb, 5.0)?.over(&ball)?;
+//! let mut device = SimulatedDevice::new(vec![hand])?;
+//! let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
+//!
+//! let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
+//! let report = run(&mut servo, &mut device, options)?;
+//! assert!(report.contact_time > 2.5 && report.largest_force < 1.0);
+//! assert!(report.evaluations.mean < 4.0);
+//! # Ok(())
+//! # }
+//! ```
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "units are written as [m], which rustdoc takes for links"
+)]
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
+mod clock;
+mod contact;
+mod device;
+mod error;
+mod half_spaces;
+mod hand_path;
+mod live;
+mod material;
+mod planes;
+mod proxy;
+mod recorder;
+mod report;
+mod run;
+mod sampler;
+mod servo;
+mod simulated;
+mod statistics;
+mod tour;
+
+pub use clock::{Clock, WallClock};
+pub use device::{Device, DeviceLimits, DeviceLost, PointState};
+pub use error::HapticsError;
+pub use hand_path::{HandPath, Interpolation};
+pub use live::Progress;
+pub use material::Material;
+pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
+pub use recorder::{Recorder, TraceRow};
+pub use report::{Ending, Evaluations, RunReport};
+pub use run::{Pace, RunOptions, Watch, run, run_on};
+pub use servo::{Servo, ServoOptions, Touch};
+pub use simulated::SimulatedDevice;
+pub use statistics::{Bucket, Distribution};
+pub use tour::Tour;

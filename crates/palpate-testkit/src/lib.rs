@@ -1,1 +1,17 @@
-//! Under construction.
+//! What the tests of palpate share.
+//!
+//! - [`arbitrary`]: trees and points, biased towards what breaks formulas;
+//! - [`tree`]: shapes as plain data, and their formulas written a second time;
+//! - [`double`]: numbers of twice the precision, to measure rounding with;
+//! - [`laws`]: what every field must obey;
+//! - [`oracle`]: distances from definitions, without any formula of the library;
+//! - [`cases`]: runs a property a fixed number of times.
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
+pub mod arbitrary;
+pub mod cases;
+pub mod double;
+pub mod kernels;
+pub mod laws;
+pub mod oracle;
+pub mod tree;

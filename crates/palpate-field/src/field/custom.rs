@@ -3,7 +3,7 @@
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model};
+use crate::scalar::{Dual, Float, Model};
 use crate::vector::{Point, Vector};
 
 /// A field that a user evaluates point by point in double precision.
@@ -45,6 +45,36 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
 
     /// What the values promise.
     fn promise(&self) -> &Promise<D>;
+}
+
+/// A closure over duals, which give its gradient without differences.
+pub(crate) struct FromClosure<F, const D: usize> {
+    pub(crate) closure: F,
+    pub(crate) promise: Promise<D>,
+}
+
+impl<F, const D: usize> std::fmt::Debug for FromClosure<F, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FromClosure").field("promise", &self.promise).finish_non_exhaustive()
+    }
+}
+
+impl<F, const D: usize> CustomField<D> for FromClosure<F, D>
+where
+    F: Fn(Vector<Dual<f64, D>, D>) -> Dual<f64, D> + Send + Sync + 'static,
+{
+    fn distance(&self, p: Point<D>) -> f64 {
+        (self.closure)(Vector(Dual::variables(p.0))).value
+    }
+
+    fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let result = (self.closure)(Vector(Dual::variables(p.0)));
+        (result.value, Vector(result.gradient))
+    }
+
+    fn promise(&self) -> &Promise<D> {
+        &self.promise
+    }
 }
 
 /// A [`CustomField`] as a node: its blocks are loops over points.

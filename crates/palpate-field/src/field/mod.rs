@@ -22,8 +22,8 @@ use crate::shape::Shape;
 use crate::vector::Vector;
 
 pub(crate) use combine::{Combine, Combined};
-pub(crate) use custom::Custom;
 pub use custom::CustomField;
+pub(crate) use custom::{Custom, FromClosure};
 pub(crate) use leaf::Leaf;
 pub use leaf::Placement;
 pub(crate) use remap::{Remap, Remapped};

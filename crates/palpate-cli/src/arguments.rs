@@ -1,0 +1,211 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+const EXAMPLES: &str = "\
+Examples:
+  palpate                                  feel the built-in gallery for 10 s
+  palpate feel scenes/cup.json --plot cup.png
+  palpate eval scenes/s3.json --at 0.1,0.5,-0.2
+  palpate eval scenes/s3.json --points points.csv > distances.csv
+  palpate plot scenes/memoir_star.json --output star.svg
+  palpate check scenes/cup.json --json
+
+Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input is bad.";
+
+/// Signed distance functions that can be touched.
+#[derive(Debug, Parser)]
+#[command(name = "palpate", version, after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Feel a scene with a simulated hand in a servo loop, and report (the default).
+    #[command(after_help = "\
+Examples:
+  palpate feel
+  palpate feel scenes/cup.json --duration 5 --trace touch.csv --plot touch.png
+  palpate feel scenes/cup.json --path hand.csv --rate 2000
+  palpate feel --contacts 10 --fast --json")]
+    Feel(FeelOptions),
+    /// Distance, gradient and nearest surface point, at one point or many.
+    #[command(after_help = "\
+Examples:
+  palpate eval scenes/s3.json --at 0.1,0.5,-0.2
+  palpate eval scenes/memoir_star.json --at 0.3,0 --json
+  palpate eval scenes/s3.json --points points.csv --output distances.csv
+
+The points file has the header x_m,y_m,z_m (x_m,y_m in 2D).")]
+    Eval(EvalOptions),
+    /// Draw the isolines of a scene on a plane, as SVG or PNG.
+    #[command(after_help = "\
+Examples:
+  palpate plot scenes/memoir_star.json
+  palpate plot scenes/s3.json --plane xz --at 0.1 --output s3.png
+  palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05")]
+    Plot(PlotOptions),
+    /// Check a scene file; status 1 and the place if something is wrong.
+    #[command(
+        after_help = "Examples:\n  palpate check scenes/cup.json\n  palpate check scenes/cup.json --json"
+    )]
+    Check(CheckOptions),
+    /// Print the JSON schema of scene files.
+    #[command(after_help = "Examples:\n  palpate schema > scene.schema.json")]
+    Schema,
+    /// List the primitives: parameters, units, promises, how they bound cells.
+    #[command(after_help = "Examples:\n  palpate shapes\n  palpate shapes --json")]
+    Shapes(ShapesOptions),
+}
+
+impl Default for Command {
+    /// What `palpate` alone does: `palpate feel` with its defaults.
+    fn default() -> Self {
+        Self::Feel(FeelOptions::parse_from_nothing())
+    }
+}
+
+/// What is felt, and how.
+#[derive(Args, Debug)]
+pub(crate) struct FeelOptions {
+    /// The scene file; the built-in gallery if left out.
+    pub(crate) scene: Option<PathBuf>,
+    /// Ticks a second [Hz].
+    #[arg(long, default_value_t = 1000.0)]
+    pub(crate) rate: f64,
+    /// How long to feel [s]; 10 s, or as long as the hand path.
+    #[arg(long)]
+    pub(crate) duration: Option<f64>,
+    /// The hand's path: time_s,x_m,y_m[,z_m] and perhaps point; a built-in one over
+    /// the surfaces if left out.
+    #[arg(long, value_name = "CSV")]
+    pub(crate) path: Option<PathBuf>,
+    /// How many contact points the built-in hand has.
+    #[arg(long, default_value_t = 1, conflicts_with = "path")]
+    pub(crate) contacts: usize,
+    /// Stiffness of the surface [N/m].
+    #[arg(long)]
+    pub(crate) stiffness: Option<f64>,
+    /// Damping of the surface [N·s/m].
+    #[arg(long)]
+    pub(crate) damping: Option<f64>,
+    /// The largest force on a contact point [N].
+    #[arg(long, default_value_t = 3.3)]
+    pub(crate) max_force: f64,
+    /// Radius of the ball that touches [m].
+    #[arg(long)]
+    pub(crate) radius: Option<f64>,
+    /// One tick after the other, without waiting for the clock.
+    #[arg(long)]
+    pub(crate) fast: bool,
+    /// Write every tick to a CSV file.
+    #[arg(long, value_name = "CSV")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Draw the path, the proxy and the force over the isolines: .svg or .png.
+    #[arg(long, value_name = "PICTURE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print the report as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl FeelOptions {
+    /// The options of an empty command line.
+    fn parse_from_nothing() -> Self {
+        #[derive(Parser)]
+        struct Nothing {
+            #[command(flatten)]
+            options: FeelOptions,
+        }
+        Nothing::parse_from(["palpate"]).options
+    }
+}
+
+/// What is asked, and where.
+#[derive(Args, Debug)]
+pub(crate) struct EvalOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// One point, its coordinates joined by commas [m].
+    #[arg(
+        long,
+        value_name = "X,Y[,Z]",
+        required_unless_present = "points",
+        allow_hyphen_values = true
+    )]
+    pub(crate) at: Option<String>,
+    /// Many points, from a CSV file.
+    #[arg(long, value_name = "CSV", conflicts_with = "at")]
+    pub(crate) points: Option<PathBuf>,
+    /// Where the answers for many points go; standard output if left out.
+    #[arg(long, value_name = "FILE", requires = "points")]
+    pub(crate) output: Option<PathBuf>,
+    /// Threads that evaluate; as many as the machine has if left out. The answers
+    /// have the same bits for any number.
+    #[arg(long, requires = "points")]
+    pub(crate) threads: Option<usize>,
+    /// Print JSON: one object, or one a line.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What is drawn.
+#[derive(Args, Debug)]
+pub(crate) struct PlotOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// The plane in space: xy, xz, yz, or three points as origin:right:up, each
+    /// x,y,z.
+    #[arg(long, default_value = "xy", allow_hyphen_values = true)]
+    pub(crate) plane: String,
+    /// The third coordinate of a plane along two axes [m].
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) at: Option<f64>,
+    /// The distance between isolines [m].
+    #[arg(long)]
+    pub(crate) step: Option<f64>,
+    /// The picture: .svg or .png; the scene's name with .svg if left out.
+    #[arg(long)]
+    pub(crate) output: Option<PathBuf>,
+    /// The width of a PNG [pixels].
+    #[arg(long, default_value_t = 1200)]
+    pub(crate) width: u32,
+    /// Print what was drawn as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What is checked.
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Which primitives are listed.
+#[derive(Args, Debug)]
+pub(crate) struct ShapesOptions {
+    /// Those of one dimension alone.
+    #[arg(long, value_enum)]
+    pub(crate) dimension: Option<Dimension>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Dimension {
+    /// The plane.
+    #[value(name = "2")]
+    Two,
+    /// Space.
+    #[value(name = "3")]
+    Three,
+}

@@ -1,0 +1,77 @@
+//! `palpate check`: is a scene file good?
+
+use std::io::Write;
+
+use palpate::field::Shape;
+use palpate::scene::{Scene, World};
+use serde_json::{Value, json};
+
+use crate::arguments::CheckOptions;
+use crate::input::promise_in_words;
+use crate::outcome::{Failure, Outcome};
+
+pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
+    let text = std::fs::read_to_string(&options.scene)
+        .map_err(|error| Failure::file(&options.scene, error))?;
+    let mut out = std::io::stdout().lock();
+    let name = options.scene.display();
+    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+        Err(error) => {
+            if options.json {
+                let answer = json!({
+                    "ok": false,
+                    "path": error.path,
+                    "line": error.line,
+                    "column": error.column,
+                    "problem": error.problem,
+                });
+                writeln!(out, "{answer:#}")?;
+            } else {
+                writeln!(out, "{name}: {error}")?;
+            }
+            Ok(Outcome::No)
+        }
+        Ok(world) => {
+            let (dimension, bodies) = match &world {
+                World::Planar(scene) => (2, described(&scene.bodies)),
+                World::Spatial(scene) => (3, described(&scene.bodies)),
+            };
+            if options.json {
+                let answer = json!({ "ok": true, "dimension": dimension, "bodies": bodies });
+                writeln!(out, "{answer:#}")?;
+            } else {
+                writeln!(out, "{name}: good, {dimension}D, {} bodies", bodies.len())?;
+                for body in &bodies {
+                    let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
+                    writeln!(out, "  {}: {}", text("name"), text("promise"))?;
+                }
+            }
+            Ok(Outcome::Yes)
+        }
+    }
+}
+
+fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Value> {
+    bodies
+        .iter()
+        .map(|body| {
+            json!({
+                "name": body.name,
+                "promise": promise_in_words(body.shape.promise()),
+                "lipschitz": body.shape.promise().lipschitz,
+                "bounds": bounds(&body.shape),
+                "depth": body.shape.depth(),
+            })
+        })
+        .collect()
+}
+
+fn bounds<const D: usize>(shape: &Shape<D>) -> Value {
+    match shape.promise().bounds {
+        None => Value::Null,
+        Some(bounds) => json!({
+            "min_m": bounds.aabb.min.0.to_vec(),
+            "max_m": bounds.aabb.max.0.to_vec(),
+        }),
+    }
+}

@@ -1,0 +1,54 @@
+//! `palpate eval`: what a scene says at points.
+
+mod answer;
+mod stream;
+
+use std::io::Write;
+
+use palpate::scene::{BuiltScene, World};
+
+use crate::arguments::EvalOptions;
+use crate::input::{self, promise_in_words};
+use crate::outcome::{Failure, Outcome};
+use answer::Answer;
+
+pub(crate) fn run(options: &EvalOptions) -> Result<Outcome, Failure> {
+    match &input::scene(Some(&options.scene))?.world {
+        World::Planar(scene) => evaluate(scene, options),
+        World::Spatial(scene) => evaluate(scene, options),
+    }
+}
+
+fn evaluate<const D: usize>(
+    scene: &BuiltScene<D>,
+    options: &EvalOptions,
+) -> Result<Outcome, Failure> {
+    if let Some(points) = &options.points {
+        return stream::run(&scene.whole, points, options);
+    }
+    let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
+    let answer = Answer::at(&scene.whole, point);
+    let mut out = std::io::stdout().lock();
+    let promise = promise_in_words(scene.whole.promise());
+    if options.json {
+        let mut object = answer.to_json();
+        object["promise"] = promise.into();
+        object["lipschitz"] = scene.whole.promise().lipschitz.into();
+        writeln!(out, "{object:#}")?;
+    } else {
+        writeln!(out, "distance       {} m", answer.distance)?;
+        writeln!(out, "gradient       {}", joined(&answer.gradient.0))?;
+        match answer.surface {
+            Some(surface) => writeln!(out, "surface point  {} m", joined(&surface.0))?,
+            None => writeln!(out, "surface point  none found from here")?,
+        }
+        writeln!(out, "inside         {}", if answer.inside { "yes" } else { "no" })?;
+        writeln!(out, "safe radius    {} m", answer.safe_radius)?;
+        writeln!(out, "promise        {promise}")?;
+    }
+    Ok(Outcome::Yes)
+}
+
+fn joined(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,123 @@
+//! Many points from a file, in bounded memory and on all cores.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use csv::StringRecord;
+use indicatif::{ProgressBar, ProgressStyle};
+use palpate::field::{BLOCK, Block, Gradients, Point, Shape, Vector};
+use rayon::prelude::*;
+
+use super::answer::Answer;
+use crate::arguments::EvalOptions;
+use crate::hand_csv::columns;
+use crate::outcome::{Failure, Outcome};
+
+/// Points read before they are evaluated: enough to keep all cores busy, few
+/// enough to stay in their caches.
+const BATCH: usize = 64 * 1024;
+
+pub(crate) fn run<const D: usize>(
+    shape: &Shape<D>,
+    points: &Path,
+    options: &EvalOptions,
+) -> Result<Outcome, Failure> {
+    let threads = options.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(Failure::input)?;
+    match &options.output {
+        None => {
+            let out = io::stdout().lock();
+            evaluate(shape, points, (options.json, &pool), BufWriter::new(out))?;
+        }
+        Some(path) => {
+            let file = File::create(path).map_err(|error| Failure::file(path, error))?;
+            evaluate(shape, points, (options.json, &pool), BufWriter::new(file))?;
+        }
+    }
+    Ok(Outcome::Yes)
+}
+
+fn evaluate<const D: usize>(
+    shape: &Shape<D>,
+    path: &Path,
+    (as_json, pool): (bool, &rayon::ThreadPool),
+    mut out: impl Write,
+) -> Result<(), Failure> {
+    let file = File::open(path).map_err(|error| Failure::file(path, error))?;
+    let size = file.metadata().map(|m| m.len()).unwrap_or(0);
+    // Shown on a terminal alone; hidden where standard error is a file.
+    let bar = ProgressBar::new(size).with_style(
+        ProgressStyle::with_template("{bar:40} {percent} % of {total_bytes}, {eta} left")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let header = reader.headers().map_err(|error| Failure::file(path, error))?;
+    let columns = columns::<D>(header, "").map_err(|problem| Failure::file(path, problem))?;
+    if !as_json {
+        writeln!(out, "{}", Answer::<D>::header().join(","))?;
+    }
+    let mut record = StringRecord::new();
+    let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
+    loop {
+        batch.clear();
+        while batch.len() < BATCH
+            && reader.read_record(&mut record).map_err(|error| Failure::file(path, error))?
+        {
+            let line = record.position().map_or(0, csv::Position::line);
+            let point = columns.map(|column| number(&record, column));
+            match point.iter().position(Option::is_none) {
+                None => batch.push(Vector(point.map(Option::unwrap_or_default))),
+                Some(axis) => {
+                    let field = record.get(columns[axis]).unwrap_or_default();
+                    let problem =
+                        format!("line {line}: a finite number is needed, got {field:?}");
+                    return Err(Failure::file(path, problem));
+                }
+            }
+        }
+        if batch.is_empty() {
+            break;
+        }
+        let texts: Vec<String> = pool.install(|| {
+            batch.par_chunks(BLOCK).map(|points| answers(shape, points, as_json)).collect()
+        });
+        for text in texts {
+            out.write_all(text.as_bytes())?;
+        }
+        bar.set_position(reader.position().byte());
+    }
+    bar.finish_and_clear();
+    out.flush()?;
+    Ok(())
+}
+
+/// A finite number of at most the size that shapes are made for.
+fn number(record: &StringRecord, column: usize) -> Option<f64> {
+    let number: f64 = record.get(column)?.parse().ok()?;
+    (number.abs() <= palpate::field::LARGEST_LENGTH).then_some(number)
+}
+
+/// The lines for up to a block of points. What a point's line says depends on the
+/// point alone, so any number of threads writes the same bytes.
+fn answers<const D: usize>(shape: &Shape<D>, points: &[Point<D>], as_json: bool) -> String {
+    let mut block = Block::<f64, D, BLOCK>::zero();
+    let mut found = Gradients::<f64, D, BLOCK>::zero();
+    for (i, point) in points.iter().enumerate() {
+        block.set(i, *point);
+    }
+    shape.block_gradients(&block, points.len(), &mut found);
+    let mut text = String::new();
+    for (i, point) in points.iter().enumerate() {
+        let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
+        let answer = Answer::of(shape, *point, distance, gradient);
+        if as_json {
+            text.push_str(&answer.to_json().to_string());
+        } else {
+            text.push_str(&answer.row().join(","));
+        }
+        text.push('\n');
+    }
+    text
+}

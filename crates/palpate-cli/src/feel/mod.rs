@@ -1,0 +1,135 @@
+//! `palpate feel`: a servo, a simulated hand, and a report.
+
+mod figure;
+mod report;
+
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+use palpate::haptics::{
+    Ending, HandPath, HapticsError, Interpolation, Material, Pace, Probe, Progress, Recorder,
+    RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run as run_servo,
+};
+use palpate::scene::{BuiltScene, World};
+
+use crate::arguments::FeelOptions;
+use crate::input;
+use crate::outcome::{Failure, Outcome};
+use crate::picture::{Dimensions, Drawable};
+use crate::{hand_csv, trace};
+
+/// How long a scene is felt if no path and no duration say otherwise [s].
+const DURATION: f64 = 10.0;
+
+/// How far behind each other the contact points of the built-in hand go [s].
+const LAG: f64 = 0.5;
+
+/// The longest run of which every tick is kept: an hour at 1 kHz. Each takes about
+/// 150 bytes.
+const MOST_ROWS: f64 = 3.6e6;
+
+/// How often the live line is renewed.
+const LIVE_EVERY: Duration = Duration::from_millis(100);
+
+pub(crate) fn run(options: &FeelOptions) -> Result<Outcome, Failure> {
+    let named = input::scene(options.scene.as_deref())?;
+    match &named.world {
+        World::Planar(scene) => feel(&named.name, scene, options),
+        World::Spatial(scene) => feel(&named.name, scene, options),
+    }
+}
+
+fn feel<const D: usize>(
+    name: &str,
+    scene: &BuiltScene<D>,
+    options: &FeelOptions,
+) -> Result<Outcome, Failure>
+where
+    Dimensions: Drawable<D>,
+{
+    let servo_options = servo_options(options).map_err(Failure::input)?;
+    let paths = paths(scene, options, &servo_options)?;
+    let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
+    let duration = options.duration.unwrap_or(longest);
+    let contacts = paths.len();
+    let mut device = SimulatedDevice::new(paths).map_err(Failure::input)?;
+    let mut servo =
+        Servo::new(scene.whole.clone(), contacts, servo_options).map_err(Failure::input)?;
+
+    let keeps_rows = options.trace.is_some() || options.plot.is_some();
+    let rows = duration * options.rate * contacts as f64;
+    if keeps_rows && rows > MOST_ROWS {
+        let problem = format!("--trace and --plot keep {MOST_ROWS} rows at most, not {rows}");
+        return Err(Failure::input(problem));
+    }
+    let mut recorder =
+        Recorder::new(if keeps_rows { rows.max(0.0).ceil() as usize } else { 0 });
+    let shows_line = std::io::stderr().is_terminal();
+    let mut show = |progress: &Progress| {
+        // A line that cannot be shown is not missed.
+        let _ = write!(std::io::stderr(), "\r{}\x1b[K", report::live_line(progress));
+    };
+    let run_options = RunOptions {
+        duration,
+        pace: if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime },
+        recorder: keeps_rows.then_some(&mut recorder),
+        watch: if shows_line { Some((LIVE_EVERY, &mut show)) } else { None },
+    };
+    let outcome = run_servo(&mut servo, &mut device, run_options).map_err(Failure::input)?;
+    if shows_line {
+        eprintln!();
+    }
+
+    if let Some(path) = &options.trace {
+        trace::write(&recorder, path)?;
+    }
+    if let Some(path) = &options.plot {
+        figure::draw(scene, &recorder, &report::title(name, &outcome), path)?;
+    }
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        writeln!(out, "{}", serde_json::to_string_pretty(&outcome)?)?;
+    } else {
+        write!(out, "{}", report::text(name, &outcome, servo.options()))?;
+    }
+    Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
+}
+
+fn servo_options(options: &FeelOptions) -> Result<ServoOptions, HapticsError> {
+    let default = ServoOptions::default();
+    let stiffness = options.stiffness.unwrap_or(default.material.stiffness());
+    let damping = options.damping.unwrap_or(default.material.damping());
+    Ok(ServoOptions {
+        rate: options.rate,
+        material: Material::new(stiffness, damping)?,
+        probe: Probe::new(options.radius.unwrap_or(default.probe.radius()))?,
+        max_force: options.max_force,
+        ..default
+    })
+}
+
+/// The paths of the contact points: from the file, or tours of the scene one
+/// behind the other.
+fn paths<const D: usize>(
+    scene: &BuiltScene<D>,
+    options: &FeelOptions,
+    servo: &ServoOptions,
+) -> Result<Vec<HandPath<D>>, Failure> {
+    if let Some(path) = &options.path {
+        return hand_csv::read(path);
+    }
+    let duration = options.duration.unwrap_or(DURATION);
+    let lag = LAG * options.contacts.saturating_sub(1) as f64;
+    let tour = Tour::new(input::bounds(scene)?, duration + lag)
+        .and_then(|tour| tour.with_probe_radius(servo.probe.radius()))
+        .and_then(|tour| tour.over(&scene.whole))
+        .map_err(Failure::input)?;
+    (0..options.contacts)
+        .map(|contact| {
+            let ahead = LAG * contact as f64;
+            let times = tour.times().iter().map(|time| time - ahead).collect();
+            HandPath::new(times, tour.positions().to_vec(), Interpolation::Smooth)
+        })
+        .map(|path| path.map_err(Failure::input))
+        .collect()
+}

@@ -1,0 +1,71 @@
+//! Reading scenes and points.
+
+use std::path::Path;
+
+use palpate::field::{Aabb, Promise, Quality, Vector};
+use palpate::scene::{BuiltScene, Scene, World};
+
+use crate::outcome::Failure;
+
+/// The scene that is felt if none is named.
+const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
+
+/// A scene with the name it goes by in reports.
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) world: World,
+}
+
+/// Reads and builds the scene in `path`, or the built-in gallery.
+pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
+    let (name, scene) = match path {
+        None => ("the built-in gallery".to_owned(), Scene::from_json(GALLERY)),
+        Some(path) => (path.display().to_string(), Scene::from_file(path)),
+    };
+    let world = scene.and_then(|scene| scene.build());
+    match world {
+        Ok(world) => Ok(Named { name, world }),
+        Err(error) => Err(Failure::input(format!("{name}: {error}"))),
+    }
+}
+
+/// The point that `text` names: as many numbers as dimensions, joined by commas.
+pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failure> {
+    let wrong =
+        || Failure::input(format!("a point needs {D} numbers joined by commas, got {text:?}"));
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|number| number.trim().parse().map_err(|_| wrong()))
+        .collect::<Result<_, _>>()?;
+    let numbers: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
+    let point = Vector(numbers);
+    if point.is_finite() { Ok(point) } else { Err(wrong()) }
+}
+
+/// The box around all bounded bodies of a scene.
+pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
+    scene
+        .bodies
+        .iter()
+        .filter_map(|body| body.shape.promise().bounds)
+        .map(|bounds| bounds.aabb)
+        .reduce(|a, b| a.union(&b))
+        .ok_or_else(|| Failure::input("no body of the scene has bounds"))
+}
+
+/// A promise in a few words: "exact outside, bound inside".
+pub(crate) fn promise_in_words<const D: usize>(promise: &Promise<D>) -> String {
+    let outside = quality_in_words(promise.outside);
+    if !promise.has_interior {
+        return format!("{outside} outside, no inside");
+    }
+    format!("{outside} outside, {} inside", quality_in_words(promise.inside))
+}
+
+pub(crate) fn quality_in_words(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Exact => "exact",
+        Quality::Bound => "bound",
+        Quality::Lipschitz => "Lipschitz",
+    }
+}

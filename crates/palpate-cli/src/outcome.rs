@@ -1,0 +1,60 @@
+//! How a command ends: yes, no, or not at all.
+
+use std::fmt;
+use std::io;
+
+/// What a command answers: exit status 0 or 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Done; the answer is yes.
+    Yes,
+    /// Done; the answer is no.
+    No,
+}
+
+/// Why a command could not answer: exit status 2.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// What was wrong with the input, in a sentence.
+    Input(String),
+    /// Writing the answer failed.
+    Output(io::Error),
+}
+
+impl Failure {
+    /// What was wrong with the input.
+    pub(crate) fn input(problem: impl fmt::Display) -> Self {
+        Self::Input(problem.to_string())
+    }
+
+    /// `path` could not be read or written.
+    pub(crate) fn file(path: &std::path::Path, error: impl fmt::Display) -> Self {
+        Self::Input(format!("{}: {error}", path.display()))
+    }
+
+    /// `true` if whoever reads the output has stopped, as `head` does: no error.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(problem) => f.write_str(problem),
+            Self::Output(error) => write!(f, "the output cannot be written: {error}"),
+        }
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Output(error.into())
+    }
+}

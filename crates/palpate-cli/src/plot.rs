@@ -1,0 +1,101 @@
+//! `palpate plot`: isolines on a plane.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use palpate::field::{Aabb, Vector};
+use palpate::plot::{Figure, Slice};
+use palpate::scene::{BuiltScene, World};
+use serde_json::json;
+
+use crate::arguments::PlotOptions;
+use crate::input::{self, promise_in_words};
+use crate::outcome::{Failure, Outcome};
+use crate::picture::{self, Dimensions, Drawable};
+
+pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
+    let named = input::scene(Some(&options.scene))?;
+    match &named.world {
+        World::Planar(scene) => {
+            let bounds = window(scene)?;
+            draw(options, scene, &bounds, &Slice::planar())
+        }
+        World::Spatial(scene) => {
+            let bounds = window(scene)?;
+            draw(options, scene, &bounds, &plane(options, &bounds)?)
+        }
+    }
+}
+
+/// What the picture shows: the scene's box, or a metre about the origin if no body
+/// has bounds.
+fn window<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
+    Ok(input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5))))
+}
+
+fn draw<const D: usize>(
+    options: &PlotOptions,
+    scene: &BuiltScene<D>,
+    bounds: &Aabb<D>,
+    plane: &Slice,
+) -> Result<Outcome, Failure>
+where
+    Dimensions: Drawable<D>,
+{
+    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
+    let mut isolines = picture::isolines(&scene.whole, plane, &view).map_err(Failure::input)?;
+    if let Some(step) = options.step {
+        isolines = isolines.with_step(step).map_err(Failure::input)?;
+    }
+    let (step, range) = (isolines.step(), isolines.range());
+    let output = output(options);
+    let figure = Figure::new(title(&options.scene))
+        .with_caption(promise_in_words(scene.whole.promise()))
+        .with_isolines(isolines);
+    picture::save(&figure, &output, options.width)?;
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        let answer = json!({
+            "output": output,
+            "step_m": step,
+            "smallest_m": range.0,
+            "largest_m": range.1,
+        });
+        writeln!(out, "{answer:#}")?;
+    } else {
+        writeln!(out, "{}: isolines every {step} m", output.display())?;
+    }
+    Ok(Outcome::Yes)
+}
+
+fn output(options: &PlotOptions) -> PathBuf {
+    options.output.clone().unwrap_or_else(|| {
+        let stem = options.scene.file_stem().unwrap_or_default();
+        PathBuf::from(stem).with_extension("svg")
+    })
+}
+
+/// The scene's name as a title.
+pub(crate) fn title(scene: &Path) -> String {
+    scene.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ")
+}
+
+fn plane(options: &PlotOptions, bounds: &Aabb<3>) -> Result<Slice, Failure> {
+    let middle = bounds.centre();
+    let at = |axis: usize| options.at.unwrap_or(middle[axis]);
+    match options.plane.as_str() {
+        "xy" => Slice::xy(at(2)),
+        "xz" => Slice::xz(at(1)),
+        "yz" => Slice::yz(at(0)),
+        free => {
+            let points: Vec<_> =
+                free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
+            let [origin, right, up] = points.try_into().map_err(|_| {
+                let rule = "xy, xz, yz, or origin:right:up with three numbers each";
+                Failure::input(format!("a plane is {rule}, got {free:?}"))
+            })?;
+            Slice::free(origin.0, right.0, up.0)
+        }
+    }
+    .map_err(Failure::input)
+}

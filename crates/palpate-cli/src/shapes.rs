@@ -1,0 +1,87 @@
+//! `palpate shapes`: the catalogue of primitives.
+
+use std::io::Write;
+
+use palpate::field::kernel::{Entry, ModelRule, Parameter, ParameterKind};
+use palpate::field::{Promise, Unit};
+use serde_json::{Value, json};
+
+use crate::arguments::{Dimension, ShapesOptions};
+use crate::input::{promise_in_words, quality_in_words};
+use crate::outcome::{Failure, Outcome};
+
+pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
+    let mut rows = Vec::new();
+    if options.dimension != Some(Dimension::Three) {
+        rows.extend(list(Entry::<2>::ALL)?);
+    }
+    if options.dimension != Some(Dimension::Two) {
+        rows.extend(list(Entry::<3>::ALL)?);
+    }
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        writeln!(out, "{:#}", Value::Array(rows))?;
+        return Ok(Outcome::Yes);
+    }
+    for row in &rows {
+        let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
+        writeln!(out, "{} ({}D): {}", text("name"), row["dimension"], text("about"))?;
+        for parameter in row["parameters"].as_array().into_iter().flatten() {
+            let text = |key: &str| parameter[key].as_str().unwrap_or_default().to_owned();
+            let unit = match text("unit").as_str() {
+                "" => String::new(),
+                unit => format!(" [{unit}]"),
+            };
+            writeln!(out, "    {}{unit}: {}", text("key"), text("about"))?;
+        }
+        writeln!(out, "    promise: {}; cells: {}", text("promise"), text("model"))?;
+    }
+    writeln!(out, "{} primitives", rows.len())?;
+    Ok(Outcome::Yes)
+}
+
+fn list<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Value>, Failure> {
+    entries.iter().map(described).collect()
+}
+
+fn described<const D: usize>(entry: &Entry<D>) -> Result<Value, Failure> {
+    let example = entry.example().map_err(Failure::input)?;
+    let promise: &Promise<D> = example.promise();
+    Ok(json!({
+        "name": entry.name,
+        "dimension": D,
+        "about": entry.about,
+        "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
+        "promise": promise_in_words(promise),
+        "outside": quality_in_words(promise.outside),
+        "inside": quality_in_words(promise.inside),
+        "lipschitz": promise.lipschitz,
+        "convex": promise.convex,
+        "bounded": promise.bounds.is_some(),
+        "model": model_in_words(entry.model),
+    }))
+}
+
+/// A parameter as scene files write it: angles in degrees, with a key that says
+/// so.
+fn parameter(parameter: &Parameter) -> Value {
+    let is_angle = parameter.kind == ParameterKind::Angle;
+    let key = if is_angle {
+        format!("{}_degrees", parameter.name)
+    } else {
+        parameter.name.to_owned()
+    };
+    let unit = match parameter.kind.unit() {
+        Unit::Radian => "degrees",
+        unit => unit.symbol(),
+    };
+    json!({ "key": key, "unit": unit, "about": parameter.about })
+}
+
+fn model_in_words(rule: ModelRule) -> &'static str {
+    match rule {
+        ModelRule::ClosedForm => "closed form",
+        ModelRule::Tangent => "exact rule (tangent plane)",
+        ModelRule::Lipschitz => "default (Lipschitz)",
+    }
+}

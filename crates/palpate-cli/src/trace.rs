@@ -1,0 +1,52 @@
+//! The trace of a run: every tick as a row. The columns are documented in
+//! `docs/formats.md`.
+
+use std::fs::File;
+use std::path::Path;
+
+use palpate::field::Vector;
+use palpate::haptics::{Recorder, TraceRow};
+
+use crate::outcome::Failure;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The names of the columns.
+pub(crate) fn header<const D: usize>() -> Vec<String> {
+    let mut names = vec!["time_s".to_owned(), "point".to_owned()];
+    let vectors = [("device", "_m"), ("proxy", "_m"), ("force", "_n"), ("normal", "")];
+    for (vector, unit) in vectors {
+        names.extend(AXES[..D].iter().map(|axis| format!("{vector}_{axis}{unit}")));
+    }
+    names.extend(["contact", "evaluations", "cost_ns", "lateness_ns"].map(str::to_owned));
+    names
+}
+
+fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
+    let mut fields = vec![row.time_s.to_string(), row.point.to_string()];
+    for Vector(components) in [row.device, row.proxy, row.force, row.normal] {
+        fields.extend(components.iter().map(f64::to_string));
+    }
+    fields.push(row.contact.to_string());
+    fields.extend([
+        row.evaluations.to_string(),
+        row.cost_ns.to_string(),
+        row.lateness_ns.to_string(),
+    ]);
+    fields
+}
+
+/// Writes all rows of `recorder` to `path`.
+pub(crate) fn write<const D: usize>(
+    recorder: &Recorder<D>,
+    path: &Path,
+) -> Result<(), Failure> {
+    let wrong = |error: csv::Error| Failure::file(path, error);
+    let file = File::create(path).map_err(|error| Failure::file(path, error))?;
+    let mut writer = csv::Writer::from_writer(file);
+    writer.write_record(header::<D>()).map_err(wrong)?;
+    for row in recorder.rows() {
+        writer.write_record(fields(row)).map_err(wrong)?;
+    }
+    writer.flush().map_err(|error| Failure::file(path, error))
+}

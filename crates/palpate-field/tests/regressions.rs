@@ -1,0 +1,196 @@
+//! The smallest case of each bug that a law or an oracle found.
+
+use palpate_field::kernel::{
+    Ball, CoolS, CylinderApproximation, Ellipsoid, HexagonalPrism, Octahedron, Polygon, Pyramid,
+    RegularPolygon, Simplex,
+};
+use palpate_field::scalar::Model;
+use palpate_field::{
+    BLOCK, Block, Column, Kernel, Point, Shape, ShapeError, Vector,
+};
+
+type Outcome = Result<(), ShapeError>;
+
+fn steepest<const D: usize>(shape: &Shape<D>, p: Point<D>) -> f64 {
+    shape.distance_gradient(p).1.norm()
+}
+
+/// The model of one cell.
+fn model<const D: usize>(shape: &Shape<D>, centre: Point<D>, half: [f64; D]) -> Model {
+    let mut cells = Block::<Model, D, BLOCK>::zero();
+    let mut models = Column::zero();
+    cells.set(0, Vector(Model::cell(centre.0, half)));
+    shape.block_distances(&cells, 1, &mut models);
+    models.get(0)
+}
+
+/// The crossing stroke from (−0.2, 0) to (0, −0.2) is the nearest to points just
+/// above it, in the quadrant where the other crossing is not.
+#[test]
+fn the_cool_s_has_both_crossings_on_both_sides_of_the_waist() -> Outcome {
+    let s = Shape::from_kernel(CoolS::new(2.0)?);
+    for y in [-1e-9, 0.0, 1e-9] {
+        let f = s.distance(Vector([-0.1, y]));
+        assert!((f + 0.1 * 0.5_f64.sqrt()).abs() < 1e-8, "{f} at y = {y}");
+    }
+    Ok(())
+}
+
+/// At y = 0 the fold of y and the sign of y took different sides.
+#[test]
+fn the_cool_s_has_a_gradient_on_its_waist() -> Outcome {
+    let s = Shape::from_kernel(CoolS::new(2.0)?);
+    for x in [0.0, 0.05, 0.1, -0.05, -0.1] {
+        let p = Vector([x, 0.0]);
+        let (f, g) = s.distance_gradient(p);
+        let landed = s.distance(p - g * f);
+        assert!(landed.abs() < 1e-15, "{landed} after {f} along {g:?} from {p:?}");
+    }
+    Ok(())
+}
+
+/// With two equal coordinates the sort gave one of them twice.
+#[test]
+fn an_octahedron_has_a_unit_gradient_between_two_axes() -> Outcome {
+    let dice = Shape::from_kernel(Octahedron::new(1.0)?);
+    for p in [[0.0, -5.0, -5.0], [5.0, 5.0, 0.0], [5.0, 0.0, 5.0], [0.0, 0.0, 3.0]] {
+        let length = steepest(&dice, Vector(p));
+        assert!((length - 1.0).abs() < 1e-15, "{length} at {p:?}");
+    }
+    Ok(())
+}
+
+/// `max(p, 0) + min(p, 0)` has the derivative two at zero.
+#[test]
+fn elongation_by_nothing_keeps_the_gradient() -> Outcome {
+    let ball = Shape::<2>::from_kernel(Ball::new(1.0)?).translated(Vector([0.6, 0.8]))?;
+    let same = ball.elongated([0.5, 0.0])?;
+    let length = steepest(&same, Vector([-3.0, 0.0]));
+    assert!(length <= 1.0 + 1e-15, "{length}");
+    Ok(())
+}
+
+/// On the line of an edge, norm and minimum both gave the edge's normal.
+#[test]
+fn a_regular_polygon_has_a_unit_gradient_on_its_surface() -> Outcome {
+    let square = Shape::from_kernel(RegularPolygon::new(4, 1.0)?);
+    for p in [[0.0, 1.0], [0.5, 0.5], [-1.0, 0.0], [0.0, -1.0]] {
+        let length = steepest(&square, Vector(p));
+        assert!(length <= 1.0 + 1e-15, "{length} at {p:?}");
+    }
+    let nut = Shape::from_kernel(HexagonalPrism::new(1.0, 1.0)?);
+    let length = steepest(&nut, Vector([0.75_f64.sqrt(), 0.0, 0.0]));
+    assert!(length <= 1.0 + 1e-15, "{length}");
+    Ok(())
+}
+
+/// On the base the absolute value took the branch of the inside.
+#[test]
+fn the_base_of_a_pyramid_faces_down() -> Outcome {
+    let giza = Shape::from_kernel(Pyramid::new(0.5, 1.0)?);
+    let (f, g) = giza.distance_gradient(Vector([0.0, -0.5, 0.0]));
+    assert_eq!((f, g), (0.0, Vector([0.0, -1.0, 0.0])));
+    Ok(())
+}
+
+/// A tangent plane from a gradient that is no subgradient is no bound.
+#[test]
+fn models_on_the_surface_of_a_pyramid_enclose() -> Outcome {
+    let giza = Shape::from_kernel(Pyramid::new(0.5, 1.0)?);
+    let h = 1e-3;
+    let model = model(&giza, Vector([0.0, -0.5, 0.0]), [h; 3]);
+    let inside = giza.distance(Vector([0.0, -0.5 + h, 0.0]));
+    let plane = model.value + model.gradient[1];
+    assert!(plane - model.lower <= inside + 1e-15, "{inside} below {model:?}");
+    Ok(())
+}
+
+/// At a corner the remainder of the projection is rounding or zero, and its
+/// direction no normal.
+#[test]
+fn models_at_the_corners_of_a_triangle_enclose() -> Outcome {
+    let corners = [[0.0, 0.297_981_519_252_061_84], [-0.5, -1.398_223_902_331_665_2],
+        [-1.004_338_553_175_330_2, -1.137_141_467_537_731]];
+    let triangle = Shape::from_kernel(Simplex::new(corners.map(Vector).to_vec())?);
+    let h = 1e-3;
+    for corner in corners {
+        let model = model(&triangle, Vector(corner), [h; 2]);
+        for u in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0], [-1.0, -1.0]] {
+            let p = Vector([corner[0] + h * u[0], corner[1] + h * u[1]]);
+            let f = triangle.distance(p);
+            let plane = model.value + model.gradient[0] * u[0] + model.gradient[1] * u[1];
+            assert!(plane - model.lower <= f + 1e-15, "{f} at {p:?} below {model:?}");
+        }
+    }
+    Ok(())
+}
+
+/// In the plane of its widest section a thin ellipsoid needs more Newton steps
+/// than it took: the pole of the thin axis is next to the start.
+#[test]
+fn an_ellipsoid_is_exact_in_its_plane_of_symmetry() -> Outcome {
+    let radii = Vector([0.297_615_515_233_054_8, 0.471_314_522_437_751_3, 1.404_556_867_899_373_2]);
+    let egg = Shape::from_kernel(Ellipsoid::new(radii)?);
+    // On the surface, by the definition.
+    for angle in [0.1_f64, 0.5, 0.9, 1.3] {
+        let p = Vector([0.0, radii[1] * angle.cos(), radii[2] * angle.sin()]);
+        let f = egg.distance(p);
+        assert!(f.abs() < 1e-14, "{f:e} at {p:?}");
+    }
+    let flat = Shape::from_kernel(Ellipsoid::new(Vector([1.0, 1e-6]))?);
+    for x in [0.0, 0.3, 0.999, 0.999_999] {
+        let p = Vector([x, 1e-6 * f64::sqrt(1.0 - x * x)]);
+        let f = flat.distance(p);
+        assert!(f.abs() < 1e-14, "{f:e} at {p:?}");
+    }
+    Ok(())
+}
+
+/// The guard is the distance to the box; the bounding ball may be tighter.
+#[test]
+fn guarded_shapes_stay_in_their_ball() -> Outcome {
+    let can = Shape::from_kernel(CylinderApproximation::new(1.15, 0.43)?).offset(1.24)?;
+    let ball = can.promise().bounds.map(|b| b.ball);
+    let p = Vector([-2.293, 0.617, 0.4422]);
+    assert!(can.distance(p) < 0.0);
+    assert!(ball.is_none_or(|b| (p - b.centre).norm() <= b.radius), "{p:?} outside {ball:?}");
+
+    let flat = Shape::<2>::from_kernel(Ball::new(1.0)?).stretched([0.5, 1.0])?.offset(1.5)?;
+    let ball = flat.promise().bounds.map(|b| b.ball);
+    let p = Vector([1.78, 1.78]);
+    assert!(flat.distance(p) < 0.0);
+    assert!(ball.is_none_or(|b| (p - b.centre).norm() <= b.radius), "{p:?} outside {ball:?}");
+    Ok(())
+}
+
+/// A point 2 nm along the normal of a sharp corner is outside again.
+#[test]
+fn a_polygon_has_the_right_normal_close_to_a_sharp_corner() -> Outcome {
+    let spike = vec![Vector([0.0, 0.0]), Vector([-1.0, -0.1]), Vector([-1.0, 0.1])];
+    let spike = Shape::from_kernel(Polygon::new(vec![spike])?);
+    let p = Vector([-1e-10, 1e-11 + 1e-13]); // just above the upper edge
+    let (f, g) = spike.distance_gradient(p);
+    assert!(f > 0.0 && g[1] > 0.0, "{f:e}, {g:?}");
+    Ok(())
+}
+
+/// The issue allows 32 ulp of the largest number met.
+#[test]
+fn tangent_models_are_tight_to_32_ulp() -> Outcome {
+    fn ulp<K: Kernel<2>>(kernel: K, size: f64) -> f64 {
+        let shape = Shape::from_kernel(kernel);
+        let centre = Vector([0.7 * size, 0.9 * size]);
+        let model = model(&shape, centre, [1e-3 * size; 2]);
+        model.lower / (f64::EPSILON * (size + centre.norm() + 2e-3 * size))
+    }
+    let corners = vec![Vector([0.0, -0.5]), Vector([-1.0, 0.5]), Vector([-1.444, -0.589])];
+    let all = [
+        ("ellipse", ulp(Ellipsoid::new(Vector([1.0, 0.5]))?, 1.0)),
+        ("regular polygon", ulp(RegularPolygon::new(10, 1.0)?, 1.0)),
+        ("triangle", ulp(Simplex::new(corners)?, 1.56)),
+    ];
+    for (name, ulp) in all {
+        assert!(ulp <= 32.0, "{name}: {ulp} ulp, all: {all:?}");
+    }
+    Ok(())
+}

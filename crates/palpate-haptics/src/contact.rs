@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! One tick of a proxy at a surface: the closest point to the device that it can slide to.
+//!
+//! Every tangent plane is linear; the surface is not. So planes are learnt, the point closest
+//! to the device above them is approached and the field is asked there, until the point asked
+//! for is the point that was asked: Newton's method on the conditions of the closest point, and
+//! on creases an active-set method. Salisbury and Tarr, "Haptic rendering of surfaces defined by
+//! implicit functions" (1997), track one tangent plane in the same way.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use crate::planes::Planes;
+use crate::sampler::{Sample, Sampler};
+
+/// The proxy rests when its next move would change the stretch, and so the force, by less than
+/// this part: 0.0006 degrees, a thousandth of what a hand can tell.
+const AT_REST: f64 = 1e-5;
+
+/// A move longer than this many times what is certain from the surface is made through the
+/// air: up, along and down again.
+const WORTH_LIFTING: f64 = 3.0;
+
+/// A goal farther away than this many times the device's own motion is not where the device
+/// went: the surface bends away or ends, and is followed step by step instead.
+const WORTH_FOLLOWING: f64 = 8.0;
+
+/// How high a move through the air goes, as a multiple of its length. Twice lands within a
+/// tenth of the goal; more gains little and meets the ceiling sooner.
+const LIFT: f64 = 2.0;
+
+/// The most samples on the way up. In a crease of a right angle eight leave a 20 000th of it.
+const LIFT_SAMPLES: u32 = 8;
+
+/// A sample on the way up that covers less than this part of it is beside a wall.
+const LEAST_COVERED: f64 = 0.3;
+
+/// Lifts that may fail in a tick: each tells of another wall, and the fourth of a ceiling.
+const MOST_FAILED_LIFTS: u8 = 3;
+
+/// The first move of a tick is tried as far as this many times the device's motion: what it
+/// takes on a flat wall, and as much again for one that bends.
+const FIRST_TRUST: f64 = 2.0;
+
+/// The part of a skin that is tried in any case: the device may rest while its proxy does not.
+const LEAST_TRUST: f64 = 1.0 / 64.0;
+
+/// The part of a skin at which a cornered proxy gives up and stays where it is.
+const CORNERED_TRUST: f64 = 1e-4;
+
+/// The most a step along a bent surface is lengthened: what is left of it converges by
+/// `1 − 1/8` a step at worst, and a bend that was misjudged throws the proxy no further.
+const MOST_GAIN: f64 = 8.0;
+
+/// Where a tick at a surface ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rest<const D: usize> {
+    /// The evaluated point at which the proxy rests, on or above the offset surface.
+    pub(crate) sample: Sample<D>,
+    /// The unit normal of the surface last seen.
+    pub(crate) normal: Vector<f64, D>,
+    /// `true` if the surface keeps the proxy from the device.
+    pub(crate) contact: bool,
+}
+
+/// Slides from `start`, on or above the offset surface, to the point closest to `device`, which
+/// moved by `motion` [m] in this tick.
+///
+/// Each point of the way is within the reach of an evaluated one, so the way crosses nothing. If
+/// the budget ends before the search does, the proxy rests at the closest point found that is on
+/// or above the surface: later than it could, never inside.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
+/// evaluations.
+pub(crate) fn slide<const D: usize>(
+    sampler: &mut Sampler<'_, D>,
+    start: Sample<D>,
+    normal: Vector<f64, D>,
+    (device, motion): (Point<D>, f64),
+) -> Rest<D> {
+    let mut slide = Slide {
+        planes: Planes::new(),
+        best: start,
+        normal,
+        failed_lifts: 0,
+        trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
+        motion,
+        last: None,
+    };
+    let mut here = start;
+    if here.gradient.is_none() {
+        match sampler.gradient(here.point) {
+            Some(sample) => here = sample,
+            None => return slide.rest(sampler, device),
+        }
+    }
+    slide.best = here;
+    loop {
+        match slide.turn(sampler, here, device) {
+            Turn::Moved(sample) => {
+                here = sample;
+                slide.trust *= 2.0;
+            }
+            Turn::Resting => {
+                slide.best = here;
+                let contact = (here.point - device).norm() > sampler.tolerance();
+                return Rest { sample: here, normal: slide.normal, contact };
+            }
+            // Between facing walls no plane leaves room: less of a step does not get there.
+            Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
+                slide.trust *= 0.125;
+                (slide.planes, slide.last) = (Planes::new(), None);
+                slide.failed_lifts = MOST_FAILED_LIFTS;
+                here = slide.best;
+            }
+            Turn::Cornered | Turn::Spent => return slide.rest(sampler, device),
+        }
+        let closer = (here.point - device).norm() < (slide.best.point - device).norm();
+        if closer && here.gap >= -sampler.tolerance() {
+            slide.best = here;
+        }
+    }
+}
+
+struct Slide<const D: usize> {
+    planes: Planes<D>,
+    best: Sample<D>,
+    normal: Vector<f64, D>,
+    /// How often the way up was not free: there is a ceiling, or a wall not yet known.
+    failed_lifts: u8,
+    /// How far the device point moved in this tick [m].
+    motion: f64,
+    /// The longest move that is tried [m]: a crease of bent walls is known to second order in
+    /// it. It starts with the motion of the hand and doubles with each move.
+    trust: f64,
+    /// Where the last tangent plane touched, and its normal.
+    last: Option<(Point<D>, Vector<f64, D>)>,
+}
+
+enum Turn<const D: usize> {
+    Moved(Sample<D>),
+    Resting,
+    /// The planes leave no room.
+    Cornered,
+    /// The budget is spent, or the field is not finite.
+    Spent,
+}
+
+impl<const D: usize> Slide<D> {
+    fn turn(
+        &mut self,
+        sampler: &mut Sampler<'_, D>,
+        here: Sample<D>,
+        device: Point<D>,
+    ) -> Turn<D> {
+        let (normal, gap) = sampler.tangent(&here, self.normal);
+        let is_new = self.last.is_none();
+        self.normal = normal;
+        self.planes.learn(here.point, normal, gap);
+        let Some(goal) = self.planes.closest(device) else { return Turn::Cornered };
+        let foot = here.point - normal * gap;
+        let mut goal = self.over_the_bend(foot, normal, goal, device);
+
+        let stretch = (device - here.point).norm();
+        let is_outside = here.gap >= -sampler.tolerance();
+        // The point of the last tick has to be at rest exactly: what is left would never be made
+        // up for on a flat wall, which needs one evaluation and no more.
+        let at_rest = sampler.tolerance() + if is_new { 0.0 } else { AT_REST * stretch };
+        if is_outside && (goal - here.point).norm() <= at_rest {
+            if !self.planes.forget_sunk(at_rest) {
+                return Turn::Resting;
+            }
+            goal = self.planes.closest(device).unwrap_or(here.point);
+        }
+        let way = goal - here.point;
+        let length = way.norm();
+        let reach = sampler.reach(&here).min(self.trust);
+        if length <= reach {
+            return sampler.gradient(goal).map_or(Turn::Spent, Turn::Moved);
+        }
+        if !is_outside {
+            // Straight on, the way to a far goal would stay below the surface.
+            let Some(outside) = self.planes.closest(here.point) else { return Turn::Cornered };
+            let way = outside - here.point;
+            let part = (reach / way.norm()).min(1.0);
+            return sampler.gradient(here.point + way * part).map_or(Turn::Spent, Turn::Moved);
+        }
+        let is_far = length > WORTH_LIFTING * sampler.reach(&here)
+            && length < WORTH_FOLLOWING * self.motion;
+        if is_far && self.failed_lifts < MOST_FAILED_LIFTS {
+            let up = self.planes.up().unwrap_or(normal);
+            match lift(sampler, &here, up, LIFT * length) {
+                Some(above) => return Turn::Moved(above),
+                None => self.failed_lifts += 1,
+            }
+        }
+        let next = here.point + way * (reach / length);
+        sampler.gradient(next).map_or(Turn::Spent, Turn::Moved)
+    }
+
+    /// The goal on a tangent plane, moved on for the surface's bend between the last two tangent
+    /// points, `foot` the later.
+    ///
+    /// A device point at depth `d` below a surface of curvature `κ` is `κd` times closer to the
+    /// centre of the bend, so the closest point turns `1 / (1 − κd)` times as far as on the
+    /// plane; going only as far as the plane says converges by `κd` a step, which on an edge
+    /// rounded by the probe's radius, pressed to nearly that depth, is slow. This is a secant
+    /// step on the way along the surface.
+    fn over_the_bend(
+        &mut self,
+        foot: Point<D>,
+        normal: Vector<f64, D>,
+        goal: Point<D>,
+        device: Point<D>,
+    ) -> Point<D> {
+        let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else {
+            return goal;
+        };
+        let along = foot - last_foot;
+        let depth = normal.dot(foot - device);
+        // Written so that NaN, a flat surface and a crease keep the goal.
+        let curvature = along.dot(normal - last_normal) / along.dot(along);
+        let side = goal - foot;
+        let is_on_plane = normal.dot(side).abs() <= AT_REST * side.norm();
+        let gain = 1.0 / (1.0 - curvature * depth);
+        if is_on_plane && depth > 0.0 && gain > 0.0 {
+            foot + side * gain.min(MOST_GAIN)
+        } else {
+            goal
+        }
+    }
+
+    /// The best point found, and whether its tangent plane keeps it from the device.
+    fn rest(&self, sampler: &Sampler<'_, D>, device: Point<D>) -> Rest<D> {
+        let (normal, gap) = sampler.tangent(&self.best, self.normal);
+        let height = normal.dot(device - self.best.point) + gap;
+        Rest { sample: self.best, normal, contact: height < 0.0 && gap <= sampler.near() }
+    }
+}
+
+/// The sample `height` above `here` in the direction `up`, if the way there is free.
+///
+/// The ball about the sample above covers the upper part of the way; a sample where it ends
+/// covers more, until the rest is within a skin of the surface. Over a plane one sample does;
+/// up the middle of a crease each covers the same part of what is left.
+fn lift<const D: usize>(
+    sampler: &mut Sampler<'_, D>,
+    here: &Sample<D>,
+    up: Vector<f64, D>,
+    height: f64,
+) -> Option<Sample<D>> {
+    let above = sampler.gradient(here.point + up * height)?;
+    let covered = sampler.clear_radius(&above);
+    if covered < LEAST_COVERED * height {
+        return None;
+    }
+    let mut left = height - covered;
+    for _ in 0..LIFT_SAMPLES {
+        if left <= sampler.clear_radius(here) {
+            return Some(above);
+        }
+        let between = sampler.distance(here.point + up * left)?;
+        let covered = sampler.clear_radius(&between);
+        if covered < LEAST_COVERED * left {
+            return None;
+        }
+        left -= covered;
+    }
+    None
+}

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What can be wrong with a material, a hand path or a servo.
+
+/// Why something cannot be touched as asked. Every variant carries the offending numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum HapticsError {
+    /// A number breaks the rule of its parameter.
+    #[error("{parameter} must be {rule}, got {value} {unit}")]
+    Number {
+        /// The parameter's name, as in scene files.
+        parameter: &'static str,
+        /// What it must be: "positive".
+        rule: &'static str,
+        /// What it was, in `unit`.
+        value: f64,
+        /// The unit of the parameter: "N/m".
+        unit: &'static str,
+    },
+    /// A hand path needs a beginning and an end.
+    #[error("a hand path needs at least 2 samples, got {count}")]
+    TooFewSamples {
+        /// How many there were.
+        count: usize,
+    },
+    /// The times of a hand path and its positions are not pairs.
+    #[error("a hand path has {times} times but {positions} positions")]
+    UnpairedSamples {
+        /// How many times.
+        times: usize,
+        /// How many positions.
+        positions: usize,
+    },
+    /// A time or coordinate of a hand path is NaN, infinite or beyond any scene.
+    #[error("sample {index} of the hand path must be finite and at most 1e15, got {value}")]
+    SampleNotFinite {
+        /// Which sample, from 0.
+        index: usize,
+        /// The time [s] or coordinate [m].
+        value: f64,
+    },
+    /// The times of a hand path do not increase.
+    #[error(
+        "sample {index} of the hand path is at {time} s, which must be later than {previous} s"
+    )]
+    TimeNotIncreasing {
+        /// Which sample, from 0.
+        index: usize,
+        /// The time of the sample before [s].
+        previous: f64,
+        /// The time of the sample [s].
+        time: f64,
+    },
+    /// A device must have at least one contact point.
+    #[error("a device needs at least one contact point")]
+    NoContactPoint,
+    /// The servo and the device disagree about the number of contact points.
+    #[error("the servo has {servo} contact points, the device {device}")]
+    ContactPoints {
+        /// Contact points of the servo.
+        servo: usize,
+        /// Contact points of the device.
+        device: usize,
+    },
+    /// A tour finds nothing to touch in its box.
+    #[error("no surface was found in the box of a hand path over a shape")]
+    NothingToTouch,
+}
+
+/// Checks that `value` is positive and finite.
+pub(crate) fn positive(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, HapticsError> {
+    // Written so that NaN fails.
+    if value > 0.0 && value <= f64::MAX {
+        Ok(value)
+    } else {
+        let rule = "positive and finite";
+        Err(HapticsError::Number { parameter, rule, value, unit })
+    }
+}
+
+/// Checks that `value` is not negative and finite.
+pub(crate) fn not_negative(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, HapticsError> {
+    if (0.0..=f64::MAX).contains(&value) {
+        Ok(value)
+    } else {
+        let rule = "zero or more and finite";
+        Err(HapticsError::Number { parameter, rule, value, unit })
+    }
+}

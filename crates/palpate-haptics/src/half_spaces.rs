@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The closest point in the intersection of a few half-spaces.
+//!
+//! The god-object of Zilles and Salisbury (1995), section 4, is the point closest to the device
+//! point under at most three plane constraints; with inequalities instead of equations, the
+//! active ones must be found as well. There are so few that all subsets are tried.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+/// The most half-spaces kept: three make a corner, one more replaces the one left behind.
+pub(crate) const CAPACITY: usize = 4;
+
+/// How far a point may lie outside a half-space and still count as in it, as a part of the
+/// largest distance involved. Above the rounding of three planes that meet at
+/// [`LEAST_DETERMINANT`], below what a contact tolerates.
+const FEASIBLE: f64 = 1e-10;
+
+/// Planes whose normals span a (squared) volume below this are taken as parallel: their
+/// intersection would be known to fewer than four digits.
+const LEAST_DETERMINANT: f64 = 1e-12;
+
+/// All points `q` with `normal·(q − point) ≥ 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HalfSpace<const D: usize> {
+    /// A point of the boundary [m].
+    pub(crate) point: Point<D>,
+    /// The unit normal, pointing in.
+    pub(crate) normal: Vector<f64, D>,
+}
+
+impl<const D: usize> HalfSpace<D> {
+    /// The signed distance of `q` from the boundary [m]: positive in the half-space.
+    #[inline]
+    pub(crate) fn height(&self, q: Point<D>) -> f64 {
+        self.normal.dot(q - self.point)
+    }
+}
+
+/// The point closest to `x` in all of `half_spaces`; `None` if they have no point in common
+/// that can be told.
+///
+/// # Derivation
+///
+/// With `y = q − x` and the depth `bᵢ = nᵢ·(pᵢ − x)` of `x` below plane `i`, minimise `‖y‖²`
+/// under `nᵢ·y ≥ bᵢ`. If the planes of a set `A` are active, `y = Σ λᵢ nᵢ` with
+/// `Σⱼ (nᵢ·nⱼ) λⱼ = bᵢ` for `i` in `A`. The problem is convex, so the first set whose `λ ≥ 0`
+/// and whose `y` satisfies all planes is the answer (Karush, Kuhn and Tucker). No set has more
+/// than three planes in space or two in the plane.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic; at most 14 sets for
+/// [`CAPACITY`] half-spaces.
+pub(crate) fn closest_point<const D: usize>(
+    x: Point<D>,
+    half_spaces: &[HalfSpace<D>],
+) -> Option<Point<D>> {
+    let depth = |h: &HalfSpace<D>| -h.height(x);
+    let deepest = half_spaces.iter().map(depth).fold(0.0, f64::max);
+    if deepest <= 0.0 {
+        return Some(x);
+    }
+    let highest = half_spaces.iter().map(|h| depth(h).abs()).fold(0.0, f64::max);
+    let slack = FEASIBLE * highest;
+    let feasible = |y: Vector<f64, D>| {
+        let q = x + y;
+        half_spaces.iter().all(|h| h.normal.dot(y) >= depth(h) - slack).then_some(q)
+    };
+
+    for a in half_spaces {
+        if let Some(q) = one(a.normal, depth(a)).and_then(feasible) {
+            return Some(q);
+        }
+    }
+    for (i, a) in half_spaces.iter().enumerate() {
+        for b in half_spaces.iter().skip(i + 1) {
+            let y = two([a.normal, b.normal], [depth(a), depth(b)]);
+            if let Some(q) = y.and_then(feasible) {
+                return Some(q);
+            }
+        }
+    }
+    if D < 3 {
+        return None;
+    }
+    for (i, a) in half_spaces.iter().enumerate() {
+        for (k, b) in half_spaces.iter().enumerate().skip(i + 1) {
+            for c in half_spaces.iter().skip(k + 1) {
+                let normals = [a.normal, b.normal, c.normal];
+                let y = three(normals, [depth(a), depth(b), depth(c)]);
+                if let Some(q) = y.and_then(feasible) {
+                    return Some(q);
+                }
+            }
+        }
+    }
+    None
+}
+
+/// The step to one plane, if it pushes.
+fn one<const D: usize>(normal: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
+    (depth > 0.0).then(|| normal * depth)
+}
+
+/// The step to the intersection of two planes, if both push.
+fn two<const D: usize>(
+    [a, b]: [Vector<f64, D>; 2],
+    [depth_a, depth_b]: [f64; 2],
+) -> Option<Vector<f64, D>> {
+    let cosine = a.dot(b);
+    let determinant = 1.0 - cosine * cosine;
+    let push_a = depth_a - cosine * depth_b;
+    let push_b = depth_b - cosine * depth_a;
+    // Written so that NaN fails.
+    if determinant > LEAST_DETERMINANT && push_a >= 0.0 && push_b >= 0.0 {
+        Some(a * (push_a / determinant) + b * (push_b / determinant))
+    } else {
+        None
+    }
+}
+
+/// The step to the intersection of three planes, if all push: Cramer's rule.
+fn three<const D: usize>(
+    [a, b, c]: [Vector<f64, D>; 3],
+    [depth_a, depth_b, depth_c]: [f64; 3],
+) -> Option<Vector<f64, D>> {
+    let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
+    let determinant = 1.0 + 2.0 * ab * bc * ca - ab * ab - bc * bc - ca * ca;
+    let push = |own: f64, left: (f64, f64), right: (f64, f64), opposite: f64| {
+        own * (1.0 - opposite * opposite)
+            + left.0 * (right.1 * opposite - left.1)
+            + right.0 * (left.1 * opposite - right.1)
+    };
+    let push_a = push(depth_a, (depth_b, ab), (depth_c, ca), bc);
+    let push_b = push(depth_b, (depth_c, bc), (depth_a, ab), ca);
+    let push_c = push(depth_c, (depth_a, ca), (depth_b, bc), ab);
+    if determinant > LEAST_DETERMINANT && push_a >= 0.0 && push_b >= 0.0 && push_c >= 0.0 {
+        Some((a * push_a + b * push_b + c * push_c) * (1.0 / determinant))
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn half_space<const D: usize>(point: [f64; D], normal: [f64; D]) -> HalfSpace<D> {
+        HalfSpace { point: Vector(point), normal: Vector(normal).normalized().unwrap() }
+    }
+
+    #[test]
+    fn one_plane_projects() {
+        let floor = half_space([0.0, 0.25], [0.0, 1.0]);
+        assert_eq!(closest_point(Vector([3.0, -1.0]), &[floor]), Some(Vector([3.0, 0.25])));
+        assert_eq!(closest_point(Vector([3.0, 1.0]), &[floor]), Some(Vector([3.0, 1.0])));
+    }
+
+    #[test]
+    fn three_walls_meet_in_their_corner() {
+        let walls = [
+            half_space([0.5, 0.0, 0.0], [1.0, 0.0, 0.0]),
+            half_space([0.0, 0.25, 0.0], [0.0, 1.0, 0.0]),
+            half_space([0.0, 0.0, 0.125], [0.0, 0.0, 1.0]),
+        ];
+        let corner = closest_point(Vector([-1.0, -2.0, -3.0]), &walls);
+        assert_eq!(corner, Some(Vector([0.5, 0.25, 0.125])));
+        let edge = closest_point(Vector([-1.0, -2.0, 3.0]), &walls);
+        assert_eq!(edge, Some(Vector([0.5, 0.25, 3.0])));
+    }
+
+    #[test]
+    fn facing_planes_have_no_point() {
+        let slot = [half_space([0.0, 1.0], [0.0, 1.0]), half_space([0.0, -1.0], [0.0, -1.0])];
+        assert_eq!(closest_point(Vector([0.0, 0.0]), &slot), None);
+    }
+
+    /// Dykstra's alternating projection converges to the same point, slowly.
+    fn dykstra<const D: usize>(x: Point<D>, half_spaces: &[HalfSpace<D>]) -> Point<D> {
+        let mut q = x;
+        let mut corrections = vec![Vector::<f64, D>::ZERO; half_spaces.len()];
+        for _ in 0..20_000 {
+            for (h, correction) in half_spaces.iter().zip(&mut corrections) {
+                let y = q + *correction;
+                q = y + h.normal * (-h.height(y)).max(0.0);
+                *correction = y - q;
+            }
+        }
+        q
+    }
+
+    fn agrees_with_dykstra<const D: usize>() {
+        arbtest::arbtest(|u| {
+            let mut unit = || u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 1e-3);
+            let mut vector = || {
+                let mut v = [0.0; D];
+                for component in &mut v {
+                    *component = unit()?;
+                }
+                Ok(Vector(v))
+            };
+            let x = vector()? * 2.0;
+            let mut half_spaces = Vec::new();
+            for _ in 0..CAPACITY {
+                let upwards = vector()? + Vector::unit(0) * 1.5;
+                let normal = upwards.normalized().ok_or(arbitrary::Error::IncorrectFormat)?;
+                half_spaces.push(HalfSpace { point: vector()?, normal });
+            }
+            let slow = dykstra(x, &half_spaces);
+            if half_spaces.iter().all(|h| h.height(slow) > -1e-9) {
+                let q = closest_point(x, &half_spaces).unwrap();
+                assert!(half_spaces.iter().all(|h| h.height(q) > -1e-8));
+                assert!((q - x).norm() <= (slow - x).norm() + 1e-7, "{q:?} {slow:?}");
+            }
+            Ok(())
+        })
+        .budget_ms(2_000);
+    }
+
+    #[test]
+    fn no_feasible_point_is_closer_in_the_plane() {
+        agrees_with_dykstra::<2>();
+    }
+
+    #[test]
+    fn no_feasible_point_is_closer_in_space() {
+        agrees_with_dykstra::<3>();
+    }
+}

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The tangent planes that hold a proxy, learnt one evaluation at a time.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
+
+/// Normals closer than this [rad] are one plane: two would meet in a line that rounding places.
+const SAME_NORMAL: f64 = 1e-6;
+
+/// A plane is left behind if the surface fell away from it by more than this part of what its
+/// turn explains. On a circular arc the part is 1/2, past a sharp edge about 1, at a crease of
+/// two rounded walls it vanishes with the length of the step.
+const LEFT_BEHIND: f64 = 0.25;
+
+/// A plane and the point of the surface at which it was tangent.
+#[derive(Clone, Copy, Debug)]
+struct Tangent<const D: usize> {
+    half_space: HalfSpace<D>,
+    foot: Point<D>,
+    /// How far it was moved down since [m].
+    sunk: f64,
+}
+
+/// Up to [`CAPACITY`] tangent planes of the offset surface about one place.
+///
+/// A crease of a concave shape is where several planes hold the proxy, but a field shows one at
+/// a time; so planes are remembered over the evaluations of one tick. A remembered plane of a
+/// convex neighbour would be no constraint any more and is dropped.
+#[derive(Debug)]
+pub(crate) struct Planes<const D: usize> {
+    tangents: [Option<Tangent<D>>; CAPACITY],
+}
+
+impl<const D: usize> Planes<D> {
+    pub(crate) fn new() -> Self {
+        Self { tangents: [None; CAPACITY] }
+    }
+
+    /// Learns that the offset surface is `gap` [m] below `seen_from` along the unit `normal`.
+    ///
+    /// Older planes are revised first. Where several walls meet in a crease, `f` is the least
+    /// of theirs, so a wall whose plane lies `h` below `seen_from` implies `gap ≤ h`. A larger
+    /// gap contradicts the plane by `gap − h`: it was that of a face left behind, and is
+    /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
+    /// by the angle between the normals (see [`LEFT_BEHIND`]).
+    pub(crate) fn learn(&mut self, seen_from: Point<D>, normal: Vector<f64, D>, gap: f64) {
+        let foot = seen_from - normal * gap;
+        for slot in &mut self.tangents {
+            let Some(tangent) = slot else { continue };
+            let turn = (tangent.half_space.normal - normal).norm();
+            let excess = gap - tangent.half_space.height(seen_from);
+            let way = (foot - tangent.foot).norm();
+            // Written so that NaN drops the plane.
+            if turn > SAME_NORMAL && excess <= LEFT_BEHIND * turn * way {
+                let sunk = excess.max(0.0);
+                tangent.half_space.point -= tangent.half_space.normal * sunk;
+                tangent.sunk += sunk;
+            } else {
+                *slot = None;
+            }
+        }
+        let half_space = HalfSpace { point: foot, normal };
+        let tangent = Tangent { half_space, foot, sunk: 0.0 };
+        match self.tangents.iter_mut().find(|slot| slot.is_none()) {
+            Some(slot) => *slot = Some(tangent),
+            None => self.replace_loosest(tangent),
+        }
+    }
+
+    /// Puts `tangent` in the place of the plane farthest below its foot.
+    fn replace_loosest(&mut self, tangent: Tangent<D>) {
+        let height = |slot: &Option<Tangent<D>>| {
+            slot.map_or(f64::INFINITY, |t| t.half_space.height(tangent.foot))
+        };
+        let loosest = self.tangents.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
+        if let Some(slot) = loosest {
+            *slot = Some(tangent);
+        }
+    }
+
+    /// Drops the planes that were moved down by more than `limit` [m]; `true` if there were any.
+    ///
+    /// They are guesses: good enough to go by, not to rest on.
+    pub(crate) fn forget_sunk(&mut self, limit: f64) -> bool {
+        let mut forgot = false;
+        for slot in &mut self.tangents {
+            if slot.is_some_and(|tangent| tangent.sunk > limit) {
+                *slot = None;
+                forgot = true;
+            }
+        }
+        forgot
+    }
+
+    /// The unit vector that leads away from all planes, the mean of their normals; `None` if
+    /// they face each other.
+    pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
+        let normals = self.tangents.iter().flatten().map(|t| t.half_space.normal);
+        normals.fold(Vector::ZERO, |sum, normal| sum + normal).normalized()
+    }
+
+    /// The point closest to `x` above all planes; `None` if they leave no room.
+    pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
+        let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
+        let mut half_spaces = [none; CAPACITY];
+        let mut count = 0;
+        for (place, tangent) in half_spaces.iter_mut().zip(self.tangents.iter().flatten()) {
+            *place = tangent.half_space;
+            count += 1;
+        }
+        half_spaces.get(..count).and_then(|known| closest_point(x, known))
+    }
+}

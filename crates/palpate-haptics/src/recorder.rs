@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A recording of every tick, into memory set aside beforehand.
+
+use palpate_field::{Point, Vector};
+
+use crate::servo::Touch;
+
+/// One contact point in one tick: a row of a trace. World coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceRow<const D: usize> {
+    /// The time of the tick since the servo started [s].
+    pub time_s: f64,
+    /// Which contact point, from 0.
+    pub point: u32,
+    /// The device point [m].
+    pub device: Point<D>,
+    /// The proxy [m]; the device point itself in free space.
+    pub proxy: Point<D>,
+    /// The force on the hand [N].
+    pub force: Vector<f64, D>,
+    /// The unit normal of the surface last seen, pointing out.
+    pub normal: Vector<f64, D>,
+    /// `true` if the surface keeps the proxy from the device point.
+    pub contact: bool,
+    /// Evaluations of the shape for this point in this tick.
+    pub evaluations: u32,
+    /// What the whole tick cost, all points together [ns].
+    pub cost_ns: u64,
+    /// How late the tick started [ns]; zero where it is not paced.
+    pub lateness_ns: u64,
+}
+
+/// What the loop knows about a tick beside its touches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TickTimes {
+    pub(crate) time_s: f64,
+    pub(crate) cost_ns: u64,
+    pub(crate) lateness_ns: u64,
+}
+
+/// Keeps the rows of a run, up to a fixed number.
+#[derive(Clone, Debug)]
+pub struct Recorder<const D: usize> {
+    rows: Vec<TraceRow<D>>,
+    capacity: usize,
+    dropped: u64,
+}
+
+impl<const D: usize> Recorder<D> {
+    /// Sets memory aside for `capacity` rows: one for each tick and contact point.
+    #[must_use]
+    pub fn new(capacity: usize) -> Self {
+        Self { rows: Vec::with_capacity(capacity), capacity, dropped: 0 }
+    }
+
+    /// The rows of the run, in order of time, then of contact point.
+    #[must_use]
+    pub fn rows(&self) -> &[TraceRow<D>] {
+        &self.rows
+    }
+
+    /// How many rows found no room.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn record(&mut self, times: TickTimes, touches: &[Touch<D>]) {
+        for (point, touch) in (0..).zip(touches) {
+            if self.rows.len() >= self.capacity {
+                self.dropped += 1;
+                continue;
+            }
+            self.rows.push(TraceRow {
+                time_s: times.time_s,
+                point,
+                device: touch.device,
+                proxy: touch.proxy,
+                force: touch.force,
+                normal: touch.normal,
+                contact: touch.contact,
+                evaluations: touch.evaluations,
+                cost_ns: times.cost_ns,
+                lateness_ns: times.lateness_ns,
+            });
+        }
+    }
+}

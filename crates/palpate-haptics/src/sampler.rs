@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Metered evaluation of a shape, and how far a probe may move after it.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Shape, Vector};
+
+/// How deep the proxy's offset may be violated at rest, as a part of the size of the scene.
+/// Far above the rounding of a kernel, far below what a hand can feel (0.1 nm at 1 m).
+const TOLERANCE: f64 = 2.5e-10;
+
+/// Evaluations may err by this multiple of the promised rounding before a point counts as
+/// inside: once for the value, once for the point it is compared with, doubled.
+const ROUNDINGS: f64 = 4.0;
+
+/// The skin of a probe without a radius, as a part of the size of the scene. Larger slides
+/// faster along creases; walls thinner than two skins would not hold it.
+const POINT_SKIN: f64 = 5e-5;
+
+/// A probe smaller than this part of the scene is treated as a point: its own radius would make
+/// it crawl.
+const POINT_RADIUS: f64 = 1e-6;
+
+/// Below this part of the Lipschitz constant a gradient says nothing about the surface: it is
+/// that of a ridge, a blend or a centre. Dividing by it would throw the proxy far away.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// An evaluated point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample<const D: usize> {
+    /// Where [m].
+    pub(crate) point: Point<D>,
+    /// The field's value minus the probe's radius [m]: zero on the offset surface.
+    pub(crate) gap: f64,
+    /// The gradient, if it was asked for.
+    pub(crate) gradient: Option<Vector<f64, D>>,
+}
+
+/// A shape with a budget of evaluations and the lengths that follow from shape and probe.
+///
+/// The *offset surface* is `f = r` with the probe's radius `r`. The centre of the probe may dip
+/// below it during a move, by less than a *skin*, and never rests there. With a radius the skin
+/// is the radius: the centre never enters the shape itself.
+#[derive(Debug)]
+pub(crate) struct Sampler<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    radius: f64,
+    skin: f64,
+    tolerance: f64,
+    lipschitz: f64,
+    budget: u32,
+    evaluations: u32,
+}
+
+impl<'a, const D: usize> Sampler<'a, D> {
+    /// For a probe of `radius` [m] that moves between points at most `extent` [m] from the
+    /// origin and `motion` [m] apart.
+    pub(crate) fn new(
+        shape: &'a Shape<D>,
+        radius: f64,
+        budget: u32,
+        (extent, motion): (f64, f64),
+    ) -> Self {
+        let promise = shape.promise();
+        // A shape without bounds has no size; the place where it is touched has.
+        let size = promise.bounds.map_or(motion.max(extent), |b| b.ball.radius);
+        let rounding = ROUNDINGS * promise.rounding.within(extent);
+        let tolerance = f64::max(TOLERANCE * size, rounding);
+        let skin =
+            if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
+        let skin = skin.max(4.0 * tolerance);
+        let lipschitz = promise.lipschitz;
+        Self { shape, radius, skin, tolerance, lipschitz, budget, evaluations: 0 }
+    }
+
+    /// How deep below the offset surface a point may rest [m].
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// How deep below the offset surface the probe's centre may dip on its way [m].
+    pub(crate) fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Gaps below this are better crossed along the surface than along a line [m].
+    pub(crate) fn near(&self) -> f64 {
+        0.25 * self.skin
+    }
+
+    /// How often the shape was evaluated.
+    pub(crate) fn evaluations(&self) -> u32 {
+        self.evaluations
+    }
+
+    /// The value at `point`; `None` if the budget is spent or the field is not finite there.
+    pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
+        self.spend()?;
+        let gap = self.shape.distance(point) - self.radius;
+        gap.is_finite().then_some(Sample { point, gap, gradient: None })
+    }
+
+    /// The value and gradient at `point`, likewise.
+    pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
+        self.spend()?;
+        let (value, gradient) = self.shape.distance_gradient(point);
+        let gap = value - self.radius;
+        let is_finite = gap.is_finite() && gradient.is_finite();
+        is_finite.then_some(Sample { point, gap, gradient: Some(gradient) })
+    }
+
+    fn spend(&mut self) -> Option<()> {
+        if self.evaluations >= self.budget {
+            return None;
+        }
+        self.evaluations += 1;
+        Some(())
+    }
+
+    /// The radius of a ball about the sample that is sure not to reach the offset surface [m].
+    ///
+    /// `(f − r − ε) / L` with the rounding `ε`; where the Lipschitz constant is promised in a
+    /// region only, everything outside it is free.
+    pub(crate) fn free_radius(&self, sample: &Sample<D>) -> f64 {
+        self.sure(sample, sample.gap - self.tolerance)
+    }
+
+    /// How far the probe's centre may move from the sample in any direction [m], so that it
+    /// can return to the offset surface afterwards without having crossed the shape.
+    ///
+    /// Far from the surface: down to half a skin below it. From below: half of the way to a
+    /// whole skin, so that repeated moves never arrive there.
+    pub(crate) fn reach(&self, sample: &Sample<D>) -> f64 {
+        let to_half = sample.gap + 0.5 * self.skin;
+        let half_way = 0.5 * (sample.gap + self.skin);
+        self.sure(sample, to_half.max(half_way))
+    }
+
+    /// The radius of a ball about the sample that is sure to be less than a skin deep [m].
+    pub(crate) fn clear_radius(&self, sample: &Sample<D>) -> f64 {
+        self.sure(sample, sample.gap + self.skin).max(0.0)
+    }
+
+    fn sure(&self, sample: &Sample<D>, height: f64) -> f64 {
+        match self.shape.promise().region {
+            Some(region) => {
+                let outside = (sample.point - region.centre).norm() - region.radius;
+                if outside > 0.0 { outside.max(self.near()) } else { height / self.lipschitz }
+            }
+            None => height / self.lipschitz,
+        }
+    }
+
+    /// The unit normal and the signed distance to the offset surface along it [m], to first
+    /// order: `(f − r) / ‖∇f‖`. `previous` replaces the direction of a gradient too small to
+    /// have one.
+    pub(crate) fn tangent(
+        &self,
+        sample: &Sample<D>,
+        previous: Vector<f64, D>,
+    ) -> (Vector<f64, D>, f64) {
+        let gradient = sample.gradient.unwrap_or(Vector::ZERO);
+        let slope = gradient.norm();
+        if slope > LEAST_SLOPE * self.lipschitz {
+            (gradient * (1.0 / slope), sample.gap / slope)
+        } else {
+            (previous, sample.gap / self.lipschitz)
+        }
+    }
+}

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How long ticks take and how late they start, as distributions.
+
+use hdrhistogram::Histogram;
+
+/// The longest time told apart [ns]: ten seconds. Longer ones count as this.
+const LONGEST_NS: u64 = 10_000_000_000;
+
+/// Decimal digits a quantile is exact to: more than a shared machine repeats.
+const DIGITS: u8 = 3;
+
+/// A distribution of times.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Distribution {
+    /// How many times were measured.
+    pub count: u64,
+    /// Their mean [ns].
+    pub mean_ns: f64,
+    /// Half are at most this [ns].
+    pub p50_ns: u64,
+    /// 99 % are at most this [ns].
+    pub p99_ns: u64,
+    /// 99.9 % are at most this [ns].
+    pub p999_ns: u64,
+    /// All are at most this [ns].
+    pub max_ns: u64,
+    /// A histogram: times up to 1, 2, 4, 8 … µs, up to the longest.
+    pub buckets: Vec<Bucket>,
+}
+
+/// A bar of a histogram: how many times lie above the bucket before and up to a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Bucket {
+    /// The largest time of the bucket [ns].
+    pub up_to_ns: u64,
+    /// How many there are.
+    pub count: u64,
+}
+
+/// Collects times into memory set aside beforehand.
+#[derive(Clone, Debug)]
+pub(crate) struct Times(Histogram<u64>);
+
+impl Times {
+    pub(crate) fn new() -> Self {
+        let histogram = Histogram::new_with_bounds(1, LONGEST_NS, DIGITS);
+        Self(histogram.expect("the bounds are constants that the histogram accepts"))
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn record(&mut self, ns: u64) {
+        self.0.saturating_record(ns);
+    }
+
+    /// What was collected; `None` if nothing was.
+    pub(crate) fn distribution(&self) -> Option<Distribution> {
+        let times = &self.0;
+        if times.is_empty() {
+            return None;
+        }
+        let mut buckets = Vec::new();
+        let mut counted = 0;
+        let mut up_to_ns = 1000;
+        while counted < times.len() {
+            let below = times.count_between(0, up_to_ns);
+            buckets.push(Bucket { up_to_ns, count: below.saturating_sub(counted) });
+            counted = counted.max(below);
+            up_to_ns *= 2;
+        }
+        Some(Distribution {
+            count: times.len(),
+            mean_ns: times.mean(),
+            p50_ns: times.value_at_quantile(0.5),
+            p99_ns: times.value_at_quantile(0.99),
+            p999_ns: times.value_at_quantile(0.999),
+            max_ns: times.max(),
+            buckets,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_times() {
+        let mut times = Times::new();
+        assert_eq!(times.distribution(), None);
+        (1..=1000).for_each(|ns| times.record(ns));
+        let d = times.distribution().unwrap();
+        assert_eq!((d.count, d.p50_ns, d.p99_ns, d.max_ns), (1000, 500, 990, 1000));
+        assert_eq!(d.buckets, [Bucket { up_to_ns: 1000, count: 1000 }]);
+    }
+
+    #[test]
+    fn every_time_is_in_one_bucket() {
+        let mut times = Times::new();
+        for ns in [0, 999, 1500, 3000, 1_000_000_000, u64::MAX] {
+            times.record(ns);
+        }
+        let d = times.distribution().unwrap();
+        assert_eq!(d.buckets.iter().map(|b| b.count).sum::<u64>(), 6);
+        assert_eq!(d.buckets[0].count, 2);
+        assert_eq!(d.buckets[1].count, 1);
+    }
+}

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The servo's step allocates nothing and stays in its budget.
+#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
+
+mod common;
+
+use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use common::{ball, cuboid, torus};
+use palpate_field::{Shape, Vector};
+use palpate_haptics::{PointState, Servo, ServoOptions, Tour};
+
+/// Aborts on an allocation where none is allowed.
+#[global_allocator]
+static ALLOCATOR: AllocDisabler = AllocDisabler;
+
+#[test]
+fn a_step_allocates_and_frees_nothing() {
+    let cup = cuboid([0.08, 0.09, 0.08])
+        .difference([cuboid([0.07, 0.09, 0.07]).translated(Vector([0.0, 0.01, 0.0])).unwrap()])
+        .unwrap();
+    let at = |shape: Shape<3>, x: f64| shape.translated(Vector([x, 0.0, 0.0])).unwrap();
+    let bodies = [cup, at(ball(0.04), 0.1), at(torus(0.03, 0.012), -0.1)];
+    let shape = Shape::union(bodies).unwrap();
+    let bounds = shape.promise().bounds.unwrap().aabb;
+    let path = Tour::new(bounds, 10.0).unwrap().over(&shape).unwrap();
+    let mut servo = Servo::new(shape.clone(), 3, ServoOptions::default()).unwrap();
+    let budget = servo.options().probe.budget();
+    let mut next = Some(shape);
+    for tick in 0..10_000 {
+        let time = f64::from(tick) * 1e-3;
+        let states = [
+            path.state_at(time),
+            path.state_at(10.0 - time),
+            PointState::at_rest(Vector([f64::NAN; 3])),
+        ];
+        let old = assert_no_alloc(|| {
+            let touches = servo.step(&states);
+            assert!(touches.iter().all(|t| t.evaluations <= budget && t.force.is_finite()));
+            match next.take() {
+                Some(shape) if tick % 1000 == 0 => Some(servo.replace_shape(shape)),
+                other => other,
+            }
+        });
+        next = old;
+    }
+}

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! From what is written to what can be asked.
+
+mod builder;
+mod form;
+mod shape_error;
+mod size;
+
+use indexmap::IndexSet;
+use palpate_field::{Pose, Shape};
+
+use crate::material::Material;
+use crate::pose::{Turning, Turns};
+use crate::problem::Problem;
+use crate::scene::{Dimension, Scene};
+use builder::{Builder, Space};
+
+/// A scene that can be asked, in its dimension.
+#[derive(Clone, Debug)]
+pub enum World {
+    /// A scene in the plane.
+    Planar(BuiltScene<2>),
+    /// A scene in space.
+    Spatial(BuiltScene<3>),
+}
+
+/// The shapes of a scene.
+#[derive(Clone, Debug)]
+pub struct BuiltScene<const D: usize> {
+    /// The bodies, in the order of the scene.
+    pub bodies: Vec<BuiltBody<D>>,
+    /// The union of the bodies in the world.
+    pub whole: Shape<D>,
+    /// The shape of the tool in its own coordinates, if it has one.
+    pub tool: Option<Shape<D>>,
+}
+
+/// A body with its shape.
+#[derive(Clone, Debug)]
+pub struct BuiltBody<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// Its shape in the world.
+    pub shape: Shape<D>,
+    /// Its shape in its own coordinates.
+    pub shape_in_body: Shape<D>,
+    /// Its pose.
+    pub world_from_body: Pose<D>,
+    /// What it feels like.
+    pub material: Material,
+}
+
+/// Checks and builds a scene.
+pub(crate) fn world(scene: &Scene) -> Result<World, Problem> {
+    match scene.dimension() {
+        Dimension::Two => built(scene).map(World::Planar),
+        Dimension::Three => built(scene).map(World::Spatial),
+    }
+}
+
+fn built<const D: usize>(scene: &Scene) -> Result<BuiltScene<D>, Problem>
+where
+    for<'a> Builder<'a>: Space<'a, D>,
+    Turns: Turning<D>,
+{
+    let mut builder = Builder::new(scene);
+    builder.named_shapes::<D>().map_err(|problem| problem.under("shapes"))?;
+    let bodies = bodies(scene, &mut builder).map_err(|problem| problem.under("bodies"))?;
+    let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
+        .map_err(|error| Problem::new(error.to_string()).under("bodies"))?;
+    let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
+    check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
+    check_views(scene, D).map_err(|problem| problem.under("views"))?;
+    Ok(BuiltScene { bodies, whole, tool })
+}
+
+fn bodies<'a, const D: usize>(
+    scene: &'a Scene,
+    builder: &mut Builder<'a>,
+) -> Result<Vec<BuiltBody<D>>, Problem>
+where
+    Builder<'a>: Space<'a, D>,
+    Turns: Turning<D>,
+{
+    if scene.bodies.is_empty() {
+        return Err(Problem::about("must have at least 1 body, got 0"));
+    }
+    unique(scene.bodies.iter().map(|body| body.name.as_str()))?;
+    let mut bodies = Vec::with_capacity(scene.bodies.len());
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let mut make = || -> Result<BuiltBody<D>, Problem> {
+            let shape_in_body = builder.shape(&body.shape).map_err(|p| p.under("shape"))?;
+            let (world_from_body, shape) = match &body.pose {
+                Some(pose) => {
+                    let pose = pose.built().map_err(|problem| problem.under("pose"))?;
+                    let shape = shape_in_body
+                        .placed(&pose)
+                        .map_err(|error| Problem::new(error.to_string()))?;
+                    (pose, shape)
+                }
+                None => (Pose::identity(), shape_in_body.clone()),
+            };
+            let material = body.material.clone().unwrap_or_default();
+            material.check(D).map_err(|problem| problem.under("material"))?;
+            let name = body.name.clone();
+            Ok(BuiltBody { name, shape, shape_in_body, world_from_body, material })
+        };
+        bodies.push(make().map_err(|problem| problem.at(i))?);
+    }
+    Ok(bodies)
+}
+
+fn tool<'a, const D: usize>(
+    scene: &'a Scene,
+    builder: &mut Builder<'a>,
+) -> Result<Option<Shape<D>>, Problem>
+where
+    Builder<'a>: Space<'a, D>,
+    Turns: Turning<D>,
+{
+    let Some(tool) = &scene.tool else { return Ok(None) };
+    tool.check(D)?;
+    if let Some(pose) = tool.workspace.as_ref().and_then(|workspace| workspace.pose.as_ref()) {
+        pose.built::<D>().map_err(|problem| problem.under("pose").under("workspace"))?;
+    }
+    let shape = tool.shape.as_ref().map(|node| builder.shape(node)).transpose();
+    shape.map_err(|problem| problem.under("shape"))
+}
+
+fn check_motions<const D: usize>(scene: &Scene) -> Result<(), Problem>
+where
+    Turns: Turning<D>,
+{
+    let names: IndexSet<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    for (i, motion) in scene.motions.iter().enumerate() {
+        let check = || -> Result<(), Problem> {
+            motion.check()?;
+            if !names.contains(motion.body.as_str()) {
+                let known: Vec<_> = names.iter().copied().collect();
+                let message = crate::problem::unknown("body", &motion.body, &known);
+                return Err(Problem::new(message).under("body"));
+            }
+            if let Some(from) = &motion.from {
+                from.built::<D>().map_err(|problem| problem.under("from"))?;
+            }
+            motion.to.built::<D>().map_err(|problem| problem.under("to"))?;
+            Ok(())
+        };
+        check().map_err(|problem| problem.at(i))?;
+    }
+    Ok(())
+}
+
+fn check_views(scene: &Scene, dimension: usize) -> Result<(), Problem> {
+    unique(scene.views.iter().map(|view| view.name.as_str()))?;
+    for (i, view) in scene.views.iter().enumerate() {
+        view.check(dimension).map_err(|problem| problem.at(i))?;
+    }
+    Ok(())
+}
+
+/// Checks that no name is empty or there twice.
+fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), Problem> {
+    let mut seen = std::collections::HashMap::new();
+    for (i, name) in names.enumerate() {
+        if name.is_empty() {
+            return Err(Problem::about("must not be empty").under("name").at(i));
+        }
+        if let Some(first) = seen.insert(name, i) {
+            let name = crate::problem::shortened(name);
+            let message = format!("must be unique, but {name:?} is also the name at [{first}]");
+            return Err(Problem::about(message).under("name").at(i));
+        }
+    }
+    Ok(())
+}

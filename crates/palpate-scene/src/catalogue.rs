@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The primitives of both dimensions, as files see them.
+
+use std::borrow::Cow;
+
+use palpate_field::kernel::{Entry, Parameter, ParameterKind};
+
+use crate::scene::Dimension;
+
+/// A primitive in one dimension.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Signature {
+    pub(crate) dimension: Dimension,
+    pub(crate) name: &'static str,
+    pub(crate) about: &'static str,
+    pub(crate) parameters: &'static [Parameter],
+}
+
+impl Signature {
+    fn of<const D: usize>(dimension: Dimension, entry: &Entry<D>) -> Self {
+        let Entry { name, about, parameters, .. } = *entry;
+        Self { dimension, name, about, parameters }
+    }
+
+    /// The parameter whose key in files is `key`.
+    pub(crate) fn parameter(&self, key: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|parameter| file_key(parameter) == key)
+    }
+}
+
+/// All primitives, those of the plane first.
+pub(crate) fn signatures() -> impl Iterator<Item = Signature> {
+    let planar = Entry::<2>::ALL.iter().map(|e| Signature::of(Dimension::Two, e));
+    planar.chain(Entry::<3>::ALL.iter().map(|e| Signature::of(Dimension::Three, e)))
+}
+
+/// The primitives of that name: at most one in each dimension.
+pub(crate) fn named(name: &str) -> Vec<Signature> {
+    signatures().filter(|signature| signature.name == name).collect()
+}
+
+/// A parameter's key in files: angles say that they are in degrees.
+pub(crate) fn file_key(parameter: &Parameter) -> Cow<'static, str> {
+    match parameter.kind {
+        ParameterKind::Angle => format!("{}_degrees", parameter.name).into(),
+        _ => parameter.name.into(),
+    }
+}

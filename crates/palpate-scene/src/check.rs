@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The rules of plain numbers, with their units.
+
+use crate::problem::Problem;
+
+/// Checks that `value` is finite and at least `least`.
+pub(crate) fn at_least(key: &str, value: f64, least: f64, unit: &str) -> Result<(), Problem> {
+    // Written so that NaN fails.
+    if value >= least && value.is_finite() {
+        return Ok(());
+    }
+    let rule = if least == 0.0 { "zero or more".into() } else { format!("at least {least}") };
+    refused(key, &rule, value, unit)
+}
+
+/// Checks that `value` is finite and positive.
+pub(crate) fn positive(key: &str, value: f64, unit: &str) -> Result<(), Problem> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    refused(key, "positive", value, unit)
+}
+
+/// Checks that `value` is positive, if it is there.
+pub(crate) fn positive_if(key: &str, value: Option<f64>, unit: &str) -> Result<(), Problem> {
+    value.map_or(Ok(()), |value| positive(key, value, unit))
+}
+
+fn refused(key: &str, rule: &str, value: f64, unit: &str) -> Result<(), Problem> {
+    let space = if unit.is_empty() { "" } else { " " };
+    Err(Problem::about(format!("must be {rule}, got {value}{space}{unit}")).under(key))
+}
+
+/// `true` if `value` is what a missing key means, so that it need not be
+/// written.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is wrong with a scene, and where.
+
+use std::fmt;
+
+/// Why a scene cannot be read or built.
+///
+/// ```
+/// use palpate_scene::Scene;
+///
+/// let text = r#"{ "palpate": 1, "dimension": 3,
+///   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": -0.02 } } } ] }"#;
+/// let error = Scene::from_json(text).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.02 m",
+/// );
+/// assert_eq!((error.line, error.column), (2, 54));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub struct SceneError {
+    /// Where in the scene: keys joined by dots, places in lists in brackets;
+    /// empty for the whole.
+    pub path: String,
+    /// The line, from 1; 0 if the scene does not come from a file.
+    pub line: usize,
+    /// The column in characters, from 1; 0 if the scene does not come from a
+    /// file.
+    pub column: usize,
+    /// What is wrong there.
+    pub problem: String,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, line, problem, .. } = self;
+        match (path.is_empty(), *line) {
+            (true, 0) => write!(f, "{problem}"),
+            (true, line) => write!(f, "line {line}: {problem}"),
+            (false, 0) => write!(f, "{path}: {problem}"),
+            (false, line) => write!(f, "{path}, line {line}: {problem}"),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How bodies move.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{at_least, positive};
+use crate::pose::WrittenPose;
+use crate::problem::Problem;
+
+/// A screw motion of a body from a pose to another, at constant speed.
+///
+/// The body turns the shorter way, by at most half a turn, unless `turns` adds
+/// whole ones.
+///
+/// ```
+/// use palpate_scene::Motion;
+///
+/// # fn main() -> Result<(), serde_json::Error> {
+/// let drop: Motion = serde_json::from_str(
+///     r#"{ "body": "peg", "to": { "translation": [0, -0.1, 0] }, "duration": 0.2 }"#,
+/// )?;
+/// assert_eq!((drop.start, drop.turns), (0.0, 0));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct Motion {
+    /// What it shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// The name of the body.
+    pub body: String,
+    /// Where it begins; the body's own pose if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<WrittenPose>,
+    /// Where it ends.
+    pub to: WrittenPose,
+    /// When it begins [s]; 0 if left out.
+    #[serde(default, skip_serializing_if = "crate::check::is_default")]
+    #[schemars(range(min = 0.0))]
+    pub start: f64,
+    /// How long it takes [s]; 1 if left out.
+    #[serde(default = "one_second")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub duration: f64,
+    /// Whole turns added to the rotation, backwards if negative; 0 if left out.
+    #[serde(default, skip_serializing_if = "crate::check::is_default")]
+    pub turns: i32,
+    /// What happens after its end; it stays there if left out.
+    #[serde(default, skip_serializing_if = "crate::check::is_default")]
+    pub repeat: Repeat,
+}
+
+fn one_second() -> f64 {
+    1.0
+}
+
+/// What happens at the end of a motion.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Repeat {
+    /// The body stays there.
+    #[default]
+    Once,
+    /// The body jumps back and begins again.
+    Loop,
+    /// The body moves back, and begins again.
+    BackAndForth,
+}
+
+impl Motion {
+    /// What is wrong with the numbers, body and poses aside.
+    pub(crate) fn check(&self) -> Result<(), Problem> {
+        at_least("start", self.start, 0.0, "s")?;
+        positive("duration", self.duration, "s")
+    }
+}

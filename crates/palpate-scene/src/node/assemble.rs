@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! From the keys of an object to the one shape that they describe.
+
+use super::operators::{self as keys, OF};
+use super::{Axis, Factor, Form, Node, Primitive, Profile};
+use crate::pose::{self, Turn};
+
+/// The values of a node's keys.
+#[derive(Default)]
+pub(super) struct Parts {
+    pub(super) description: Option<String>,
+    pub(super) of: Option<Node>,
+    pub(super) shape: Option<String>,
+    pub(super) width: Option<f64>,
+    pub(super) profile: Option<Profile>,
+    pub(super) translate: Option<Vec<f64>>,
+    pub(super) rotate_degrees: Option<Turn>,
+    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) scale: Option<Factor>,
+    pub(super) offset: Option<f64>,
+    pub(super) shell: Option<f64>,
+    pub(super) elongate: Option<Vec<f64>>,
+    pub(super) mirror: Option<Axis>,
+    pub(super) extrude: Option<f64>,
+    pub(super) revolve: Option<About>,
+    pub(super) lists: Vec<(&'static str, Vec<Node>)>,
+    pub(super) primitives: Vec<Primitive>,
+}
+
+/// The axis of a revolution: y, and no other.
+#[derive(serde::Deserialize)]
+pub(super) enum About {
+    /// The axis of all solids of revolution here.
+    #[serde(rename = "y")]
+    Y,
+}
+
+impl Parts {
+    /// The node of these parts, or what is wrong with them.
+    pub(super) fn assemble(mut self) -> Result<Node, String> {
+        let heads = self.heads();
+        let head = match heads.as_slice() {
+            [head] => head.as_str(),
+            [] => return Err("missing the primitive or operator that makes the shape".into()),
+            [first, .., last] => {
+                return Err(format!(
+                    "`{first}` and `{last}` in one object; an object makes one shape: nest them"
+                ));
+            }
+        };
+        let is_unary = keys::UNARY.iter().any(|(key, _)| *key == head);
+        if self.of.is_some() != is_unary {
+            return Err(if is_unary {
+                format!("missing key `{OF}`: the shape that `{head}` is applied to")
+            } else {
+                format!("key `{OF}` does not go with `{head}`")
+            });
+        }
+        if head != keys::SMOOTH_UNION {
+            for (key, is_there) in
+                [(keys::WIDTH, self.width.is_some()), (keys::PROFILE, self.profile.is_some())]
+            {
+                if is_there {
+                    return Err(format!("key `{key}` does not go with `{head}`"));
+                }
+            }
+        }
+        let description = self.description.take();
+        let form = self.form(head)?;
+        Ok(Node { description, form })
+    }
+
+    /// The keys that each make a shape; translation and rotation together are
+    /// one.
+    fn heads(&self) -> Vec<String> {
+        let mut heads: Vec<&str> = Vec::new();
+        heads.extend(self.primitives.iter().map(|primitive| primitive.name.as_str()));
+        heads.extend(self.lists.iter().map(|(list, _)| *list));
+        let moved = [
+            (self.translate.is_some(), keys::TRANSLATE),
+            (self.rotate_degrees.is_some(), keys::ROTATE_DEGREES),
+            (self.rotation.is_some(), keys::ROTATION),
+        ];
+        heads.extend(moved.iter().find(|(is_there, _)| *is_there).map(|(_, key)| *key));
+        let others = [
+            (self.shape.is_some(), keys::SHAPE),
+            (self.scale.is_some(), keys::SCALE),
+            (self.offset.is_some(), keys::OFFSET),
+            (self.shell.is_some(), keys::SHELL),
+            (self.elongate.is_some(), keys::ELONGATE),
+            (self.mirror.is_some(), keys::MIRROR),
+            (self.extrude.is_some(), keys::EXTRUDE),
+            (self.revolve.is_some(), keys::REVOLVE),
+        ];
+        heads.extend(others.iter().filter(|(is_there, _)| *is_there).map(|(_, key)| *key));
+        heads.into_iter().map(str::to_owned).collect()
+    }
+
+    /// The form whose one head is there.
+    fn form(self, head: &str) -> Result<Form, String> {
+        if let Some(name) = self.shape {
+            return Ok(Form::Reference(name));
+        }
+        if let Some(primitive) = self.primitives.into_iter().next() {
+            return Ok(Form::Primitive(primitive));
+        }
+        if let Some((list, of)) = self.lists.into_iter().next() {
+            return Ok(match list {
+                keys::UNION => Form::Union(of),
+                keys::INTERSECTION => Form::Intersection(of),
+                keys::DIFFERENCE => Form::Difference(of),
+                keys::SYMMETRIC_DIFFERENCE => Form::SymmetricDifference(of),
+                _ => {
+                    let width = self.width.ok_or("missing key `width`: how far to fill [m]")?;
+                    Form::SmoothUnion { of, width, profile: self.profile }
+                }
+            });
+        }
+        let Some(of) = self.of.map(Box::new) else {
+            return Err(format!("missing key `{OF}`"));
+        };
+        if let Some(factor) = self.scale {
+            Ok(Form::Scaled { factor, of })
+        } else if let Some(distance) = self.offset {
+            Ok(Form::Offset { distance, of })
+        } else if let Some(thickness) = self.shell {
+            Ok(Form::Shell { thickness, of })
+        } else if let Some(lengths) = self.elongate {
+            Ok(Form::Elongated { lengths, of })
+        } else if let Some(axis) = self.mirror {
+            Ok(Form::Mirrored { axis, of })
+        } else if let Some(height) = self.extrude {
+            Ok(Form::Extruded { height, of })
+        } else if let Some(About::Y) = self.revolve {
+            Ok(Form::Revolved { of })
+        } else {
+            let rotation = pose::one_rotation(self.rotate_degrees, self.rotation)?;
+            debug_assert!(self.translate.is_some() || rotation.is_some(), "{head} has a form");
+            Ok(Form::Placed { translate: self.translate, rotation, of })
+        }
+    }
+}

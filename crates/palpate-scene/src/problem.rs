@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! An error on its way up: each level adds its step to the path.
+
+use std::fmt;
+
+use serde::de::{self, Expected, Unexpected};
+
+use crate::error::SceneError;
+use crate::json::Position;
+
+/// One step down into a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// To the value of a key.
+    Key(String),
+    /// To a place in a list.
+    Index(usize),
+}
+
+/// Something wrong, and the way to it.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    /// The steps from the place up to the root: the last is the outermost.
+    steps: Vec<Step>,
+    /// `true` if the message lacks its subject: the name of the place.
+    wants_subject: bool,
+    /// `true` if the outermost step begins at the root.
+    rooted: bool,
+    /// `true` if what is wrong here could be right in the other dimension.
+    of_dimension: bool,
+    message: String,
+}
+
+impl Problem {
+    pub(crate) fn new(message: impl Into<String>) -> Self {
+        Self {
+            steps: Vec::new(),
+            wants_subject: false,
+            rooted: false,
+            of_dimension: false,
+            message: message.into(),
+        }
+    }
+
+    /// A message that begins with its verb: "must be positive".
+    pub(crate) fn about(message: impl Into<String>) -> Self {
+        Self { wants_subject: true, ..Self::new(message) }
+    }
+
+    /// The same problem, seen from the object that has it under `key`.
+    pub(crate) fn under(mut self, key: &str) -> Self {
+        if !self.rooted {
+            self.steps.push(Step::Key(key.to_owned()));
+        }
+        self
+    }
+
+    /// The same problem, seen from the list that has it at `index`.
+    pub(crate) fn at(mut self, index: usize) -> Self {
+        if !self.rooted {
+            self.steps.push(Step::Index(index));
+        }
+        self
+    }
+
+    /// The same problem, whose path is complete: it was found by following a
+    /// reference, and what refers to it is no part of the way.
+    pub(crate) fn rooted(self) -> Self {
+        Self { rooted: true, ..self }
+    }
+
+    /// The same problem, which would be none in the other dimension.
+    pub(crate) fn of_dimension(self) -> Self {
+        Self { of_dimension: true, ..self }
+    }
+
+    /// `true` if what is wrong here could be right in the other dimension.
+    pub(crate) fn is_of_dimension(&self) -> bool {
+        self.of_dimension
+    }
+
+    /// The same problem, at a place that has its dimension in any case.
+    pub(crate) fn in_any_dimension(self) -> Self {
+        Self { of_dimension: false, ..self }
+    }
+
+    /// What is wrong, without the place.
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// The steps from the root to the place.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.steps.iter().rev()
+    }
+
+    /// The error for users, at `position` if it is known.
+    pub(crate) fn located(self, position: Option<Position>) -> SceneError {
+        let path = display(self.steps.iter().rev());
+        let problem = if self.wants_subject {
+            let named = self.steps.iter().position(|step| matches!(step, Step::Key(_)));
+            let subject = match named {
+                Some(key) => display(self.steps.iter().take(key + 1).rev()),
+                None => "the file".to_owned(),
+            };
+            format!("{subject} {}", self.message)
+        } else {
+            self.message
+        };
+        let (line, column) = position.map_or((0, 0), |p| (p.line, p.column));
+        SceneError { path, line, column, problem }
+    }
+}
+
+/// `a.b[2].c`; keys that would be ambiguous are quoted.
+fn display<'a>(steps: impl Iterator<Item = &'a Step>) -> String {
+    let mut path = String::new();
+    for step in steps {
+        match step {
+            Step::Index(index) => path.push_str(&format!("[{index}]")),
+            Step::Key(key) => {
+                if !path.is_empty() {
+                    path.push('.');
+                }
+                let plain = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+                let key = shortened(key);
+                if !key.is_empty() && key.chars().all(plain) {
+                    path.push_str(&key);
+                } else {
+                    path.push_str(&format!("{key:?}"));
+                }
+            }
+        }
+    }
+    path
+}
+
+/// The longest text from a file that a message repeats, in characters.
+const LONGEST_QUOTE: usize = 60;
+
+/// The beginning of `text`, fit for a message.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_QUOTE) {
+        Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
+    }
+}
+
+/// "unknown key `raduis`, did you mean `radius`?", or the list of `known`.
+pub(crate) fn unknown(what: &str, found: &str, known: &[&str]) -> String {
+    let found = shortened(found);
+    let letters = found.chars().count();
+    // A third of the letters may be wrong: more, and the guess is none.
+    let distance = |candidate: &str| {
+        let allowed = candidate.chars().take(2 * LONGEST_QUOTE).count() / 3;
+        let is_near = candidate.len().abs_diff(letters) <= LONGEST_QUOTE;
+        let distance = is_near.then(|| strsim::osa_distance(&found, candidate));
+        distance.filter(|distance| *distance <= allowed)
+    };
+    let near = known.iter().filter_map(|c| distance(c).map(|distance| (distance, c)));
+    match near.min_by_key(|(distance, _)| *distance) {
+        Some((_, nearest)) => format!("unknown {what} `{found}`, did you mean `{nearest}`?"),
+        None if known.is_empty() => format!("unknown {what} `{found}`; there are none here"),
+        None => format!("unknown {what} `{found}`; known are {}", listed(known)),
+    }
+}
+
+/// The most names that a message lists.
+const LONGEST_LIST: usize = 16;
+
+/// "`a`, `b` and `c`".
+fn listed(names: &[&str]) -> String {
+    let shown = names.iter().take(LONGEST_LIST);
+    let mut quoted: Vec<_> = shown.map(|name| format!("`{}`", shortened(name))).collect();
+    if names.len() > LONGEST_LIST {
+        quoted.push(format!("{} more", names.len() - LONGEST_LIST));
+    }
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Problem {}
+
+impl de::Error for Problem {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self::new(message.to_string())
+    }
+
+    fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::about(format!("must be {}, got {}", plain(expected), quoted(found)))
+    }
+
+    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::invalid_type(found, expected)
+    }
+
+    fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
+        Self::about(format!("must be {}, got {length}", plain(expected)))
+    }
+
+    fn unknown_variant(variant: &str, expected: &'static [&'static str]) -> Self {
+        Self::new(unknown("value", variant, expected))
+    }
+
+    fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
+        Self::new(unknown("key", field, expected))
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        Self::new(format!("missing key `{field}`"))
+    }
+
+    fn duplicate_field(field: &'static str) -> Self {
+        Self::new(format!("duplicate key `{field}`"))
+    }
+}
+
+/// What was expected, without the words of Rust.
+fn plain(expected: &dyn Expected) -> String {
+    let expected = expected.to_string();
+    let plain = match expected.as_str() {
+        "f64" => "a number",
+        "i32" => "a whole number",
+        "u32" => "a whole number, zero or more",
+        "a sequence" => "a list",
+        "a map" => "an object",
+        "an array of length 2" => "a list of 2 numbers",
+        "an array of length 3" => "a list of 3 numbers",
+        "an array of length 4" => "a list of 4 numbers",
+        other => other,
+    };
+    plain.to_owned()
+}
+
+fn quoted(found: Unexpected<'_>) -> String {
+    match found {
+        Unexpected::Str(text) => format!("{:?}", shortened(text)),
+        Unexpected::Bool(value) => value.to_string(),
+        Unexpected::Unsigned(number) => number.to_string(),
+        Unexpected::Signed(number) => number.to_string(),
+        Unexpected::Float(number) => format!("{number:?}"),
+        Unexpected::Seq => "a list".into(),
+        Unexpected::Map => "an object".into(),
+        Unexpected::Unit => "null".into(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_quote_what_is_not_a_plain_name() {
+        let problem = Problem::about("must be short").at(1).at(0).under("a.b").under("shapes");
+        let error = problem.located(None);
+        assert_eq!(error.to_string(), r#"shapes."a.b"[0][1]: "a.b"[0][1] must be short"#);
+    }
+
+    #[test]
+    fn far_names_are_listed_near_ones_proposed() {
+        let known = ["radius", "height"];
+        assert_eq!(
+            unknown("key", "raduis", &known),
+            "unknown key `raduis`, did you mean `radius`?"
+        );
+        assert_eq!(
+            unknown("key", "colour", &known),
+            "unknown key `colour`; known are `radius` and `height`"
+        );
+    }
+}

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A scene as it is written.
+
+use std::fmt;
+use std::path::Path;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::de::{Deserializer, Unexpected, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+
+use crate::build::{self, World};
+use crate::error::SceneError;
+use crate::json::{self, Document};
+use crate::material::Material;
+use crate::motion::Motion;
+use crate::node::Node;
+use crate::pose::WrittenPose;
+use crate::tool::Tool;
+use crate::view::View;
+
+/// The number of dimensions of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dimension {
+    /// The plane: x to the right, y up.
+    Two,
+    /// Space: right-handed, y up.
+    Three,
+}
+
+impl Dimension {
+    /// 2 or 3.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}D", self.count())
+    }
+}
+
+/// What a file holds: shapes, and bodies made of them.
+///
+/// Plain data: [`build`](Self::build) checks it and makes the shapes.
+///
+/// ```
+/// use palpate_scene::{Scene, World};
+///
+/// # fn main() -> Result<(), palpate_scene::SceneError> {
+/// let scene = Scene::from_json(
+///     r#"{ "palpate": 1, "dimension": 2,
+///          "bodies": [ { "name": "coin", "shape": { "ball": { "radius": 0.5 } },
+///                        "pose": { "translation": [1, 0] } } ] }"#,
+/// )?;
+/// assert_eq!(Scene::from_json(&scene.to_json())?, scene);
+/// if let World::Planar(world) = scene.build()? {
+///     assert_eq!(world.whole.distance([3.0, 0.0].into()), 1.5);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct Scene {
+    /// The version of the format: 1.
+    palpate: Version,
+    /// 2 for the plane, 3 for space.
+    #[schemars(schema_with = "crate::schema::dimension")]
+    dimension: Dimension,
+    /// What the scene shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Shapes that have a name, which any shape may refer to.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(schema_with = "crate::schema::named_shapes")]
+    pub shapes: IndexMap<String, Node>,
+    /// What is there to be touched; at least one.
+    #[schemars(length(min = 1))]
+    pub bodies: Vec<Body>,
+    /// What touches: the tip of a stylus, fingers, a shape held in the hand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool: Option<Tool>,
+    /// How bodies move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub motions: Vec<Motion>,
+    /// Pictures worth making of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub views: Vec<View>,
+}
+
+/// A shape with its place in the world and what it feels like.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct Body {
+    /// The name, unlike that of any other body.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// What the body is for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// The shape, in the body's own coordinates.
+    pub shape: Node,
+    /// Where the body is, as `world_from_body`; at the origin if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<WrittenPose>,
+    /// What the body feels like; the default material if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<Material>,
+}
+
+impl Body {
+    /// A body of the default material at the origin.
+    pub fn new(name: impl Into<String>, shape: Node) -> Self {
+        Self { name: name.into(), description: None, shape, pose: None, material: None }
+    }
+}
+
+impl Scene {
+    /// A scene without anything in it: give it bodies before building.
+    #[must_use]
+    pub fn new(dimension: Dimension) -> Self {
+        Self {
+            palpate: Version,
+            dimension,
+            description: None,
+            shapes: IndexMap::new(),
+            bodies: Vec::new(),
+            tool: None,
+            motions: Vec::new(),
+            views: Vec::new(),
+        }
+    }
+
+    /// Reads a scene and checks it as [`build`](Self::build) does, its unused
+    /// shapes too.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, with its path, line and column.
+    pub fn from_json(text: &str) -> Result<Self, SceneError> {
+        let document = Document::parse(text)?;
+        let scene: Self = document.read().map_err(|problem| document.locate(problem))?;
+        build::world(&scene).map_err(|problem| document.locate(problem))?;
+        Ok(scene)
+    }
+
+    /// Reads a scene from the file at `path`, as [`from_json`](Self::from_json).
+    ///
+    /// # Errors
+    ///
+    /// As `from_json`; if the file cannot be read, an error without place that
+    /// names it.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|error| SceneError {
+            path: String::new(),
+            line: 0,
+            column: 0,
+            problem: format!("cannot read {}: {error}", path.display()),
+        })?;
+        Self::from_json(&text)
+    }
+
+    /// The scene as a file: keys in a fixed order, shapes and bodies in theirs.
+    ///
+    /// Reading it again gives the same scene, to the last bit of each number.
+    /// Numbers that are not finite, which [`build`](Self::build) refuses, become
+    /// `null`.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Serialisation of plain data to a value has no way to fail.
+        json::write(&serde_json::to_value(self).unwrap_or_default())
+    }
+
+    /// The number of dimensions.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Makes the shapes and places the bodies.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, with its path; lines are known to
+    /// [`from_json`](Self::from_json) alone.
+    pub fn build(&self) -> Result<World, SceneError> {
+        build::world(self).map_err(|problem| problem.located(None))
+    }
+}
+
+/// The version of the format that this crate reads: 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Version;
+
+impl JsonSchema for Version {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Version".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "const": 1 })
+    }
+}
+
+impl Serialize for Version {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(1)
+    }
+}
+
+impl<'de> Deserialize<'de> for Version {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expected = "1, the one version of the format so far";
+        deserializer.deserialize_u64(OneOf(&[(1, Self)], expected))
+    }
+}
+
+impl Serialize for Dimension {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for Dimension {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_u64(OneOf(&[(2, Self::Two), (3, Self::Three)], "2 or 3"))
+    }
+}
+
+/// Takes one of a few numbers, and says which.
+struct OneOf<'a, T>(&'a [(u64, T)], &'static str);
+
+impl<T: Copy> Visitor<'_> for OneOf<'_, T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.1)
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<T, E> {
+        let found = self.0.iter().find(|(accepted, _)| *accepted == number);
+        found
+            .map(|(_, value)| *value)
+            .ok_or_else(|| E::invalid_value(Unexpected::Unsigned(number), &self))
+    }
+}

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The JSON Schema of scene files, made from the types and the catalogue.
+//!
+//! Everything is defined twice, for the plane and for space, because most sizes
+//! depend on the dimension.
+
+mod node;
+mod tidy;
+
+use std::borrow::Cow;
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::{Map, Value, json};
+
+use crate::node::{Axis, Node, Profile};
+use crate::pose::AxisAngle;
+use crate::scene::{Dimension, Scene};
+
+/// The JSON Schema of scene files, in draft 2020-12: for editors, and for
+/// programs that write scenes.
+///
+/// A file that the schema refuses is refused by [`Scene::from_json`] too. What a
+/// schema cannot say is left to it: cycles of references, names that must be
+/// known or unique, and rules that compare two numbers.
+///
+/// ```
+/// let schema = palpate_scene::schema();
+/// assert_eq!(schema["properties"]["palpate"]["const"], 1);
+/// assert!(schema["$defs"]["space"]["Node"]["properties"]["ball"].is_object());
+/// ```
+#[must_use]
+pub fn schema() -> Value {
+    let mut definitions = Map::new();
+    for dimension in [Dimension::Two, Dimension::Three] {
+        definitions.insert(place(dimension).to_owned(), definitions_of(dimension));
+    }
+    let scene = |dimension| json!({ "$ref": reference(dimension, "Scene") });
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "palpate scene",
+        "description": "Shapes to be touched, in metres, y up. Generated; see docs/formats.md.",
+        "type": "object",
+        "properties": {
+            "palpate": { "const": 1, "description": "The version of the format." },
+            "dimension": {
+                "enum": [2, 3],
+                "description": "2 for the plane, 3 for space.",
+            },
+        },
+        "required": ["palpate", "dimension", "bodies"],
+        "if": { "properties": { "dimension": { "const": 2 } } },
+        "then": scene(Dimension::Two),
+        "else": scene(Dimension::Three),
+        "$defs": definitions,
+    })
+}
+
+/// The text of [`schema`], as it is kept in `schema/scene.schema.json`.
+///
+/// ```
+/// let text = palpate_scene::schema_text();
+/// assert!(text.starts_with("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\""));
+/// ```
+#[must_use]
+pub fn schema_text() -> String {
+    crate::json::write(&schema())
+}
+
+/// What the definitions of a dimension are under.
+fn place(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Two => "plane",
+        Dimension::Three => "space",
+    }
+}
+
+/// The reference to a definition.
+fn reference(dimension: Dimension, name: &str) -> String {
+    format!("#/$defs/{}/{name}", place(dimension))
+}
+
+/// All definitions of a dimension.
+fn definitions_of(dimension: Dimension) -> Value {
+    let mut generator = SchemaSettings::draft2020_12().into_generator();
+    let scene = generator.subschema_for::<Scene>();
+    drop(scene);
+    let mut definitions = generator.take_definitions(false);
+    let size = dimension.count();
+    let numbers = |count: usize| {
+        json!({
+            "type": "array",
+            "items": { "type": "number" },
+            "minItems": count,
+            "maxItems": count,
+        })
+    };
+    // What the types leave open is decided here.
+    definitions.insert("Vector".to_owned(), numbers(size));
+    definitions.insert("Dimension".to_owned(), json!({ "const": size }));
+    definitions.insert(
+        "Turn".to_owned(),
+        match dimension {
+            Dimension::Two => json!({ "type": "number", "description": "Degrees." }),
+            Dimension::Three => json!({ "$ref": "#/$defs/AxisAngle" }),
+        },
+    );
+    if dimension == Dimension::Two {
+        forbid_in_the_plane(&mut definitions);
+    }
+    definitions.insert("Node".to_owned(), node::schema(dimension));
+    definitions.insert("NamedShapes".to_owned(), node::named_shapes(dimension));
+    let mut definitions = Value::Object(definitions.into_iter().collect());
+    tidy::tidy(&mut definitions, place(dimension));
+    definitions
+}
+
+/// Takes away the keys that mean something in space alone.
+fn forbid_in_the_plane(definitions: &mut Map<String, Value>) {
+    for (definition, key) in [("Pose", "rotation"), ("View", "plane"), ("View", "at")] {
+        let properties = definitions
+            .get_mut(definition)
+            .and_then(|definition| definition.get_mut("properties"))
+            .and_then(Value::as_object_mut);
+        if let Some(properties) = properties {
+            properties.shift_remove(key);
+        }
+    }
+    if let Some(Value::Object(pose)) = definitions.get_mut("Pose") {
+        pose.shift_remove("not");
+    }
+}
+
+/// A reference to a definition that [`definitions_of`] fills in.
+fn filled_in(name: &str) -> Schema {
+    json_schema!({ "$ref": format!("#/$defs/{name}") })
+}
+
+/// One number for each dimension.
+pub(crate) struct VectorSchema;
+
+impl JsonSchema for VectorSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "Vector".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({})
+    }
+}
+
+/// What `rotate_degrees` takes.
+pub(crate) struct TurnSchema;
+
+impl JsonSchema for TurnSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "Turn".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<AxisAngle>()
+    }
+}
+
+impl JsonSchema for Node {
+    fn schema_name() -> Cow<'static, str> {
+        "Node".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({})
+    }
+}
+
+impl JsonSchema for Axis {
+    fn schema_name() -> Cow<'static, str> {
+        "Axis".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": [Self::X, Self::Y, Self::Z] })
+    }
+}
+
+impl JsonSchema for Profile {
+    fn schema_name() -> Cow<'static, str> {
+        "Profile".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": [Self::Quadratic, Self::Cubic] })
+    }
+}
+
+/// The schema of `dimension`.
+pub(crate) fn dimension(_: &mut SchemaGenerator) -> Schema {
+    filled_in("Dimension")
+}
+
+/// The schema of `shapes`.
+pub(crate) fn named_shapes(_: &mut SchemaGenerator) -> Schema {
+    filled_in("NamedShapes")
+}
+
+/// The schema of a view's plane.
+pub(crate) fn plane(generator: &mut SchemaGenerator) -> Schema {
+    let free = generator.subschema_for::<crate::view::FreePlane>();
+    json_schema!({ "anyOf": [{ "enum": ["xy", "xz", "yz"] }, free] })
+}

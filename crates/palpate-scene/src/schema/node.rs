@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The schema of a node: its keys, and which go together.
+
+use palpate_field::kernel::{Parameter, ParameterKind};
+use serde_json::{Map, Value, json};
+
+use super::{place, reference};
+use crate::catalogue::{self, Signature, file_key};
+use crate::node::operators::{self as keys, DESCRIPTION, LISTS, OF, UNARY};
+use crate::node::{Axis, Profile};
+use crate::scene::Dimension;
+
+/// A node: the name of a shape, or an object.
+///
+/// The object lists all keys in one place, so that editors propose them; exactly
+/// one of them, or a translation with a rotation, makes the shape.
+pub(super) fn schema(dimension: Dimension) -> Value {
+    let mut properties = Map::new();
+    let mut makers = Vec::new();
+    let requires = |key: &str| json!({ "required": [key] });
+    for signature in catalogue::signatures().filter(|s| s.dimension == dimension) {
+        properties.insert(signature.name.to_owned(), primitive(&signature));
+        makers.push(requires(signature.name));
+    }
+    for (key, about) in LISTS {
+        properties.insert(
+            key.to_owned(),
+            json!({
+                "description": about,
+                "type": "array",
+                "items": { "$ref": "#/$defs/Node" },
+                "minItems": 1,
+            }),
+        );
+        makers.push(requires(key));
+    }
+    let mut with_of = Vec::new();
+    for (key, about) in UNARY {
+        let Some(value) = operator(key, dimension) else { continue };
+        let mut value = value;
+        value["description"] = about.into();
+        properties.insert(key.to_owned(), value);
+        with_of.push(key);
+    }
+    // Moving and turning go together, so they count as one.
+    let (moving, others): (Vec<&str>, Vec<&str>) = with_of.iter().partition(|key| {
+        [keys::TRANSLATE, keys::ROTATE_DEGREES, keys::ROTATION].contains(*key)
+    });
+    makers.extend(others.into_iter().map(requires));
+    makers.push(json!({ "anyOf": moving.into_iter().map(requires).collect::<Vec<_>>() }));
+    makers.push(requires(keys::SHAPE));
+
+    let rest = [
+        (
+            keys::WIDTH,
+            json!({
+                "description": "How far a smooth union fills where two distances are equal [m].",
+                "type": "number",
+                "exclusiveMinimum": 0,
+            }),
+        ),
+        (
+            keys::PROFILE,
+            json!({
+                "description": "The profile of the fill of a smooth union; quadratic if left out.",
+                "enum": [Profile::Quadratic, Profile::Cubic],
+            }),
+        ),
+        (OF, operand(dimension)),
+        (
+            keys::SHAPE,
+            json!({
+                "description": "The name of another shape; a string instead of the object is the same.",
+                "type": "string",
+            }),
+        ),
+        (DESCRIPTION, json!({ "description": "What it is for.", "type": "string" })),
+    ];
+    properties.extend(rest.map(|(key, value)| (key.to_owned(), value)));
+
+    let mut together = Map::new();
+    for key in &with_of {
+        together.insert((*key).to_owned(), json!([OF]));
+    }
+    for (key, other) in [
+        (keys::SMOOTH_UNION, keys::WIDTH),
+        (keys::WIDTH, keys::SMOOTH_UNION),
+        (keys::PROFILE, keys::SMOOTH_UNION),
+    ] {
+        together.insert(key.to_owned(), json!([other]));
+    }
+    let mut node = json!({
+        "description": "A shape: an object that makes it, or the name of another shape.",
+        "type": ["object", "string"],
+        "properties": properties,
+        "additionalProperties": false,
+        "dependentRequired": together,
+        "if": { "type": "object" },
+        "then": { "oneOf": makers },
+        // `of` needs one of the operators that take it.
+        "dependentSchemas": {
+            OF: { "anyOf": with_of.iter().map(|key| requires(key)).collect::<Vec<_>>() },
+        },
+    });
+    if dimension == Dimension::Three {
+        node["not"] = json!({
+            "type": "object",
+            "required": [keys::ROTATE_DEGREES, keys::ROTATION],
+        });
+        flat_operands(&mut node);
+    }
+    node
+}
+
+/// The shapes that have a name: in space they may be flat.
+pub(super) fn named_shapes(dimension: Dimension) -> Value {
+    let own = json!({ "$ref": "#/$defs/Node" });
+    let each = match dimension {
+        Dimension::Two => own,
+        Dimension::Three => json!({ "anyOf": [own, flat()] }),
+    };
+    json!({
+        "type": "object",
+        "propertyNames": { "minLength": 1 },
+        "additionalProperties": each,
+    })
+}
+
+/// The reference to a node of the plane.
+fn flat() -> Value {
+    json!({ "$ref": reference(Dimension::Two, "Node") })
+}
+
+/// What `of` takes before the operator is known.
+fn operand(dimension: Dimension) -> Value {
+    let about = "The shape that the operator is applied to.";
+    match dimension {
+        Dimension::Two => json!({ "description": about, "$ref": "#/$defs/Node" }),
+        Dimension::Three => json!({ "description": about }),
+    }
+}
+
+/// In space, what is extruded or revolved is flat and everything else is not.
+fn flat_operands(node: &mut Value) {
+    let makes_solid = json!({
+        "anyOf": [{ "required": [keys::EXTRUDE] }, { "required": [keys::REVOLVE] }],
+    });
+    let of = |schema: Value| json!({ "properties": { OF: schema } });
+    node["allOf"] = json!([{
+        "if": makes_solid,
+        "then": of(flat()),
+        "else": of(json!({ "$ref": format!("#/$defs/{}/Node", place(Dimension::Three)) })),
+    }]);
+}
+
+/// The value of an operator with one operand; `None` if the dimension lacks it.
+fn operator(key: &str, dimension: Dimension) -> Option<Value> {
+    let is_solid = dimension == Dimension::Three;
+    let factor = json!({ "type": "number", "exclusiveMinimum": 0 });
+    Some(match key {
+        keys::TRANSLATE => json!({ "$ref": "#/$defs/Vector" }),
+        keys::ROTATE_DEGREES => json!({ "$ref": "#/$defs/Turn" }),
+        keys::ROTATION if is_solid => {
+            json!({ "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 })
+        }
+        keys::SCALE => json!({ "anyOf": [factor, factors(&factor, dimension)] }),
+        keys::OFFSET => json!({ "type": "number" }),
+        keys::SHELL => factor,
+        keys::ELONGATE => factors(&json!({ "type": "number", "minimum": 0 }), dimension),
+        keys::MIRROR if is_solid => json!({ "enum": [Axis::X, Axis::Y, Axis::Z] }),
+        keys::MIRROR => json!({ "enum": [Axis::X, Axis::Y] }),
+        keys::EXTRUDE if is_solid => factor,
+        keys::REVOLVE if is_solid => json!({ "enum": [Axis::Y] }),
+        _ => return None,
+    })
+}
+
+/// One of `each` for each dimension.
+fn factors(each: &Value, dimension: Dimension) -> Value {
+    let size = dimension.count();
+    json!({ "type": "array", "items": each, "minItems": size, "maxItems": size })
+}
+
+/// The parameters of a primitive.
+fn primitive(signature: &Signature) -> Value {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    for parameter in signature.parameters {
+        let key = file_key(parameter);
+        required.push(Value::from(&*key));
+        properties.insert(key.into_owned(), value(parameter));
+    }
+    properties.insert(DESCRIPTION.to_owned(), json!({ "type": "string" }));
+    json!({
+        "description": signature.about,
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    })
+}
+
+/// The value of a parameter.
+fn value(parameter: &Parameter) -> Value {
+    let list = |items: Value| json!({ "type": "array", "items": items });
+    let vector = json!({ "$ref": "#/$defs/Vector" });
+    let (unit, mut value) = match parameter.kind {
+        ParameterKind::Length => (" [m]", json!({ "type": "number", "exclusiveMinimum": 0 })),
+        ParameterKind::LengthOrZero => (" [m]", json!({ "type": "number", "minimum": 0 })),
+        ParameterKind::Angle => (" [°]", json!({ "type": "number" })),
+        ParameterKind::Count => ("", json!({ "type": "integer", "minimum": 0 })),
+        ParameterKind::Vector => (" [m]", vector),
+        ParameterKind::Points => (" [m]", list(vector)),
+        ParameterKind::Rings => (" [m]", list(list(vector))),
+        // A coordinate, and what later kinds are at least.
+        _ => (" [m]", json!({ "type": "number" })),
+    };
+    value["description"] = format!("{}{unit}", capitalised(parameter.about)).into();
+    value
+}
+
+/// The text with a capital first letter.
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) => first.to_uppercase().chain(characters).collect(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What touches the scene.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{at_least, positive, positive_if};
+use crate::node::Node;
+use crate::pose::WrittenPose;
+use crate::problem::Problem;
+use crate::schema::VectorSchema;
+
+/// What touches the scene: the tip of a stylus, fingers, a shape in the hand.
+///
+/// Each contact point is felt on its own, as a ball of the tool's radius. A tool
+/// with a shape is felt as a whole, with force and torque.
+///
+/// ```
+/// use palpate_scene::Tool;
+///
+/// # fn main() -> Result<(), serde_json::Error> {
+/// let fingers: Tool = serde_json::from_str(
+///     r#"{ "radius": 0.008, "points": [[-0.02, 0, 0], [0, 0, 0], [0.02, 0, 0]] }"#,
+/// )?;
+/// assert_eq!(fingers.points.len(), 3);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, expecting = "an object")]
+pub struct Tool {
+    /// What it is meant to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// The radius of each contact point [m]; 0 if left out.
+    #[serde(skip_serializing_if = "crate::check::is_default")]
+    #[schemars(range(min = 0.0))]
+    pub radius: f64,
+    /// The contact points in the tool's own coordinates [m]; one at its origin
+    /// if left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<VectorSchema>")]
+    pub points: Vec<Vec<f64>>,
+    /// The shape of the tool in its own coordinates, instead of points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Node>,
+    /// How the tool hangs on the hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coupling: Option<Coupling>,
+    /// How the device's space lies in the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub workspace: Option<Workspace>,
+    /// The greatest force on the hand [N]; the device's own limit if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub max_force: Option<f64>,
+}
+
+/// A virtual coupling: the spring and damper between the hand and a tool with a
+/// shape (Colgate, Stanley and Brown 1995). What is left out is chosen by the
+/// engine from the device.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, expecting = "an object")]
+pub struct Coupling {
+    /// Why it is as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Force for each metre apart [N/m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: Option<f64>,
+    /// Force for each metre per second [N·s/m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping: Option<f64>,
+    /// Torque for each radian apart [N·m/rad].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub angular_stiffness: Option<f64>,
+    /// Torque for each radian per second [N·m·s/rad].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub angular_damping: Option<f64>,
+}
+
+/// How the device's space lies in the world: scaled, turned, then moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, expecting = "an object")]
+pub struct Workspace {
+    /// Why it is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Metres in the world for each metre of the device; 1 if left out.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub scale: f64,
+    /// The device's axes and origin in the world, `world_from_device`; those of
+    /// the world if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose: Option<WrittenPose>,
+}
+
+impl Default for Workspace {
+    fn default() -> Self {
+        Self { description: None, scale: 1.0, pose: None }
+    }
+}
+
+impl Tool {
+    /// What is wrong with the numbers, the shape and the pose aside.
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
+        at_least("radius", self.radius, 0.0, "m")?;
+        for (i, point) in self.points.iter().enumerate() {
+            crate::pose::position(point, dimension)
+                .map_err(|problem| problem.at(i).under("points"))?;
+        }
+        if self.shape.is_some() && !self.points.is_empty() {
+            return Err(
+                Problem::new("a tool has either contact points or a shape").under("points")
+            );
+        }
+        positive_if("max_force", self.max_force, "N")?;
+        if let Some(coupling) = &self.coupling {
+            coupling.check().map_err(|problem| problem.under("coupling"))?;
+        }
+        if let Some(workspace) = &self.workspace {
+            positive("scale", workspace.scale, "")
+                .map_err(|problem| problem.under("workspace"))?;
+        }
+        Ok(())
+    }
+}
+
+impl Coupling {
+    fn check(&self) -> Result<(), Problem> {
+        positive_if("stiffness", self.stiffness, "N/m")?;
+        positive_if("angular_stiffness", self.angular_stiffness, "N·m/rad")?;
+        for (key, value, unit) in [
+            ("damping", self.damping, "N·s/m"),
+            ("angular_damping", self.angular_damping, "N·m·s/rad"),
+        ] {
+            value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))?;
+        }
+        Ok(())
+    }
+}

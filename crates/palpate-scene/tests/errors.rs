@@ -1,0 +1,624 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Every error names its path, its line and what is wrong, and the schema
+//! agrees where it can.
+
+mod common;
+
+use palpate_scene::{Body, Dimension, Node, Scene, schema};
+
+#[test]
+fn a_negative_radius_is_found_in_its_line() {
+    let text = r#"{
+  "palpate": 1,
+  "dimension": 3,
+  "shapes": {
+    "cup": {
+      "difference": [
+        {
+          "rounded_cylinder": {
+            "radius": 0.04, "height": 0.09, "rounding": 0.004
+          }
+        },
+        {
+          "cylinder": {
+            "radius": -0.02,
+            "height": 0.09
+          }
+        }
+      ]
+    }
+  },
+  "bodies": [{ "name": "cup", "shape": "cup" }]
+}"#;
+    let error = Scene::from_json(text).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "shapes.cup.difference[1].cylinder.radius, line 14: radius must be positive, got -0.02 m"
+    );
+    assert_eq!((error.line, error.column), (14, 13));
+}
+
+#[test]
+fn without_a_file_there_is_a_path_and_no_line() {
+    let mut scene = Scene::new(Dimension::Two);
+    scene.bodies.push(Body::new("a", Node::reference("b")));
+    let error = scene.build().unwrap_err();
+    assert_eq!(error.to_string(), "bodies[0].shape: unknown shape `b`; there are none here");
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let error = Scene::from_file("no/such/scene.json").unwrap_err();
+    assert!(error.to_string().starts_with("cannot read no/such/scene.json: "), "{error}");
+}
+
+/// What the schema thinks of a bad file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Schema {
+    Refuses,
+    /// It cannot say what is wrong.
+    Accepts,
+}
+use Schema::{Accepts, Refuses};
+
+/// Checks that each text is refused with its message and judged by the schema.
+fn check_all(cases: &[(&str, &str, Schema)], text_of: impl Fn(&str) -> String) {
+    let validator = jsonschema::validator_for(&schema()).unwrap();
+    for (part, expected, verdict) in cases {
+        let text = text_of(part);
+        let error = Scene::from_json(&text).expect_err(part);
+        assert_eq!(error.to_string(), *expected, "{text}");
+        let value = serde_json::from_str(&text);
+        let valid = value.is_ok_and(|value| validator.is_valid(&value));
+        assert_eq!(valid, *verdict == Accepts, "the schema on {text}");
+    }
+}
+
+#[test]
+fn bad_files_are_refused_with_their_place() {
+    let bodies = r#""bodies": [{ "name": "a", "shape": { "ball": { "radius": 1 } } }]"#;
+    check_all(
+        &[
+            ("", "line 1: not JSON: EOF while parsing a value", Refuses),
+            ("{", "line 1: not JSON: EOF while parsing an object", Refuses),
+            ("[]", "line 1: the file must be an object, got a list", Refuses),
+            ("{}", "line 1: missing key `palpate`", Refuses),
+            (
+                "{\n\"palpate\": 2}",
+                "palpate, line 2: palpate must be 1, the one version of the format so far, got 2",
+                Refuses,
+            ),
+            (
+                "{\"palpate\": 1, \"palpate\": 1}",
+                "palpate, line 1: duplicate key `palpate`",
+                Refuses,
+            ),
+            (
+                "{\"palpate\": 1, \"dimension\": 4, BODIES}",
+                "dimension, line 1: dimension must be 2 or 3, got 4",
+                Refuses,
+            ),
+            (
+                "{\"palpate\": 1, \"dimension\": \"3\", BODIES}",
+                "dimension, line 1: dimension must be 2 or 3, got \"3\"",
+                Refuses,
+            ),
+            ("{\"palpate\": 1, \"dimension\": 3}", "line 1: missing key `bodies`", Refuses),
+            (
+                "{\"palpate\": 1, \"dimension\": 3, \"bodies\": []}",
+                "bodies, line 1: bodies must have at least 1 body, got 0",
+                Refuses,
+            ),
+            (
+                "{\"palpate\": 1, \"dimension\": 3, \"bodys\": [], BODIES}",
+                "bodys, line 1: unknown key `bodys`, did you mean `bodies`?",
+                Refuses,
+            ),
+            (
+                "{\"palpate\": 1, \"dimension\": 3, \"description\": null, BODIES}",
+                "description, line 1: description must be a string, got null",
+                Refuses,
+            ),
+        ],
+        |text| text.replace("BODIES", bodies),
+    );
+}
+
+#[test]
+fn bad_shapes_are_refused_with_their_place() {
+    check_all(
+        &[
+            // Primitives.
+            (
+                r#"{ "ball": { "raduis": 1 } }"#,
+                "shapes.a.ball.raduis, line 4: unknown key `raduis`, did you mean `radius`?",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": { "radius": "big" } }"#,
+                "shapes.a.ball.radius, line 4: radius must be a number, got \"big\"",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": { "radius": 1e400 } }"#,
+                "shapes.a.ball.radius, line 4: radius must be within the range of numbers, got 1e400",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": { "radius": 1e16 } }"#,
+                "shapes.a.ball.radius, line 4: radius must be finite and at most 1e15, got 10000000000000000 m",
+                Accepts,
+            ),
+            (r#"{ "ball": { "radius": NaN } }"#, "line 4: not JSON: expected value", Refuses),
+            (
+                r#"{ "ball": {} }"#,
+                "shapes.a.ball, line 4: missing key `radius`: the radius",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": 3 }"#,
+                "shapes.a.ball, line 4: ball must be an object with its parameters, got 3",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": { "radius": 1 }, "ball": { "radius": 1 } }"#,
+                "shapes.a.ball, line 4: duplicate key `ball`",
+                Accepts,
+            ),
+            (
+                r#"{ "ball": { "radius": 1 }, "cuboid": { "size": [1, 1, 1] } }"#,
+                "shapes.a, line 4: `ball` and `cuboid` in one object; an object makes one shape: nest them",
+                Refuses,
+            ),
+            (
+                r#"{ "bal": { "radius": 1 } }"#,
+                "shapes.a.bal, line 4: unknown key `bal`, did you mean `ball`?",
+                Refuses,
+            ),
+            (
+                r#"{ "cuboid": { "size": [1, 2] } }"#,
+                "bodies[0].shape, line 6: shape `a` cannot be used in 3D: must have 3 numbers in 3D, got 2",
+                Accepts,
+            ),
+            (
+                r#"{ "cuboid": { "size": [1, 2, 3, 4] } }"#,
+                "shapes.a.cuboid.size, line 4: size must have 3 numbers in 3D, got 4",
+                Refuses,
+            ),
+            (
+                r#"{ "cuboid": { "size": [1, -2, 3] } }"#,
+                "shapes.a.cuboid.size, line 4: size must be positive, got -2 m",
+                Accepts,
+            ),
+            (
+                r#"{ "tetrahedron": { "points": [[0, 0, 0], [1, 0, 0], [0, 1]] } }"#,
+                "shapes.a.tetrahedron.points[2], line 4: points[2] must have 3 numbers in 3D, got 2",
+                Refuses,
+            ),
+            (
+                r#"{ "regular_star": { "branches": 2.5, "outer_radius": 2, "inner_radius": 1 } }"#,
+                "shapes.a.regular_star.branches, line 4: branches must be a whole number, zero or more, got 2.5",
+                Refuses,
+            ),
+            (
+                r#"{ "regular_star": { "branches": 5, "outer_radius": 2, "inner_radius": 1 } }"#,
+                "bodies[0].shape, line 6: shape `a` cannot be used in 3D: `regular_star` is a 2D shape, this place is 3D",
+                Accepts,
+            ),
+            (
+                r#"{ "regular_star": { "branches": 5, "outer_radius": -2, "inner_radius": 1 } }"#,
+                "shapes.a.regular_star.outer_radius, line 4: outer_radius must be positive, got -2 m",
+                Refuses,
+            ),
+            // Operators.
+            (
+                r#"{ "union": [] }"#,
+                "shapes.a.union, line 4: union must have at least 1 shape, got 0",
+                Refuses,
+            ),
+            (
+                r#"{ "union": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.union, line 4: union must be a list, got an object",
+                Refuses,
+            ),
+            (
+                r#"{ "union": [{ "ball": { "radius": 1 } }, 7] }"#,
+                "shapes.a.union[1], line 4: union[1] must be a shape: an object, or the name of another shape, got 7",
+                Refuses,
+            ),
+            (
+                r#"{ "smooth_union": [{ "ball": { "radius": 1 } }] }"#,
+                "shapes.a, line 4: missing key `width`: how far to fill [m]",
+                Refuses,
+            ),
+            (
+                r#"{ "smooth_union": [{ "ball": { "radius": 1 } }], "width": -1 }"#,
+                "shapes.a.width, line 4: width must be positive, got -1 m",
+                Refuses,
+            ),
+            (
+                r#"{ "smooth_union": [{ "ball": { "radius": 1 } }], "width": 1, "profile": "cubik" }"#,
+                "shapes.a.profile, line 4: unknown value `cubik`, did you mean `cubic`?",
+                Refuses,
+            ),
+            (
+                r#"{ "union": [{ "ball": { "radius": 1 } }], "width": 1 }"#,
+                "shapes.a, line 4: key `width` does not go with `union`",
+                Refuses,
+            ),
+            (
+                r#"{ "translate": [1, 0, 0] }"#,
+                "shapes.a, line 4: missing key `of`: the shape that `translate` is applied to",
+                Refuses,
+            ),
+            (
+                r#"{ "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a, line 4: missing the primitive or operator that makes the shape",
+                Refuses,
+            ),
+            (
+                r#"{ "ball": { "radius": 1 }, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a, line 4: key `of` does not go with `ball`",
+                Refuses,
+            ),
+            (
+                r#"{ "translate": [1, 0, "x"], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.translate[2], line 4: translate[2] must be a number, got \"x\"",
+                Refuses,
+            ),
+            (
+                r#"{ "translate": [1, 0, 1e20], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.translate[2], line 4: translate[2] must be finite and at most 1e15, got 100000000000000000000 m",
+                Accepts,
+            ),
+            (
+                r#"{ "rotate_degrees": 30, "of": { "cone": { "radius": 1, "height": 1 } } }"#,
+                "shapes.a.rotate_degrees, line 4: rotate_degrees must be an object with `axis` and `angle` in 3D, got a number",
+                Refuses,
+            ),
+            (
+                r#"{ "rotate_degrees": { "axis": [0, 0, 0], "angle": 1 }, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotate_degrees.axis, line 4: axis must be a direction, got 0",
+                Accepts,
+            ),
+            (
+                r#"{ "rotate_degrees": { "axis": [0, 1, 0], "angle": 1e10 }, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotate_degrees.angle, line 4: angle must be at most 1e9 degrees either way, got 10000000000°",
+                Accepts,
+            ),
+            (
+                r#"{ "rotate_degrees": { "axis": [0, 1, 0], "angel": 1 }, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotate_degrees.angel, line 4: unknown key `angel`, did you mean `angle`?",
+                Refuses,
+            ),
+            (
+                r#"{ "rotation": [0, 0, 1], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must be a list of 4 numbers, got 3",
+                Refuses,
+            ),
+            (
+                r#"{ "rotation": [0, 0, 0, 1, 0], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must be a list of 4, got 5",
+                Refuses,
+            ),
+            (
+                r#"{ "rotation": [0, 0, 0, 0], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must be a quaternion, got 0",
+                Accepts,
+            ),
+            (
+                r#"{ "rotation": [0, 0, 0, 1], "rotate_degrees": { "axis": [0, 0, 1], "angle": 3 }, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a, line 4: `rotate_degrees` and `rotation` say the same; give one of them",
+                Refuses,
+            ),
+            (
+                r#"{ "scale": 0, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.scale, line 4: scale must be positive, from 1e-15 to 1e15, got 0",
+                Refuses,
+            ),
+            (
+                r#"{ "scale": "x", "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.scale, line 4: scale must be a number, or a list with one for each axis, got \"x\"",
+                Refuses,
+            ),
+            (
+                r#"{ "offset": -2, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.offset, line 4: offset must be more than minus the half width of the shape, 1 m, got -2 m",
+                Accepts,
+            ),
+            (
+                r#"{ "shell": 0, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.shell, line 4: thickness must be positive, got 0 m",
+                Refuses,
+            ),
+            (
+                r#"{ "elongate": [1, -1, 0], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.elongate, line 4: elongate must be zero or more, got -1 m",
+                Refuses,
+            ),
+            (
+                r#"{ "mirror": "w", "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.mirror, line 4: unknown value `w`; known are `x`, `y` and `z`",
+                Refuses,
+            ),
+            (
+                r#"{ "mirror": 0, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.mirror, line 4: mirror must be one of \"x\", \"y\", \"z\", got 0",
+                Refuses,
+            ),
+            (
+                r#"{ "extrude": 1, "of": { "cone": { "radius": 1, "height": 1 } } }"#,
+                "shapes.a.of.cone, line 4: `cone` is a 3D shape, this place is 2D",
+                Refuses,
+            ),
+            (
+                r#"{ "extrude": -1, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.extrude, line 4: height must be positive, got -1 m",
+                Refuses,
+            ),
+            (
+                r#"{ "revolve": "x", "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.revolve, line 4: unknown value `x`; known are `y`",
+                Refuses,
+            ),
+            // References.
+            (
+                r#""d""#,
+                "shapes.a, line 4: unknown shape `d`; known are `cup`, `a` and `b`",
+                Accepts,
+            ),
+            (
+                r#"{ "shape": "cupp" }"#,
+                "shapes.a, line 4: unknown shape `cupp`, did you mean `cup`?",
+                Accepts,
+            ),
+            (
+                r#""a""#,
+                "shapes.a, line 4: shapes refer to each other in a cycle: a → a",
+                Accepts,
+            ),
+            (
+                r#"{ "union": ["cup", "b"] }"#,
+                "shapes.b.offset, line 5: offset must be more than minus the half width of the shape, 1 m, got -9 m",
+                Accepts,
+            ),
+        ],
+        |shape| {
+            let b = if shape.contains("\"b\"") { "-9" } else { "9" };
+            format!(
+                "{{ \"palpate\": 1, \"dimension\": 3,\n\
+                 \"shapes\": {{ \n\
+                 \"cup\": {{ \"ball\": {{ \"radius\": 1 }} }},\n\
+                 \"a\": {shape}\n\
+                 , \"b\": {{ \"offset\": {b}, \"of\": {{ \"ball\": {{ \"radius\": 1 }} }} }} }},\n\
+                 \"bodies\": [{{ \"name\": \"a\", \"shape\": \"a\" }}] }}"
+            )
+        },
+    );
+}
+
+#[test]
+fn shapes_in_the_plane_know_that_they_are() {
+    check_all(
+        &[
+            (
+                r#"{ "cone": { "radius": 1, "height": 1 } }"#,
+                "bodies[0].shape.cone, line 1: `cone` is a 3D shape, this place is 2D",
+                Refuses,
+            ),
+            (
+                r#"{ "extrude": 1, "of": { "ball": { "radius": 1 } } }"#,
+                "bodies[0].shape, line 1: `extrude` makes a 3D shape, this place is 2D",
+                Refuses,
+            ),
+            (
+                r#"{ "mirror": "z", "of": { "ball": { "radius": 1 } } }"#,
+                "bodies[0].shape.mirror, line 1: there is no z in 2D: mirror \"x\" or \"y\"",
+                Refuses,
+            ),
+            (
+                r#"{ "rotation": [0, 0, 0, 1], "of": { "ball": { "radius": 1 } } }"#,
+                "bodies[0].shape.rotation, line 1: a quaternion turns in 3D; in 2D give `rotate_degrees`",
+                Refuses,
+            ),
+            (
+                r#"{ "arc": { "ring_radius": 1, "angle_degrees": -5, "radius": 0.1 } }"#,
+                "bodies[0].shape.arc.angle_degrees, line 1: angle_degrees must be",
+                Accepts,
+            ),
+        ][..4],
+        |shape| {
+            format!(
+                r#"{{ "palpate": 1, "dimension": 2, "bodies": [{{ "name": "a", "shape": {shape} }}] }}"#
+            )
+        },
+    );
+}
+
+#[test]
+fn angles_are_refused_in_degrees_and_radians() {
+    let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [{ "name": "a", "shape":
+        { "arc": { "ring_radius": 1, "angle_degrees": -90, "radius": 0.1 } } }] }"#;
+    let error = Scene::from_json(text).unwrap_err().to_string();
+    assert!(
+        error.starts_with("bodies[0].shape.arc.angle_degrees, line 2: angle_degrees must be "),
+        "{error}"
+    );
+    assert!(error.ends_with(", got -1.5707963267948966 rad (-90°)"), "{error}");
+}
+
+#[test]
+fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {
+    check_all(
+        &[
+            (
+                r#""shapes": { "": "x" }"#,
+                "shapes.\"\", line 2: a shape must have a name, got \"\"",
+                Refuses,
+            ),
+            (
+                r#""tool": { "radius": -1 }"#,
+                "tool.radius, line 2: radius must be zero or more, got -1 m",
+                Refuses,
+            ),
+            (
+                r#""tool": { "points": [[0, 0]] }"#,
+                "tool.points[0], line 2: points[0] must have 3 numbers in 3D, got 2",
+                Refuses,
+            ),
+            (
+                r#""tool": { "points": [[0, 0, 0]], "shape": "x" }"#,
+                "tool.points, line 2: a tool has either contact points or a shape",
+                Accepts,
+            ),
+            (
+                r#""tool": { "coupling": { "stiffness": 0 } }"#,
+                "tool.coupling.stiffness, line 2: stiffness must be positive, got 0 N/m",
+                Refuses,
+            ),
+            (
+                r#""tool": { "workspace": { "scale": 0 } }"#,
+                "tool.workspace.scale, line 2: scale must be positive, got 0",
+                Refuses,
+            ),
+            (
+                r#""tool": { "workspace": { "pose": { "rotate_degrees": 3 } } }"#,
+                "tool.workspace.pose.rotate_degrees, line 2: rotate_degrees must be an object with `axis` and `angle` in 3D, got a number",
+                Refuses,
+            ),
+            (
+                r#""tool": { "max_force": -3 }"#,
+                "tool.max_force, line 2: max_force must be positive, got -3 N",
+                Refuses,
+            ),
+            (
+                r#""motions": [{ "body": "b", "to": {} }]"#,
+                "motions[0].body, line 2: unknown body `b`; known are `a`",
+                Accepts,
+            ),
+            (
+                r#""motions": [{ "body": "a" }]"#,
+                "motions[0], line 2: missing key `to`",
+                Refuses,
+            ),
+            (
+                r#""motions": [{ "body": "a", "to": {}, "duration": 0 }]"#,
+                "motions[0].duration, line 2: duration must be positive, got 0 s",
+                Refuses,
+            ),
+            (
+                r#""motions": [{ "body": "a", "to": {}, "turns": 0.5 }]"#,
+                "motions[0].turns, line 2: turns must be a whole number, got 0.5",
+                Refuses,
+            ),
+            (
+                r#""motions": [{ "body": "a", "to": { "rotation": [0, 0, 0, 1], "rotate_degrees": { "axis": [0, 0, 1], "angle": 3 } } }]"#,
+                "motions[0].to, line 2: `rotate_degrees` and `rotation` say the same; give one of them",
+                Refuses,
+            ),
+            (
+                r#""views": [{ "name": "v" }, { "name": "v" }]"#,
+                "views[1].name, line 2: name must be unique, but \"v\" is also the name at [0]",
+                Accepts,
+            ),
+            (
+                r#""views": [{ "name": "" }]"#,
+                "views[0].name, line 2: name must not be empty",
+                Refuses,
+            ),
+            (
+                r#""views": [{ "name": "v", "plane": "zx" }]"#,
+                "views[0].plane, line 2: unknown value `zx`; known are `xy`, `xz` and `yz`",
+                Refuses,
+            ),
+            (
+                r#""views": [{ "name": "v", "width": 0 }]"#,
+                "views[0].width, line 2: width must be positive, got 0 m",
+                Refuses,
+            ),
+            (
+                r#""views": [{ "name": "v", "plane": { "origin": [0, 0, 0], "right": [1, 0, 0], "up": [2, 0, 0] } }]"#,
+                "views[0].plane.up, line 2: up must not be along `right`",
+                Accepts,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "stiffness": -3 } }]"#,
+                "bodies[0].material.stiffness, line 2: stiffness must be zero or more, got -3 N/m",
+                Refuses,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "static_friction": 0.2 } }]"#,
+                "bodies[0].material.dynamic_friction, line 2: dynamic_friction must be at most the static friction 0.2, got 0.3",
+                Accepts,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "texture": { "kind": "height", "amplitude": 0, "wavelength": 1 } } }]"#,
+                "bodies[0].material.texture.amplitude, line 2: amplitude must be positive, got 0 m",
+                Refuses,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "layers": [{ "depth": 2 }, { "depth": 1 }] } }]"#,
+                "bodies[0].material.layers[1].depth, line 2: depth must be more than that of the layer above, 2 m, got 1 m",
+                Accepts,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": { "stifness": 3 } }]"#,
+                "bodies[0].material.stifness, line 2: unknown key `stifness`, did you mean `stiffness`?",
+                Refuses,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "pose": { "translation": [1] } }]"#,
+                "bodies[0].pose.translation, line 2: translation must have 3 numbers in 3D, got 1",
+                Refuses,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x" }, { "name": "b", "shape": "x" }]"#,
+                "bodies[1].name, line 2: name must be unique, but \"b\" is also the name at [0]",
+                Accepts,
+            ),
+            (
+                r#""bodies": [{ "name": "b" }]"#,
+                "bodies[0], line 2: missing key `shape`",
+                Refuses,
+            ),
+        ],
+        |part| {
+            let shapes = if part.starts_with("\"shapes\"") {
+                ""
+            } else {
+                r#""shapes": { "x": { "ball": { "radius": 1 } } },"#
+            };
+            let bodies = if part.starts_with("\"bodies\"") {
+                ""
+            } else {
+                r#", "bodies": [{ "name": "a", "shape": { "ball": { "radius": 1 } } }]"#
+            };
+            format!("{{ \"palpate\": 1, \"dimension\": 3, {shapes}\n{part}\n{bodies} }}")
+        },
+    );
+}
+
+#[test]
+fn cycles_are_printed_through_every_operator() {
+    let scene = |shapes: &str| {
+        format!(
+            r#"{{ "palpate": 1, "dimension": 3, "shapes": {{ {shapes} }},
+                "bodies": [{{ "name": "a", "shape": "a" }}] }}"#
+        )
+    };
+    for (shapes, expected) in [
+        (
+            "\"a\": \"b\",\n\"b\": { \"union\": [{ \"ball\": { \"radius\": 1 } }, \"c\"] },\n\"c\": { \"offset\": 1, \"of\": \"a\" }",
+            "shapes.c.of, line 3: shapes refer to each other in a cycle: a → b → c → a",
+        ),
+        (
+            "\"a\": { \"ball\": { \"radius\": 1 } },\n\"b\": { \"extrude\": 1, \"of\": \"b\" }",
+            "shapes.b.of, line 2: shapes refer to each other in a cycle: b → b",
+        ),
+    ] {
+        let error = Scene::from_json(&scene(shapes)).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
+}

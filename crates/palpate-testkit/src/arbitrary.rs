@@ -1,0 +1,321 @@
+//! Generators of trees and points, biased towards what breaks formulas.
+//!
+//! They draw from [`Unstructured`], so that property tests and fuzzing share
+//! them.
+
+use arbitrary::{Result, Unstructured};
+use palpate_field::kernel::{Argument, Parameter, ParameterKind};
+use palpate_field::{Pose, Rotation, Shape, Vector};
+
+use crate::kernels::{Dimension, IntoShape, Space};
+use crate::tree::{Profile, Solid, Sweep, Tree};
+
+/// How often arguments are drawn again when they break a rule.
+const ATTEMPTS: usize = 32;
+
+/// A number in `[0, 1)`.
+pub fn unit(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(f64::from(u.arbitrary::<u32>()?) / 4_294_967_296.0)
+}
+
+/// A number in `[low, high)`.
+pub fn within(u: &mut Unstructured<'_>, low: f64, high: f64) -> Result<f64> {
+    Ok(low + (high - low) * unit(u)?)
+}
+
+/// A positive length of about 1 m, at times tiny, or equal to others.
+pub fn length(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(match u.int_in_range(0..=9_u8)? {
+        0 | 1 => *u.choose(&[0.25, 0.5, 1.0])?,
+        2 => 10.0_f64.powf(within(u, -3.0, -1.0)?),
+        3 => 0.5 * (1.0 + f64::EPSILON * f64::from(u.int_in_range(-32..=32_i32)?)),
+        _ => within(u, 0.1, 1.5)?,
+    })
+}
+
+/// A coordinate of at most 1.5 m, at times zero or equal to others.
+pub fn coordinate(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(match u.int_in_range(0..=9_u8)? {
+        0 => 0.0,
+        1 => *u.choose(&[-1.0, -0.5, -0.25, 0.25, 0.5, 1.0])?,
+        _ => within(u, -1.5, 1.5)?,
+    })
+}
+
+/// A vector of [`coordinate`]s.
+pub fn vector<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, D>> {
+    let mut v = Vector::ZERO;
+    for x in &mut v.0 {
+        *x = coordinate(u)?;
+    }
+    Ok(v)
+}
+
+/// A unit vector, at times along an axis or a diagonal.
+pub fn direction<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64, D>> {
+    let mut v = Vector::ZERO;
+    let plain = u.ratio(1_u8, 4_u8)?;
+    for x in &mut v.0 {
+        *x = if plain { f64::from(u.int_in_range(-1..=1_i8)?) } else { within(u, -1.0, 1.0)? };
+    }
+    Ok(v.normalized().unwrap_or(Vector::unit(0)))
+}
+
+fn argument<const D: usize>(u: &mut Unstructured<'_>, what: &Parameter) -> Result<Argument> {
+    let components = |u: &mut Unstructured<'_>, positive: bool| -> Result<Vec<f64>> {
+        (0..D).map(|_| if positive { length(u) } else { coordinate(u) }).collect()
+    };
+    Ok(match what.kind {
+        ParameterKind::Length => Argument::Number(length(u)?),
+        ParameterKind::LengthOrZero => {
+            let zero = u.ratio(1_u8, 5_u8)?;
+            Argument::Number(if zero { 0.0 } else { 0.3 * length(u)? })
+        }
+        ParameterKind::Coordinate => Argument::Number(coordinate(u)?),
+        ParameterKind::Angle => Argument::Number(match u.int_in_range(0..=5_u8)? {
+            0 => std::f64::consts::TAU,
+            1 => std::f64::consts::PI,
+            _ => within(u, 0.01, std::f64::consts::TAU)?,
+        }),
+        ParameterKind::Count => Argument::Count(match u.int_in_range(0..=3_u8)? {
+            0 => u.int_in_range(3..=256)?,
+            _ => u.int_in_range(3..=12)?,
+        }),
+        ParameterKind::Vector => {
+            // Sizes and radii must be positive; all else may have any sign.
+            let positive = what.name == "size" || what.name == "radii";
+            Argument::Vector(components(u, positive)?)
+        }
+        ParameterKind::Points => {
+            Argument::Points((0..=D).map(|_| components(u, false)).collect::<Result<_>>()?)
+        }
+        ParameterKind::Rings => {
+            let rings = u.int_in_range(1..=2_usize)?;
+            let ring = |u: &mut Unstructured<'_>| -> Result<Vec<Vec<f64>>> {
+                let points = u.int_in_range(3..=7_usize)?;
+                (0..points).map(|_| components(u, false)).collect()
+            };
+            Argument::Rings((0..rings).map(|_| ring(u)).collect::<Result<_>>()?)
+        }
+    })
+}
+
+/// Arguments that a primitive accepts.
+pub fn arguments<const D: usize>(
+    u: &mut Unstructured<'_>,
+    name: &'static str,
+    parameters: &[Parameter],
+) -> Result<Option<Vec<Argument>>>
+where
+    Space: Dimension<D>,
+{
+    for _ in 0..ATTEMPTS {
+        let arguments: Vec<_> =
+            parameters.iter().map(|p| argument::<D>(u, p)).collect::<Result<_>>()?;
+        if Space::with_kernel(name, &arguments, IntoShape).is_ok() {
+            return Ok(Some(arguments));
+        }
+    }
+    Ok(None)
+}
+
+/// A primitive of any kind.
+pub fn leaf<const D: usize>(u: &mut Unstructured<'_>) -> Result<Tree<D>>
+where
+    Space: Solid<D>,
+{
+    let entry = u.choose(<Space as Dimension<D>>::CATALOGUE)?;
+    let drawn = arguments::<D>(u, entry.name, entry.parameters)?;
+    Ok(drawn.map_or_else(
+        || Tree::leaf("ball", vec![Argument::Number(0.5)]),
+        |arguments| Tree::leaf(entry.name, arguments),
+    ))
+}
+
+/// Rotations, in either dimension.
+pub trait Turn<const D: usize> {
+    /// A rotation, at times along the axes.
+    fn rotation(u: &mut Unstructured<'_>) -> Result<Rotation<D>>;
+
+    /// A solid of a profile of at most `depth`, where there are solids.
+    fn solid(u: &mut Unstructured<'_>, depth: usize) -> Result<Option<Tree<D>>>;
+}
+
+fn angle(u: &mut Unstructured<'_>) -> Result<f64> {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    Ok(match u.int_in_range(0..=4_u8)? {
+        0 => *u.choose(&[0.0, FRAC_PI_2, PI, -FRAC_PI_2])?,
+        _ => within(u, -PI, PI)?,
+    })
+}
+
+impl Turn<2> for Space {
+    fn rotation(u: &mut Unstructured<'_>) -> Result<Rotation<2>> {
+        let angle = angle(u)?;
+        Ok(Rotation::from_angle(angle).unwrap_or_else(|_| Rotation::identity()))
+    }
+
+    fn solid(_: &mut Unstructured<'_>, _: usize) -> Result<Option<Tree<2>>> {
+        Ok(None)
+    }
+}
+
+impl Turn<3> for Space {
+    fn rotation(u: &mut Unstructured<'_>) -> Result<Rotation<3>> {
+        let (axis, angle) = (direction(u)?, angle(u)?);
+        Ok(Rotation::from_axis_angle(axis, angle).unwrap_or_else(|_| Rotation::identity()))
+    }
+
+    fn solid(u: &mut Unstructured<'_>, depth: usize) -> Result<Option<Tree<3>>> {
+        let profile = Box::new(tree::<2>(u, depth)?);
+        let extruded = u.arbitrary()?;
+        let sweep = if extruded { Sweep::Extruded(length(u)?) } else { Sweep::Revolved };
+        Ok(Some(Tree::Solid(profile, sweep)))
+    }
+}
+
+/// A rigid motion of at most 1.5 m a coordinate.
+pub fn pose<const D: usize>(u: &mut Unstructured<'_>) -> Result<Pose<D>>
+where
+    Space: Turn<D>,
+{
+    Ok(Pose::new(<Space as Turn<D>>::rotation(u)?, vector(u)?))
+}
+
+fn factor(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(match u.int_in_range(0..=5_u8)? {
+        0 => 10.0_f64.powf(within(u, -3.0, 3.0)?),
+        1 => *u.choose(&[0.5, 1.0, 2.0])?,
+        _ => within(u, 0.3, 3.0)?,
+    })
+}
+
+/// A tree of at most `depth`, of which [`Tree::shape`] makes a shape.
+pub fn tree<const D: usize>(u: &mut Unstructured<'_>, depth: usize) -> Result<Tree<D>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    if depth <= 1 {
+        return leaf(u);
+    }
+    let tree = operator(u, depth - 1)?;
+    // What an operator refuses (shrinking to nothing) becomes a leaf.
+    if tree.shape().is_ok() { Ok(tree) } else { leaf(u) }
+}
+
+fn several<const D: usize>(
+    u: &mut Unstructured<'_>,
+    depth: usize,
+    most: usize,
+) -> Result<Vec<Tree<D>>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let count = u.int_in_range(2..=most)?;
+    (0..count)
+        .map(|i| {
+            // One deep branch is enough.
+            let depth = if i == 0 { depth } else { u.int_in_range(1..=depth.min(2))? };
+            tree(u, depth)
+        })
+        .collect()
+}
+
+fn operator<const D: usize>(u: &mut Unstructured<'_>, depth: usize) -> Result<Tree<D>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let child = |u: &mut Unstructured<'_>| tree(u, depth).map(Box::new);
+    Ok(match u.int_in_range(0..=14_u8)? {
+        0 => Tree::Union(several(u, depth, 9)?),
+        1 => Tree::Union(several(u, depth, 3)?),
+        2 => Tree::Intersection(several(u, depth, 3)?),
+        3 => Tree::Difference(child(u)?, several(u, depth.min(2), 2)?),
+        4 => Tree::SymmetricDifference(several(u, depth, 3)?),
+        5 => Tree::SmoothUnion(several(u, depth, 3)?, Profile::Quadratic, 0.3 * length(u)?),
+        6 => Tree::SmoothUnion(several(u, depth, 3)?, Profile::Cubic, 0.3 * length(u)?),
+        7 => {
+            let sign = if u.arbitrary()? { 1.0 } else { -0.2 };
+            Tree::Offset(child(u)?, sign * length(u)?)
+        }
+        8 => Tree::Shell(child(u)?, 0.3 * length(u)?),
+        9 => {
+            let mut lengths = [0.0; D];
+            for x in &mut lengths {
+                *x = if u.arbitrary()? { length(u)? } else { 0.0 };
+            }
+            Tree::Elongated(child(u)?, lengths)
+        }
+        10 => Tree::Mirrored(child(u)?, u.int_in_range(0..=D - 1)?),
+        11 => Tree::Scaled(child(u)?, factor(u)?),
+        12 => {
+            let mut factors = [1.0; D];
+            for x in &mut factors {
+                *x = within(u, 0.3, 2.0)?;
+            }
+            Tree::Stretched(child(u)?, factors)
+        }
+        13 => match <Space as Turn<D>>::solid(u, depth)? {
+            Some(solid) => solid,
+            None => Tree::Placed(child(u)?, pose(u)?),
+        },
+        _ => Tree::Placed(child(u)?, pose(u)?),
+    })
+}
+
+/// The size of a scene with the shape in it [m].
+#[must_use]
+pub fn size<const D: usize>(shape: &Shape<D>) -> f64 {
+    shape.promise().bounds.map_or(2.0, |b| b.radius_about_origin()).max(1e-12)
+}
+
+/// A point near a shape: anywhere about it, on an axis or at a corner of its
+/// box, on its surface, a few ulp from such a point, or far away.
+pub fn point<const D: usize>(
+    u: &mut Unstructured<'_>,
+    shape: &Shape<D>,
+) -> Result<Vector<f64, D>> {
+    let size = size(shape);
+    let (centre, half) = shape.promise().bounds.map_or(
+        (Vector::ZERO, Vector::constant(size)),
+        |b| (b.aabb.centre(), b.aabb.half_extents()),
+    );
+    let mut p = centre;
+    match u.int_in_range(0..=9_u8)? {
+        0 => {
+            // The centre, corners, edges and faces of the box; the origin's axes.
+            for k in 0..D {
+                p[k] += half[k] * f64::from(u.int_in_range(-1..=1_i8)?);
+            }
+        }
+        1 => {
+            p = Vector::ZERO;
+            p[u.int_in_range(0..=D - 1)?] = size * within(u, -2.0, 2.0)?;
+        }
+        2 => {
+            p = Vector(vector::<D>(u)?.0.map(|x| x * size));
+        }
+        3 => {
+            let far = 10.0_f64.powf(within(u, 0.5, 3.0)?) * size;
+            p = direction::<D>(u)? * far;
+        }
+        _ => {
+            for k in 0..D {
+                p[k] += half[k].max(1e-3 * size) * within(u, -1.5, 1.5)?;
+            }
+        }
+    }
+    // Onto the surface, or to what the field takes for it.
+    if u.ratio(1_u8, 4_u8)? {
+        for _ in 0..3 {
+            let (f, g) = shape.distance_gradient(p);
+            p -= g * f;
+        }
+    }
+    if u.ratio(1_u8, 6_u8)? {
+        for x in &mut p.0 {
+            *x += f64::EPSILON * x.abs() * f64::from(u.int_in_range(-32..=32_i32)?);
+        }
+    }
+    Ok(if p.is_finite() { p } else { centre })
+}

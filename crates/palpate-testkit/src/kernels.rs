@@ -1,0 +1,90 @@
+//! From a name in the catalogue to the type of its kernel.
+
+use palpate_field::kernel::{self, Argument, Entry, Primitive};
+use palpate_field::{Shape, ShapeError};
+
+/// What to do with a kernel whose type is only known by name.
+pub trait Visit<const D: usize> {
+    /// What comes of it.
+    type Output;
+
+    /// Called with the kernel.
+    fn visit<K: Primitive<D>>(self, kernel: K) -> Self::Output;
+}
+
+/// What differs between the plane and space.
+pub trait Dimension<const D: usize> {
+    /// The catalogue.
+    const CATALOGUE: &'static [Entry<D>];
+
+    /// Calls `visit` with the kernel `name` of `arguments`.
+    ///
+    /// # Errors
+    ///
+    /// If the arguments break a rule.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such kernel here: add it to the list in this module.
+    fn with_kernel<V: Visit<D>>(
+        name: &str,
+        arguments: &[Argument],
+        visit: V,
+    ) -> Result<V::Output, ShapeError>;
+}
+
+/// The one implementor of [`Dimension`], for 2 and 3.
+#[derive(Clone, Copy, Debug)]
+pub struct Space;
+
+macro_rules! dimension {
+    ($dimension:literal: $($kernel:ty),* $(,)?) => {
+        impl Dimension<$dimension> for Space {
+            const CATALOGUE: &'static [Entry<$dimension>] = Entry::<$dimension>::ALL;
+
+            fn with_kernel<V: Visit<$dimension>>(
+                name: &str,
+                arguments: &[Argument],
+                visit: V,
+            ) -> Result<V::Output, ShapeError> {
+                $(
+                    if name == <$kernel as Primitive<$dimension>>::NAME {
+                        let kernel =
+                            <$kernel as Primitive<$dimension>>::from_arguments(arguments)?;
+                        return Ok(visit.visit(kernel));
+                    }
+                )*
+                panic!("the testkit does not know the kernel {name}");
+            }
+        }
+    };
+}
+
+dimension! { 2:
+    kernel::Ball, kernel::Cuboid<2>, kernel::RoundedCuboid<2>, kernel::Capsule,
+    kernel::Segment<2>, kernel::HalfSpace<2>, kernel::Simplex<2>, kernel::Ellipsoid<2>,
+    kernel::Ring, kernel::Arc, kernel::RegularPolygon, kernel::RegularStar,
+    kernel::Polygon, kernel::CoolS,
+}
+
+dimension! { 3:
+    kernel::Ball, kernel::Cuboid<3>, kernel::RoundedCuboid<3>, kernel::Capsule,
+    kernel::Segment<3>, kernel::HalfSpace<3>, kernel::Simplex<3>, kernel::Ellipsoid<3>,
+    kernel::Cylinder, kernel::RoundedCylinder, kernel::InfiniteCylinder,
+    kernel::CappedCone, kernel::Cone, kernel::Pyramid, kernel::Torus,
+    kernel::HexagonalPrism, kernel::TriangularPrism, kernel::Octahedron,
+    kernel::CubeApproximation, kernel::CylinderApproximation,
+    kernel::ConeApproximation, kernel::PyramidApproximation,
+}
+
+/// A kernel as a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct IntoShape;
+
+impl<const D: usize> Visit<D> for IntoShape {
+    type Output = Shape<D>;
+
+    fn visit<K: Primitive<D>>(self, kernel: K) -> Shape<D> {
+        Shape::from_kernel(kernel)
+    }
+}

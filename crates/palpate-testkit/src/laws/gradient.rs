@@ -1,0 +1,74 @@
+//! Gradients are never NaN, never too long, and of length one where promised.
+
+use palpate_field::{Point, Quality, Shape, Vector};
+
+use super::rounding;
+
+/// The gradient is a number, no longer than the Lipschitz constant and, where
+/// the value is exact, of length one, to `ulp` units; the value has the bits of
+/// [`Shape::distance`].
+///
+/// # Errors
+///
+/// Says the gradient and its length.
+pub fn gradient_is_bounded<const D: usize>(
+    shape: &Shape<D>,
+    p: Point<D>,
+    ulp: f64,
+) -> Result<(), String> {
+    let promise = shape.promise();
+    let (f, g) = shape.distance_gradient(p);
+    let alone = shape.distance(p);
+    if f.to_bits() != alone.to_bits() {
+        return Err(format!("{f:e} with the gradient, {alone:e} without, at {p:?}"));
+    }
+    if !f.is_finite() || !g.is_finite() {
+        return Err(format!("value {f:e}, gradient {g:?} at {p:?}"));
+    }
+    let length = g.norm();
+    let tolerance = ulp * f64::EPSILON;
+    if promise.region.is_none() && length > promise.lipschitz * (1.0 + tolerance) {
+        return Err(format!(
+            "gradient {g:?} of length 1 + {:e} at {p:?}, Lipschitz constant {}",
+            length - 1.0,
+            promise.lipschitz
+        ));
+    }
+    // Which side a point on the surface is on is rounding.
+    let sure = f.abs() > 2.0 * rounding(shape, p);
+    let quality = if f < 0.0 { promise.inside } else { promise.outside };
+    if sure && quality == Quality::Exact && (length - 1.0).abs() > tolerance {
+        return Err(format!(
+            "gradient {g:?} of length 1 + {:e} at {p:?} where the value {f:e} is exact",
+            length - 1.0
+        ));
+    }
+    Ok(())
+}
+
+/// Away from kinks, the gradient is the slope of the values around `p`.
+///
+/// A kink shows in that forward and backward differences disagree.
+///
+/// # Errors
+///
+/// Says both.
+pub fn gradient_is_the_slope<const D: usize>(
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Result<(), String> {
+    let (f, g) = shape.distance_gradient(p);
+    let step = 1e-6 * (p.norm() + f.abs()).max(1e-3);
+    let error = (4.0 * rounding(shape, p) + 4.0 * f64::EPSILON * p.norm()) / step;
+    let differences: [[f64; 2]; D] = std::array::from_fn(|axis| {
+        let along = Vector::<f64, D>::unit(axis) * step;
+        [shape.distance(p + along) - f, f - shape.distance(p - along)].map(|x| x / step)
+    });
+    let slope = Vector(differences.map(|[ahead, behind]| 0.5 * (ahead + behind)));
+    let bend = differences.iter().fold(0.0_f64, |m, [a, b]| m.max((a - b).abs()));
+    let apart = (slope - g).norm();
+    if bend < 1e-3 && apart > 4.0 * bend + 2.0 * error + 1e-5 {
+        return Err(format!("gradient {g:?} at {p:?}, but slope {slope:?}, value {f:e}"));
+    }
+    Ok(())
+}

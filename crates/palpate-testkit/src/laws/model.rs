@@ -1,0 +1,107 @@
+//! Models enclose the field over their cell.
+
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
+
+use super::rounding;
+
+/// A box of points.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell<const D: usize> {
+    /// Its centre [m].
+    pub centre: Point<D>,
+    /// Half its edge lengths [m].
+    pub half: Vector<f64, D>,
+}
+
+impl<const D: usize> Cell<D> {
+    /// The point at parameters `u` in `[−1, 1]`.
+    #[must_use]
+    pub fn at(&self, u: [f64; D]) -> Point<D> {
+        Vector(std::array::from_fn(|i| self.centre[i] + self.half[i] * u[i]))
+    }
+}
+
+/// The most that a lower remainder of a convex field may be, in ulp of the
+/// largest number met.
+const CONVEX_ULP: f64 = 32.0;
+
+/// The models of up to [`BLOCK`] cells enclose the field at the parameters
+/// `samples`.
+///
+/// # Errors
+///
+/// Says which cell and sample, and by how much.
+pub fn model_encloses<const D: usize>(
+    shape: &Shape<D>,
+    cells: &[Cell<D>],
+    samples: &[[f64; D]],
+) -> Result<(), String> {
+    for (cell, model) in cells.iter().zip(models(shape, cells)) {
+        let reach = cell.centre.norm() + cell.half.norm();
+        let numbers = [model.value, model.lower, model.upper];
+        if !numbers.iter().chain(&model.gradient).all(|x| x.is_finite())
+            || model.lower < 0.0
+            || model.upper < 0.0
+        {
+            return Err(format!("{model:?} over {cell:?}"));
+        }
+        for u in samples {
+            let p = cell.at(*u);
+            let f = shape.distance(p);
+            let plane: f64 =
+                model.value + (0..D).map(|k| model.gradient[k] * u[k]).sum::<f64>();
+            // Of the sample: its place and its value; of the plane: its sum.
+            let slack = rounding(shape, p)
+                + 4.0 * f64::EPSILON * (reach * shape.promise().lipschitz + plane.abs());
+            let (low, high) = (plane - model.lower - slack, plane + model.upper + slack);
+            if !(low <= f && f <= high) {
+                let apart = if f < low { low - f } else { f - high };
+                return Err(format!(
+                    "{f:e} at {u:?} is {apart:e} outside [{low:e}, {high:e}] over {cell:?}: \
+                     {model:?}"
+                ));
+            }
+            if !(model.minimum() <= f + slack && f - slack <= model.maximum()) {
+                return Err(format!("{f:e} beyond the extremes of {model:?} over {cell:?}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Models of up to [`BLOCK`] cells have, where the field is convex, no lower
+/// remainder but rounding.
+///
+/// # Errors
+///
+/// Says over which cell, and how large it is.
+pub fn convex_models_are_tight<const D: usize>(
+    shape: &Shape<D>,
+    cells: &[Cell<D>],
+) -> Result<(), String> {
+    let promise = shape.promise();
+    if !promise.convex {
+        return Ok(());
+    }
+    // The largest number in the formula besides the coordinates.
+    let size = promise.rounding.constant / promise.rounding.per_metre;
+    for (cell, model) in cells.iter().zip(models(shape, cells)) {
+        let largest = cell.centre.norm() + cell.half.norm() + size;
+        let ulp = model.lower / (f64::EPSILON * largest);
+        if ulp > CONVEX_ULP {
+            return Err(format!("a lower remainder of {ulp:.0} ulp of {largest} over {cell:?}"));
+        }
+    }
+    Ok(())
+}
+
+fn models<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>]) -> Vec<Model> {
+    let mut block = Block::<Model, D, BLOCK>::zero();
+    let mut models = Column::<Model, BLOCK>::zero();
+    for (i, cell) in cells.iter().enumerate() {
+        block.set(i, Vector(Model::cell(cell.centre.0, cell.half.0)));
+    }
+    shape.block_distances(&block, cells.len(), &mut models);
+    (0..cells.len()).map(|i| models.get(i)).collect()
+}

@@ -1,0 +1,307 @@
+//! Shapes as plain data, and their formulas written a second time.
+//!
+//! [`Tree::shape`] builds a shape as a user would. [`Tree::distance`] evaluates
+//! the operators' definitions directly, in any number: what the nodes of
+//! `palpate-field` must agree with.
+
+use palpate_field::kernel::{Argument, Primitive};
+use palpate_field::operator::Smooth;
+use palpate_field::scalar::{Cubic, Quadratic, Scalar};
+use palpate_field::{Pose, Shape, ShapeError, Vector};
+
+use crate::kernels::{Dimension, IntoShape, Space, Visit};
+
+/// A primitive by its name in the catalogue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaf {
+    /// Its name.
+    pub name: &'static str,
+    /// One argument for each parameter.
+    pub arguments: Vec<Argument>,
+}
+
+/// A shape as plain data.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tree<const D: usize> {
+    /// A primitive.
+    Leaf(Leaf),
+    /// `min`.
+    Union(Vec<Self>),
+    /// `max`.
+    Intersection(Vec<Self>),
+    /// The first without the others.
+    Difference(Box<Self>, Vec<Self>),
+    /// What is in an odd number.
+    SymmetricDifference(Vec<Self>),
+    /// A union with its creases filled over a width [m].
+    SmoothUnion(Vec<Self>, Profile, f64),
+    /// Grown by a distance [m].
+    Offset(Box<Self>, f64),
+    /// A shell of a thickness [m].
+    Shell(Box<Self>, f64),
+    /// Pulled apart by lengths [m].
+    Elongated(Box<Self>, [f64; D]),
+    /// Mirrored along an axis.
+    Mirrored(Box<Self>, usize),
+    /// Moved.
+    Placed(Box<Self>, Pose<D>),
+    /// Scaled by one factor.
+    Scaled(Box<Self>, f64),
+    /// Scaled by one factor an axis.
+    Stretched(Box<Self>, [f64; D]),
+    /// In space: a profile made solid.
+    Solid(Box<Tree<2>>, Sweep),
+}
+
+/// The profile of a smooth union, as plain data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// [`Quadratic`].
+    Quadratic,
+    /// [`Cubic`].
+    Cubic,
+}
+
+/// How a profile becomes a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// Extruded to a height [m].
+    Extruded(f64),
+    /// Turned about y.
+    Revolved,
+}
+
+/// Operators that only one dimension has.
+pub trait Solid<const D: usize>: Dimension<D> {
+    /// Builds a solid from its profile.
+    ///
+    /// # Errors
+    ///
+    /// As the operator.
+    fn solid(profile: &Tree<2>, sweep: Sweep) -> Result<Shape<D>, ShapeError>;
+
+    /// The formula of a solid.
+    fn solid_distance<S: Scalar>(profile: &Tree<2>, sweep: Sweep, p: Vector<S, D>) -> S;
+}
+
+impl Solid<2> for Space {
+    fn solid(_: &Tree<2>, _: Sweep) -> Result<Shape<2>, ShapeError> {
+        Err(ShapeError::Unsuitable { operator: "solid", needs: "space".into() })
+    }
+
+    fn solid_distance<S: Scalar>(_: &Tree<2>, _: Sweep, _: Vector<S, 2>) -> S {
+        unreachable!("no plane tree with a solid can be built")
+    }
+}
+
+impl Solid<3> for Space {
+    fn solid(profile: &Tree<2>, sweep: Sweep) -> Result<Shape<3>, ShapeError> {
+        let profile = profile.shape()?;
+        match sweep {
+            Sweep::Extruded(height) => profile.extruded(height),
+            Sweep::Revolved => profile.revolved(),
+        }
+    }
+
+    fn solid_distance<S: Scalar>(profile: &Tree<2>, sweep: Sweep, p: Vector<S, 3>) -> S {
+        let [x, y, z] = p.0;
+        match sweep {
+            Sweep::Extruded(height) => {
+                let zero = S::constant(0.0);
+                let side = profile.distance(Vector([x, z]));
+                let cap = y.abs() - S::constant(0.5 * height);
+                S::norm([side.max(zero), cap.max(zero)]) + side.max(cap).min(zero)
+            }
+            Sweep::Revolved => {
+                profile.distance(Vector([(x.squared() + z.squared()).sqrt(), y]))
+            }
+        }
+    }
+}
+
+struct At<S, const D: usize>(Vector<S, D>);
+
+impl<S: Scalar, const D: usize> Visit<D> for At<S, D> {
+    type Output = S;
+
+    fn visit<K: Primitive<D>>(self, kernel: K) -> S {
+        kernel.distance(self.0)
+    }
+}
+
+impl<const D: usize> Tree<D>
+where
+    Space: Solid<D>,
+{
+    /// The primitive `name`.
+    #[must_use]
+    pub fn leaf(name: &'static str, arguments: Vec<Argument>) -> Self {
+        Self::Leaf(Leaf { name, arguments })
+    }
+
+    /// Builds the shape, as a user would.
+    ///
+    /// # Errors
+    ///
+    /// As the operators and primitives.
+    pub fn shape(&self) -> Result<Shape<D>, ShapeError> {
+        let all = |trees: &[Self]| trees.iter().map(Self::shape).collect::<Result<Vec<_>, _>>();
+        match self {
+            Self::Leaf(leaf) => Space::with_kernel(leaf.name, &leaf.arguments, IntoShape),
+            Self::Union(trees) => Shape::union(all(trees)?),
+            Self::Intersection(trees) => Shape::intersection(all(trees)?),
+            Self::Difference(first, others) => first.shape()?.difference(all(others)?),
+            Self::SymmetricDifference(trees) => Shape::symmetric_difference(all(trees)?),
+            Self::SmoothUnion(trees, profile, width) => {
+                let profile = match profile {
+                    Profile::Quadratic => Smooth::Quadratic,
+                    Profile::Cubic => Smooth::Cubic,
+                };
+                Shape::smooth_union(all(trees)?, profile, *width)
+            }
+            Self::Offset(tree, distance) => tree.shape()?.offset(*distance),
+            Self::Shell(tree, thickness) => tree.shape()?.shell(*thickness),
+            Self::Elongated(tree, lengths) => tree.shape()?.elongated(*lengths),
+            Self::Mirrored(tree, axis) => tree.shape()?.mirrored(*axis),
+            Self::Placed(tree, pose) => tree.shape()?.placed(pose),
+            Self::Scaled(tree, factor) => tree.shape()?.scaled(*factor),
+            Self::Stretched(tree, factors) => tree.shape()?.stretched(*factors),
+            Self::Solid(profile, sweep) => Space::solid(profile, *sweep),
+        }
+    }
+
+    /// How many operators are nested, with the leaf.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        let deepest = |trees: &[Self]| trees.iter().map(Self::depth).max().unwrap_or(0);
+        1 + match self {
+            Self::Leaf(_) => 0,
+            Self::Union(trees)
+            | Self::Intersection(trees)
+            | Self::SymmetricDifference(trees)
+            | Self::SmoothUnion(trees, ..) => deepest(trees),
+            Self::Difference(first, others) => first.depth().max(deepest(others)),
+            Self::Offset(tree, _)
+            | Self::Shell(tree, _)
+            | Self::Elongated(tree, _)
+            | Self::Mirrored(tree, _)
+            | Self::Placed(tree, _)
+            | Self::Scaled(tree, _)
+            | Self::Stretched(tree, _) => tree.depth(),
+            Self::Solid(profile, _) => profile.depth(),
+        }
+    }
+
+    /// The formula at `p`, by the definitions of the operators.
+    ///
+    /// Guards (the distance to a child's box under operators that grow) are not
+    /// part of the definitions: the box comes from the child's promise.
+    ///
+    /// # Panics
+    ///
+    /// If the tree cannot be built.
+    pub fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        let number = S::constant;
+        match self {
+            Self::Leaf(leaf) => Space::with_kernel(leaf.name, &leaf.arguments, At(p))
+                .unwrap_or_else(|error| panic!("{self:?}: {error}")),
+            Self::Union(trees) => fold(trees, p, S::min),
+            Self::Intersection(trees) => fold(trees, p, S::max),
+            Self::Difference(first, others) => {
+                let first = first.distance(p);
+                if others.is_empty() { first } else { first.max(-fold(others, p, S::min)) }
+            }
+            Self::SymmetricDifference(trees) => fold(trees, p, |a, b| a.min(b).max(-a.max(b))),
+            Self::SmoothUnion(trees, profile, width) => {
+                let blend = |a: S, b: S| match profile {
+                    Profile::Quadratic => a.smooth_min::<Quadratic>(b, 4.0 * width),
+                    Profile::Cubic => a.smooth_min::<Cubic>(b, 6.0 * width),
+                };
+                let mut values = trees.iter().map(|tree| tree.guarded(p));
+                let first = values.next().unwrap_or_else(|| panic!("{self:?} is empty"));
+                values.fold(first, blend)
+            }
+            Self::Offset(tree, distance) => {
+                let child = if *distance > 0.0 { tree.guarded(p) } else { tree.distance(p) };
+                child - number(*distance)
+            }
+            Self::Shell(tree, thickness) => tree.guarded(p).abs() - number(0.5 * thickness),
+            Self::Elongated(tree, lengths) => tree.distance(Vector(std::array::from_fn(|i| {
+                p.0[i] - p.0[i].clamp(-0.5 * lengths[i], 0.5 * lengths[i])
+            }))),
+            Self::Mirrored(tree, axis) => {
+                let mut q = p;
+                q[*axis] = q[*axis].abs();
+                tree.distance(q)
+            }
+            Self::Placed(tree, pose) => placed(tree, pose, p),
+            Self::Scaled(tree, factor) => {
+                let s = number(*factor);
+                tree.distance(Vector(p.0.map(|x| x / s))).scale(*factor)
+            }
+            Self::Stretched(tree, factors) => {
+                let q = Vector(std::array::from_fn(|i| p.0[i] / number(factors[i])));
+                let smallest = factors.iter().fold(f64::INFINITY, |m, f| f64::min(m, *f));
+                tree.distance(q).scale(smallest)
+            }
+            Self::Solid(profile, sweep) => Space::solid_distance(profile, *sweep, p),
+        }
+    }
+
+    /// As [`distance`](Self::distance), raised to the distance to the box where
+    /// the promise says that it may be below it.
+    fn guarded<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        let child = self.distance(p);
+        let shape = self.shape().unwrap_or_else(|error| panic!("{self:?}: {error}"));
+        let promise = shape.promise();
+        match promise.bounds {
+            Some(bounds) if !promise.above_bounds => {
+                let centre = bounds.aabb.centre();
+                let half = bounds.aabb.half_extents();
+                child.max(S::orthant(std::array::from_fn::<S, D, _>(|i| {
+                    (p.0[i] - S::constant(centre[i])).abs() - S::constant(half[i])
+                })))
+            }
+            _ => child,
+        }
+    }
+}
+
+fn fold<S: Scalar, const D: usize>(
+    trees: &[Tree<D>],
+    p: Vector<S, D>,
+    operation: impl Fn(S, S) -> S,
+) -> S
+where
+    Space: Solid<D>,
+{
+    let values = trees.iter().map(|tree| tree.distance(p));
+    values.reduce(operation).unwrap_or_else(|| panic!("an operator over nothing"))
+}
+
+/// `f(Rᵀ(p − t))`; motions of a moved leaf are one motion, composed in doubles.
+fn placed<S: Scalar, const D: usize>(tree: &Tree<D>, pose: &Pose<D>, p: Vector<S, D>) -> S
+where
+    Space: Solid<D>,
+{
+    let (mut tree, mut pose) = (tree, *pose);
+    if let Some((leaf, motion)) = moved_leaf(tree) {
+        (tree, pose) = (leaf, pose * motion);
+    }
+    let q = p - Vector::of(&pose.translation.0);
+    let rows = pose.rotation.matrix();
+    tree.distance(Vector(std::array::from_fn(|i| {
+        let column: [f64; D] = std::array::from_fn(|k| rows[k][i]);
+        q.dot_constant(&column)
+    })))
+}
+
+fn moved_leaf<const D: usize>(tree: &Tree<D>) -> Option<(&Tree<D>, Pose<D>)> {
+    match tree {
+        Tree::Leaf(_) => Some((tree, Pose::identity())),
+        Tree::Placed(inner, pose) => {
+            moved_leaf(inner).map(|(leaf, motion)| (leaf, *pose * motion))
+        }
+        _ => None,
+    }
+}

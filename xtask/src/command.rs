@@ -1,0 +1,59 @@
+//! Running other programs.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// What went wrong, in a sentence for the terminal.
+#[derive(Debug)]
+pub(crate) struct Failure(pub(crate) String);
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "xtask: {}", self.0)
+    }
+}
+
+/// The root of the repository.
+pub(crate) fn root() -> PathBuf {
+    let package = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    package.parent().map_or(package.clone(), PathBuf::from)
+}
+
+fn cargo_command(arguments: &[&str]) -> Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(arguments).current_dir(root());
+    command
+}
+
+/// Runs cargo, its output on the terminal.
+pub(crate) fn cargo(arguments: &[&str]) -> Result<(), Failure> {
+    cargo_with(arguments, &[])
+}
+
+/// Runs cargo with more environment variables.
+pub(crate) fn cargo_with(
+    arguments: &[&str],
+    environment: &[(&str, &str)],
+) -> Result<(), Failure> {
+    let line = format!("cargo {}", arguments.join(" "));
+    let status = cargo_command(arguments)
+        .envs(environment.iter().copied())
+        .status()
+        .map_err(|error| Failure(format!("`{line}` did not start: {error}")))?;
+    if status.success() { Ok(()) } else { Err(Failure(format!("`{line}` failed"))) }
+}
+
+/// The dependency tree, as `cargo metadata` prints it.
+pub(crate) fn metadata() -> Result<serde_json::Value, Failure> {
+    let output = cargo_command(&["metadata", "--format-version", "1", "--locked"])
+        .output()
+        .map_err(|error| Failure(format!("`cargo metadata` did not start: {error}")))?;
+    if !output.status.success() {
+        let message = String::from_utf8_lossy(&output.stderr);
+        return Err(Failure(format!("`cargo metadata` failed: {message}")));
+    }
+    serde_json::from_slice(&output.stdout)
+        .map_err(|error| Failure(format!("`cargo metadata` printed no JSON: {error}")))
+}
