@@ -125,10 +125,12 @@ impl Scalar for Expression {
         Self::norm(q.map(|q| q.max(zero))) + largest.min(zero)
     }
 
+    /// The fill in fidget's operations: both profiles are powers of `x`.
     fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
         let zero = Self::constant(0.0);
         let x = (Self::constant(1.0) - (self - other).abs().scale(1.0 / reach)).max(zero);
-        // Of the two profiles, benchmarks use the quadratic one.
-        self.min(other) - x.squared().scale(0.25 * reach)
+        let square = x.squared();
+        let fill = if B::NAME == "cubic" { square * x } else { square };
+        self.min(other) - fill.scale(B::fill(1.0_f64) * reach)
     }
 }

@@ -24,7 +24,8 @@ where
             Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
         };
         let points = block_of_points(u, &shape)?;
-        Ok(laws::bits_agree(&shape, &points).map_err(|complaint| format!("{complaint}\n  {tree:?}")))
+        Ok(laws::bits_agree(&shape, &points)
+            .map_err(|complaint| format!("{complaint}\n  {tree:?}")))
     });
 }
 
@@ -37,13 +38,15 @@ fn block_of_points<const D: usize>(
     let spread = draw::size(shape) * 10.0_f64.powf(draw::within(u, -4.0, 0.0)?);
     let near = u.arbitrary()?;
     (0..count)
-        .map(|_| {
-            if near {
-                Ok(centre + draw::vector(u)? * spread)
-            } else {
-                draw::point(u, shape)
-            }
-        })
+        .map(
+            |_| {
+                if near {
+                    Ok(centre + draw::vector(u)? * spread)
+                } else {
+                    draw::point(u, shape)
+                }
+            },
+        )
         .collect()
 }
 
@@ -79,7 +82,9 @@ where
             let by_hand = shapes.iter().map(|s| s.distance_f32(q)).reduce(fold);
             let culled = union.distance_f32(q);
             if by_hand.map(f32::to_bits) != Some(culled.to_bits()) {
-                return Ok(Err(format!("{culled:e} culled f32, {by_hand:?} by hand, at {p:?}")));
+                return Ok(Err(format!(
+                    "{culled:e} culled f32, {by_hand:?} by hand, at {p:?}"
+                )));
             }
         }
         Ok(laws::bits_agree(&union, &points))

@@ -1,13 +1,11 @@
 //! The smallest case of each bug that a law or an oracle found.
 
 use palpate_field::kernel::{
-    Ball, CoolS, CylinderApproximation, Ellipsoid, HexagonalPrism, Octahedron, Polygon, Pyramid,
-    RegularPolygon, Simplex,
+    Ball, CoolS, CylinderApproximation, Ellipsoid, HexagonalPrism, Octahedron, Polygon,
+    Pyramid, RegularPolygon, Simplex,
 };
 use palpate_field::scalar::Model;
-use palpate_field::{
-    BLOCK, Block, Column, Kernel, Point, Shape, ShapeError, Vector,
-};
+use palpate_field::{BLOCK, Block, Column, Kernel, Point, Shape, ShapeError, Vector};
 
 type Outcome = Result<(), ShapeError>;
 
@@ -109,8 +107,11 @@ fn models_on_the_surface_of_a_pyramid_enclose() -> Outcome {
 /// direction no normal.
 #[test]
 fn models_at_the_corners_of_a_triangle_enclose() -> Outcome {
-    let corners = [[0.0, 0.297_981_519_252_061_84], [-0.5, -1.398_223_902_331_665_2],
-        [-1.004_338_553_175_330_2, -1.137_141_467_537_731]];
+    let corners = [
+        [0.0, 0.297_981_519_252_061_84],
+        [-0.5, -1.398_223_902_331_665_2],
+        [-1.004_338_553_175_330_2, -1.137_141_467_537_731],
+    ];
     let triangle = Shape::from_kernel(Simplex::new(corners.map(Vector).to_vec())?);
     let h = 1e-3;
     for corner in corners {
@@ -129,7 +130,8 @@ fn models_at_the_corners_of_a_triangle_enclose() -> Outcome {
 /// than it took: the pole of the thin axis is next to the start.
 #[test]
 fn an_ellipsoid_is_exact_in_its_plane_of_symmetry() -> Outcome {
-    let radii = Vector([0.297_615_515_233_054_8, 0.471_314_522_437_751_3, 1.404_556_867_899_373_2]);
+    let radii =
+        Vector([0.297_615_515_233_054_8, 0.471_314_522_437_751_3, 1.404_556_867_899_373_2]);
     let egg = Shape::from_kernel(Ellipsoid::new(radii)?);
     // On the surface, by the definition.
     for angle in [0.1_f64, 0.5, 0.9, 1.3] {

@@ -50,6 +50,9 @@
 )]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+#[cfg(test)]
+#[path = "../tests/common/cases.rs"]
+mod cases;
 mod clock;
 mod contact;
 mod device;

@@ -115,6 +115,7 @@ pub(crate) fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cases::cases;
 
     #[test]
     fn the_limit_keeps_the_direction() {
@@ -141,7 +142,7 @@ mod tests {
     #[test]
     fn the_force_never_pulls() {
         let material = Material::new(100.0, 50.0).unwrap();
-        arbtest::arbtest(|u| {
+        cases(1000, |u| {
             let mut unit = || u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 1e-3);
             let stretch = Vector([unit()?, unit()?, unit()?]);
             let velocity = Vector([unit()?, unit()?, unit()?]) * 10.0;

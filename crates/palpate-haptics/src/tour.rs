@@ -210,15 +210,18 @@ impl<const D: usize> Tour<D> {
             sights[i].foot + sights[i].up * height
         });
         let positions = smoothed_points(&positions.collect::<Vec<_>>(), window);
-        // Where two positions coincide, time passes all the same.
-        let pause = SHORTEST_STEP * step;
-        let mut passed = vec![0.0];
-        let mut sum = 0.0;
-        for (i, (pair, press)) in positions.windows(2).zip(&press).enumerate() {
+        let ways = positions.windows(2).zip(&press).enumerate().map(|(i, (pair, press))| {
             let from_end = i.min(count - 1 - i) as f64;
             let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
             let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
-            sum += (pair[1] - pair[0]).norm() / haste + pause;
+            (pair[1] - pair[0]).norm() / haste
+        });
+        // Where the hand turns back, it goes little way, but takes its time.
+        let ways = smoothed(&ways.collect::<Vec<_>>(), 2 * window);
+        let mut passed = vec![0.0];
+        let mut sum = 0.0;
+        for way in ways {
+            sum += way.max(SHORTEST_STEP * step);
             passed.push(sum);
         }
         Ok(Route { positions, passed })
@@ -347,7 +350,7 @@ impl<const D: usize> Sight<D> {
 
 /// The unit vector of the orbit at `angle` [rad] of its turns.
 fn direction<const D: usize>(angle: f64) -> Vector<f64, D> {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let mut direction = [0.0; D];
     match &mut direction[..] {
         [x, y] => (*x, *y) = (sin, cos),
@@ -356,7 +359,7 @@ fn direction<const D: usize>(angle: f64) -> Vector<f64, D> {
             let pass = angle / (TAU * TURNS_A_PASS);
             let triangle = 4.0 * (0.5 - ((0.5 * pass + 0.75).fract() - 0.5).abs()) - 1.0;
             let latitude = 0.25 * TAU * HIGHEST_LATITUDE * triangle;
-            let (height, radius) = latitude.sin_cos();
+            let (height, radius) = libm::sincos(latitude);
             (*x, *y, *z) = (radius * sin, height, radius * cos);
         }
         _ => {}

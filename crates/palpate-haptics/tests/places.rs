@@ -7,7 +7,7 @@
 mod common;
 
 use arbitrary::Unstructured;
-use common::{ball, cuboid, half_space, proxy, scaled, stroke, torus, unit, vector};
+use common::{ball, cases, cuboid, half_space, proxy, scaled, stroke, torus, unit, vector};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 
 #[test]
@@ -103,7 +103,7 @@ fn wander(u: &mut Unstructured<'_>, ticks: usize) -> arbitrary::Result<Vec<Vecto
 
 #[test]
 fn the_proxy_is_never_inside() {
-    arbtest::arbtest(|u| {
+    cases(5000, |u| {
         let shape = scene(u, 1.0)?;
         let size = shape.promise().bounds.unwrap().ball.radius;
         let radius = [0.0, 0.001, 0.004][u.choose_index(3)?];
@@ -118,13 +118,12 @@ fn the_proxy_is_never_inside() {
             assert!(last.evaluations <= proxy.probe().budget());
         }
         Ok(())
-    })
-    .budget_ms(4_000);
+    });
 }
 
 #[test]
 fn no_straight_way_from_a_proxy_at_rest_leads_closer() {
-    arbtest::arbtest(|u| {
+    cases(4000, |u| {
         let shape = scene(u, 1.0)?;
         // A probe without radius may balance on a sharp edge.
         let radius = [0.001, 0.004][u.choose_index(2)?];
@@ -141,23 +140,25 @@ fn no_straight_way_from_a_proxy_at_rest_leads_closer() {
             let stretch = (last.proxy - device).norm();
             for _ in 0..8 {
                 let way = vector(u)? * 1e-4;
-                let at = |part: i32| last.proxy + way * (f64::from(part) / 32.0);
-                if (1..=32).all(|part| shape.distance(at(part)) >= radius) {
-                    let closer = stretch - (at(32) - device).norm();
-                    assert!(closer <= 1e-6, "{closer} m closer at {:?} than {last:?}", at(32));
+                let at = |part: f64| last.proxy + way * part;
+                // Close to the proxy a thin rim would fit between evenly spaced points.
+                let even = (1..=32).map(|i| f64::from(i) / 32.0);
+                let mut parts = even.chain((6..40).map(|i| 0.5_f64.powi(i)));
+                if parts.all(|part| shape.distance(at(part)) >= radius) {
+                    let closer = stretch - (at(1.0) - device).norm();
+                    assert!(closer <= 1e-6, "{closer} m closer at {:?} than {last:?}", at(1.0));
                 }
             }
         }
         Ok(())
-    })
-    .budget_ms(3_000);
+    });
 }
 
 #[test]
 fn scenes_of_a_micrometre_and_of_a_kilometre_feel_alike() {
     // Powers of two scale every operation exactly, so the proxies must agree to the last bit
     // but for the two constants that have a unit, which do not matter here.
-    arbtest::arbtest(|u| {
+    cases(300, |u| {
         let seed: Vec<u8> = (0..4096).map(|_| u.arbitrary()).collect::<Result<_, _>>()?;
         let play = |scale: f64| {
             let u = &mut Unstructured::new(&seed);
@@ -177,8 +178,7 @@ fn scenes_of_a_micrometre_and_of_a_kilometre_feel_alike() {
             }
         }
         Ok(())
-    })
-    .budget_ms(2_000);
+    });
 }
 
 #[test]

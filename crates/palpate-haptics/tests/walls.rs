@@ -7,7 +7,7 @@
 mod common;
 
 use arbitrary::Unstructured;
-use common::{cuboid, direction, proxy, rotation, scaled, stroke, unit, vector};
+use common::{cases, cuboid, direction, proxy, rotation, scaled, stroke, unit, vector};
 use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{Probe, Proxy};
 
@@ -60,22 +60,22 @@ fn random_strike(
 
 #[test]
 fn random_strikes_on_thin_walls_never_tunnel() {
-    arbtest::arbtest(|u| random_strike(u, |shape| shape)).budget_ms(3_000);
+    cases(20000, |u| random_strike(u, |shape| shape));
 }
 
 #[test]
 fn random_strikes_on_steep_fields_never_tunnel() {
-    arbtest::arbtest(|u| random_strike(u, |shape| scaled(&shape, 2.0, 2.0))).budget_ms(2_000);
+    cases(5000, |u| random_strike(u, |shape| scaled(&shape, 2.0, 2.0)));
 }
 
 #[test]
 fn random_strikes_on_timid_bounds_never_tunnel() {
-    arbtest::arbtest(|u| random_strike(u, |shape| scaled(&shape, 0.3, 1.0))).budget_ms(2_000);
+    cases(5000, |u| random_strike(u, |shape| scaled(&shape, 0.3, 1.0)));
 }
 
 #[test]
 fn random_strikes_with_few_evaluations_never_tunnel() {
-    arbtest::arbtest(|u| {
+    cases(20000, |u| {
         let plate = cuboid([1.0, 1e-4, 1.0]);
         let budget = u.int_in_range(4..=12)?;
         let probe = Probe::new([0.0, 0.001][u.choose_index(2)?]).unwrap();
@@ -94,8 +94,7 @@ fn random_strikes_with_few_evaluations_never_tunnel() {
             assert!(following.evaluations <= budget);
         }
         Ok(())
-    })
-    .budget_ms(2_000);
+    });
 }
 
 #[test]

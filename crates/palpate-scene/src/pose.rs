@@ -291,13 +291,12 @@ pub(crate) fn array<const D: usize>(numbers: &[f64]) -> Result<[f64; D], Problem
 /// The numbers of a vector of `D` dimensions, each within the range of lengths.
 fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, Problem> {
     let components: [f64; D] = array(numbers)?;
-    for (i, x) in components.into_iter().enumerate() {
-        // Written so that NaN fails.
-        if !(x.abs() <= palpate_field::LARGEST_LENGTH) {
-            let quantity = palpate_field::Quantity(x, Unit::Metre);
-            let message = format!("must be finite and at most 1e15, got {quantity}");
-            return Err(Problem::about(message).at(i));
-        }
+    // Written so that NaN is refused.
+    let accepted = |x: f64| x.abs() <= palpate_field::LARGEST_LENGTH;
+    if let Some(i) = components.iter().position(|x| !accepted(*x)) {
+        let quantity = palpate_field::Quantity(components[i], Unit::Metre);
+        let message = format!("must be finite and at most 1e15, got {quantity}");
+        return Err(Problem::about(message).at(i));
     }
     Ok(Vector(components))
 }

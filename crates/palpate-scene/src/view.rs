@@ -147,7 +147,9 @@ impl View {
         if let Some(center) = &self.center {
             crate::pose::position(center, 2).map_err(|problem| problem.under("center"))?;
         }
-        if let Some(at) = self.at.filter(|at| !(at.abs() <= LARGEST_LENGTH)) {
+        // Written so that NaN is refused.
+        let accepted = |at: &f64| at.abs() <= LARGEST_LENGTH;
+        if let Some(at) = self.at.filter(|at| !accepted(at)) {
             let message = format!("must be finite and at most 1e15, got {at} m");
             return Err(Problem::about(message).under("at"));
         }

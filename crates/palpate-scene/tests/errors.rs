@@ -65,7 +65,7 @@ use Schema::{Accepts, Refuses};
 
 /// Checks that each text is refused with its message and judged by the schema.
 fn check_all(cases: &[(&str, &str, Schema)], text_of: impl Fn(&str) -> String) {
-    let validator = jsonschema::validator_for(&schema()).unwrap();
+    let validator = jsonschema::validator_for(&schema()).expect("a schema");
     for (part, expected, verdict) in cases {
         let text = text_of(part);
         let error = Scene::from_json(&text).expect_err(part);

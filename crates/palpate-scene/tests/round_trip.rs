@@ -68,10 +68,10 @@ fn every_primitive_comes_back_as_the_same_field() {
         })
         .collect();
     let check = |name: &str, ours: &dyn Fn(usize) -> f64, theirs: &dyn Fn(usize) -> f64| {
-        for i in 0..samples.len() {
+        for (i, sample) in samples.iter().enumerate() {
             let (a, b) = (ours(i), theirs(i));
             // Angles pass through degrees; everything else keeps its bits.
-            assert!((a - b).abs() <= 1e-12, "{name} at {:?}: {a}, not {b}", samples[i]);
+            assert!((a - b).abs() <= 1e-12, "{name} at {sample:?}: {a}, not {b}");
         }
     };
     for (entry, known) in Entry::<2>::ALL.iter().zip(known(Entry::<2>::ALL)) {

@@ -1,7 +1,8 @@
 //! Generators of trees and points, biased towards what breaks formulas.
 //!
 //! They draw from [`Unstructured`], so that property tests and fuzzing share
-//! them.
+//! them, and fail only as it does, when a case runs out of entropy.
+#![allow(clippy::missing_errors_doc, reason = "all errors are those of Unstructured")]
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
@@ -276,10 +277,10 @@ pub fn point<const D: usize>(
     shape: &Shape<D>,
 ) -> Result<Vector<f64, D>> {
     let size = size(shape);
-    let (centre, half) = shape.promise().bounds.map_or(
-        (Vector::ZERO, Vector::constant(size)),
-        |b| (b.aabb.centre(), b.aabb.half_extents()),
-    );
+    let (centre, half) =
+        shape.promise().bounds.map_or((Vector::ZERO, Vector::constant(size)), |b| {
+            (b.aabb.centre(), b.aabb.half_extents())
+        });
     let mut p = centre;
     match u.int_in_range(0..=9_u8)? {
         0 => {

@@ -48,7 +48,8 @@ impl Double {
     /// Sine and cosine by Taylor series after removing quarter turns.
     fn sine_cosine(self) -> (Self, Self) {
         // π/2 to 106 bits.
-        let quarter = Self { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
+        let quarter =
+            Self { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
         let turns = (self.high * std::f64::consts::FRAC_2_PI).round();
         let x = self - quarter.scale(turns);
         let square = x * x;

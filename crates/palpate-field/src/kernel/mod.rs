@@ -98,50 +98,56 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     Model::tangent(distance, normal.0, &cell.0, rounding)
 }
 
+// Statics, and not constants, so that the code of all primitives is in this crate
+// once and not in every crate that looks at the lists.
+static PLANAR: [Entry<2>; 14] = [
+    Entry::of::<Ball>(),
+    Entry::of::<Cuboid<2>>(),
+    Entry::of::<RoundedCuboid<2>>(),
+    Entry::of::<Capsule>(),
+    Entry::of::<Segment<2>>(),
+    Entry::of::<HalfSpace<2>>(),
+    Entry::of::<Simplex<2>>(),
+    Entry::of::<Ellipsoid<2>>(),
+    Entry::of::<Ring>(),
+    Entry::of::<Arc>(),
+    Entry::of::<RegularPolygon>(),
+    Entry::of::<RegularStar>(),
+    Entry::of::<Polygon>(),
+    Entry::of::<CoolS>(),
+];
+
+static SPATIAL: [Entry<3>; 22] = [
+    Entry::of::<Ball>(),
+    Entry::of::<Cuboid<3>>(),
+    Entry::of::<RoundedCuboid<3>>(),
+    Entry::of::<Capsule>(),
+    Entry::of::<Segment<3>>(),
+    Entry::of::<HalfSpace<3>>(),
+    Entry::of::<Simplex<3>>(),
+    Entry::of::<Ellipsoid<3>>(),
+    Entry::of::<Cylinder>(),
+    Entry::of::<RoundedCylinder>(),
+    Entry::of::<InfiniteCylinder>(),
+    Entry::of::<CappedCone>(),
+    Entry::of::<Cone>(),
+    Entry::of::<Pyramid>(),
+    Entry::of::<Torus>(),
+    Entry::of::<HexagonalPrism>(),
+    Entry::of::<TriangularPrism>(),
+    Entry::of::<Octahedron>(),
+    Entry::of::<CubeApproximation>(),
+    Entry::of::<CylinderApproximation>(),
+    Entry::of::<ConeApproximation>(),
+    Entry::of::<PyramidApproximation>(),
+];
+
 impl Entry<2> {
     /// All primitives of the plane.
-    pub const ALL: &[Self] = &[
-        Self::of::<Ball>(),
-        Self::of::<Cuboid<2>>(),
-        Self::of::<RoundedCuboid<2>>(),
-        Self::of::<Capsule>(),
-        Self::of::<Segment<2>>(),
-        Self::of::<HalfSpace<2>>(),
-        Self::of::<Simplex<2>>(),
-        Self::of::<Ellipsoid<2>>(),
-        Self::of::<Ring>(),
-        Self::of::<Arc>(),
-        Self::of::<RegularPolygon>(),
-        Self::of::<RegularStar>(),
-        Self::of::<Polygon>(),
-        Self::of::<CoolS>(),
-    ];
+    pub const ALL: &[Self] = &PLANAR;
 }
 
 impl Entry<3> {
     /// All primitives of space.
-    pub const ALL: &[Self] = &[
-        Self::of::<Ball>(),
-        Self::of::<Cuboid<3>>(),
-        Self::of::<RoundedCuboid<3>>(),
-        Self::of::<Capsule>(),
-        Self::of::<Segment<3>>(),
-        Self::of::<HalfSpace<3>>(),
-        Self::of::<Simplex<3>>(),
-        Self::of::<Ellipsoid<3>>(),
-        Self::of::<Cylinder>(),
-        Self::of::<RoundedCylinder>(),
-        Self::of::<InfiniteCylinder>(),
-        Self::of::<CappedCone>(),
-        Self::of::<Cone>(),
-        Self::of::<Pyramid>(),
-        Self::of::<Torus>(),
-        Self::of::<HexagonalPrism>(),
-        Self::of::<TriangularPrism>(),
-        Self::of::<Octahedron>(),
-        Self::of::<CubeApproximation>(),
-        Self::of::<CylinderApproximation>(),
-        Self::of::<ConeApproximation>(),
-        Self::of::<PyramidApproximation>(),
-    ];
+    pub const ALL: &[Self] = &SPATIAL;
 }

@@ -5,7 +5,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 #![allow(dead_code, reason = "each test uses a part")]
 
+mod cases;
+
 use arbitrary::Unstructured;
+pub(crate) use cases::cases;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{CustomField, Point, Promise, Rotation, Shape, Vector};
 use palpate_haptics::{Following, Probe, Proxy};

@@ -179,7 +179,7 @@ impl<'a> Builder<'a> {
                 return Err(Problem::new(message).of_dimension().under(keys::MIRROR));
             }
             Form::Mirrored { axis, .. } => (keys::MIRROR, child.mirrored(*axis as usize)),
-            _ => return Err(Problem::new("an operator on one shape").into()),
+            _ => return Err(Problem::new("an operator on one shape")),
         };
         let shape = result.map_err(|error| shape_error::of_operator(key, &error))?;
         Ok(Built { shape, size })

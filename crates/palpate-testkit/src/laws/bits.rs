@@ -70,10 +70,18 @@ pub fn bits_agree<const D: usize>(shape: &Shape<D>, points: &[Point<D>]) -> Resu
     Ok(())
 }
 
-fn same<const D: usize>(what: &str, p: Point<D>, scalar: f64, other: f64) -> Result<(), String> {
+fn same<const D: usize>(
+    what: &str,
+    p: Point<D>,
+    scalar: f64,
+    other: f64,
+) -> Result<(), String> {
     if scalar.to_bits() == other.to_bits() {
         return Ok(());
     }
-    Err(format!("{what} {other:e} ({:x}), scalar {scalar:e} ({:x}), at {p:?}",
-        other.to_bits(), scalar.to_bits()))
+    Err(format!(
+        "{what} {other:e} ({:x}), scalar {scalar:e} ({:x}), at {p:?}",
+        other.to_bits(),
+        scalar.to_bits()
+    ))
 }

@@ -60,12 +60,16 @@ pub fn gradient_is_the_slope<const D: usize>(
     let (f, g) = shape.distance_gradient(p);
     let step = 1e-6 * (p.norm() + f.abs()).max(1e-3);
     let error = (4.0 * rounding(shape, p) + 4.0 * f64::EPSILON * p.norm()) / step;
-    let differences: [[f64; 2]; D] = std::array::from_fn(|axis| {
-        let along = Vector::<f64, D>::unit(axis) * step;
+    let around = |along: Vector<f64, D>| {
+        let along = along * step;
         [shape.distance(p + along) - f, f - shape.distance(p - along)].map(|x| x / step)
-    });
+    };
+    let differences: [[f64; 2]; D] = std::array::from_fn(|axis| around(Vector::unit(axis)));
     let slope = Vector(differences.map(|[ahead, behind]| 0.5 * (ahead + behind)));
-    let bend = differences.iter().fold(0.0_f64, |m, [a, b]| m.max((a - b).abs()));
+    // Several kinks can hide from the axes, where they cross.
+    let diagonal = around(Vector::constant(1.0));
+    let all = differences.iter().chain([&diagonal]);
+    let bend = all.fold(0.0_f64, |m, [ahead, behind]| m.max((ahead - behind).abs()));
     let apart = (slope - g).norm();
     if bend < 1e-3 && apart > 4.0 * bend + 2.0 * error + 1e-5 {
         return Err(format!("gradient {g:?} at {p:?}, but slope {slope:?}, value {f:e}"));

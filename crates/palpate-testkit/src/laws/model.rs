@@ -90,7 +90,9 @@ pub fn convex_models_are_tight<const D: usize>(
         let largest = cell.centre.norm() + cell.half.norm() + size;
         let ulp = model.lower / (f64::EPSILON * largest);
         if ulp > CONVEX_ULP {
-            return Err(format!("a lower remainder of {ulp:.0} ulp of {largest} over {cell:?}"));
+            return Err(format!(
+                "a lower remainder of {ulp:.0} ulp of {largest} over {cell:?}"
+            ));
         }
     }
     Ok(())

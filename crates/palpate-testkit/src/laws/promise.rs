@@ -68,11 +68,9 @@ fn surface_within<const D: usize>(
     let mut q = p + direction * (0.999 * radius);
     for _ in 0..STEPS {
         let (f, g) = shape.distance_gradient(q);
-        if sign * f < 0.0 && (q - p).norm() < radius {
-            // Beyond rounding, not a wrong sign of something on the surface.
-            if f.abs() > rounding(shape, q) {
-                return Some(q);
-            }
+        // Beyond rounding, not a wrong sign of something on the surface.
+        if sign * f < -rounding(shape, q) && (q - p).norm() < radius {
+            return Some(q);
         }
         q -= g * (1.01 * f);
         let away = q - p;
@@ -96,10 +94,10 @@ pub fn lipschitz_holds<const D: usize>(
     q: Point<D>,
 ) -> Result<(), String> {
     let promise = shape.promise();
-    if let Some(region) = promise.region {
-        if [p, q].iter().any(|x| (*x - region.centre).norm() > region.radius) {
-            return Ok(());
-        }
+    if let Some(region) = promise.region
+        && [p, q].iter().any(|x| (*x - region.centre).norm() > region.radius)
+    {
+        return Ok(());
     }
     let (fp, fq) = (shape.distance(p), shape.distance(q));
     let apart = (p - q).norm();

@@ -7,7 +7,6 @@ use crate::double::Double;
 use crate::kernels::Space;
 use crate::tree::{Solid, Tree};
 
-
 /// The shape's value at `p` is within its promised rounding of the tree's
 /// formula in twice the precision.
 ///
@@ -52,8 +51,7 @@ pub fn single_precision_holds<const D: usize>(
     if !value.is_finite() || !gradient.0.iter().all(|x| x.is_finite()) {
         return Err(format!("{value:e} with gradient {gradient:?} at {q:?}"));
     }
-    let promised =
-        2.0 * f64::from(f32::EPSILON) / f64::EPSILON * super::rounding(shape, p);
+    let promised = 2.0 * f64::from(f32::EPSILON) / f64::EPSILON * super::rounding(shape, p);
     let error = (f64::from(value) - exact).abs();
     if error <= promised {
         return Ok(());

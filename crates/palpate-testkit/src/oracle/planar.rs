@@ -63,9 +63,8 @@ fn stadium(a: Point<2>, b: Point<2>, radius: f64) -> Definition<2> {
     let caps = [(b, [along, across]), (a, [-along, -across])];
     let sides = [across * radius, across * -radius];
     let mut boundary: Vec<_> = sides.map(|s| Patch::segment(a + s, b + s)).into();
-    boundary.extend(
-        caps.map(|(end, axes)| Patch::arc(end, axes, radius, [-0.5 * PI, 0.5 * PI])),
-    );
+    boundary
+        .extend(caps.map(|(end, axes)| Patch::arc(end, axes, radius, [-0.5 * PI, 0.5 * PI])));
     Definition::new(boundary, move |p| from_segment(a, b, p) < radius)
 }
 
@@ -80,7 +79,9 @@ pub(super) fn from_segment<const D: usize>(a: Point<D>, b: Point<D>, p: Point<D>
 /// The profile of a box with rounded corners.
 pub(super) fn rounded_rectangle(half: Point<2>, r: f64) -> Vec<Patch<2>> {
     let mut boundary = Vec::new();
-    for (i, [sx, sy]) in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].into_iter().enumerate() {
+    for (i, [sx, sy]) in
+        [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].into_iter().enumerate()
+    {
         let centre = [sx * (half[0] - r), sy * (half[1] - r)];
         let from = 0.5 * PI * i as f64;
         boundary.push(arc(centre, r, [from, from + 0.5 * PI]));
@@ -123,8 +124,18 @@ fn cool_s(height: f64) -> Definition<2> {
     strokes.push((at(0.4, 0.2), at(0.2, 0.0)));
     strokes.push((at(-0.4, -0.2), at(-0.2, 0.0)));
     let outline = [
-        (0.0, 1.0), (0.4, 0.6), (0.4, 0.2), (0.2, 0.0), (0.4, -0.2), (0.4, -0.6),
-        (0.0, -1.0), (-0.4, -0.6), (-0.4, -0.2), (-0.2, 0.0), (-0.4, 0.2), (-0.4, 0.6),
+        (0.0, 1.0),
+        (0.4, 0.6),
+        (0.4, 0.2),
+        (0.2, 0.0),
+        (0.4, -0.2),
+        (0.4, -0.6),
+        (0.0, -1.0),
+        (-0.4, -0.6),
+        (-0.4, -0.2),
+        (-0.2, 0.0),
+        (-0.4, 0.2),
+        (-0.4, 0.6),
     ];
     let outline = vec![outline.map(|(x, y)| at(x, y)).to_vec()];
     let boundary = strokes.into_iter().map(|(a, b)| Patch::segment(a, b)).collect();
@@ -206,7 +217,10 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
         "regular_star" => polygon(vec![corners(n(0), &[n(1), n(2)])]),
         "polygon" => match &a[0] {
             Argument::Rings(rings) => polygon(
-                rings.iter().map(|ring| ring.iter().map(|p| super::point(p)).collect()).collect(),
+                rings
+                    .iter()
+                    .map(|ring| ring.iter().map(|p| super::point(p)).collect())
+                    .collect(),
             ),
             _ => return None,
         },

@@ -56,14 +56,17 @@ fn box_of(half: Point<3>, r: f64) -> Definition<3> {
                 if r == 0.0 {
                     continue;
                 }
-                boundary.push(Patch::surface([2.0 * core[axis], r * FRAC_PI_2], move |u, v| {
-                    let angle = v * FRAC_PI_2;
-                    let mut p = Vector::ZERO;
-                    p[axis] = core[axis] * (2.0 * u - 1.0);
-                    p[j] = s * (core[j] + r * angle.cos());
-                    p[k] = t * (core[k] + r * angle.sin());
-                    p
-                }));
+                boundary.push(Patch::surface(
+                    [2.0 * core[axis], r * FRAC_PI_2],
+                    move |u, v| {
+                        let angle = v * FRAC_PI_2;
+                        let mut p = Vector::ZERO;
+                        p[axis] = core[axis] * (2.0 * u - 1.0);
+                        p[j] = s * (core[j] + r * angle.cos());
+                        p[k] = t * (core[k] + r * angle.sin());
+                        p
+                    },
+                ));
             }
         }
     }
@@ -156,11 +159,7 @@ fn ellipsoid(r: Point<3>) -> Definition<3> {
     let largest = r.0.iter().fold(0.0_f64, |m, r| m.max(*r));
     let surface = Patch::surface([PI * largest, TAU * largest], move |u, v| {
         let (up, turn) = (PI * (u - 0.5), TAU * v);
-        Vector([
-            r[0] * up.cos() * turn.cos(),
-            r[1] * up.sin(),
-            r[2] * up.cos() * turn.sin(),
-        ])
+        Vector([r[0] * up.cos() * turn.cos(), r[1] * up.sin(), r[2] * up.cos() * turn.sin()])
     });
     Definition::new(vec![surface], move |p| {
         Vector::<f64, 3>(std::array::from_fn(|i| p[i] / r[i])).norm() < 1.0

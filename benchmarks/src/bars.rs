@@ -1,0 +1,47 @@
+//! The bars that rows are held against, and printing.
+
+use crate::fields::Rows;
+
+/// A row's key and the most it may be.
+const BARS: &[(&str, f64)] = &[
+    ("S3.distance.point.ours_over_fidget_jit", 1.0),
+    ("S3.distance.point_f32.ours_over_fidget_jit", 0.9),
+    ("S3.distance.1024.ours_over_fidget_jit", 0.65),
+    ("S3.distance_gradient.point.ours_over_fidget_jit", 1.0),
+    ("S3.distance_gradient.1024.ours_over_fidget_jit", 0.08),
+    ("S4.distance.point.ours_over_fidget_jit", 0.15),
+    ("S4.distance.1024.ours_over_fidget_jit", 0.5),
+    ("S4.distance.clustered.ours_over_fidget_jit", 0.08),
+    ("S4.distance_gradient.point.ours_over_fidget_jit", 0.2),
+    ("S4.distance_gradient.1024.ours_over_fidget_jit", 0.07),
+    ("S1.distance.1024.f64_over_f32", 2.8),
+    ("S2.distance.1024.f64_over_f32", 2.8),
+    ("S3.distance.1024.f64_over_f32", 2.8),
+    ("S4.distance.1024.f64_over_f32", 2.8),
+    ("S3.distance_gradient.1024.f64_over_f32", 2.8),
+    ("S4.distance_gradient.1024.f64_over_f32", 2.8),
+    ("S4.build.scene.ns", 10_000.0),
+    ("S3.model.64.ns", 60.0),
+];
+
+/// Prints all rows and how they stand against their bars, or the rows as JSON.
+pub(crate) fn print(rows: &Rows, as_json: bool) {
+    if as_json {
+        let object: serde_json::Map<String, serde_json::Value> =
+            rows.iter().map(|(key, number)| (key.clone(), (*number).into())).collect();
+        println!("{:#}", serde_json::Value::Object(object));
+        return;
+    }
+    for (key, number) in rows {
+        println!("{key:<60} {number:>12.4}");
+    }
+    println!();
+    let mut missed = 0;
+    for (key, bar) in BARS {
+        let number = rows.get(*key).copied().unwrap_or(f64::NAN);
+        let verdict = if number <= *bar { "reached" } else { "missed" };
+        missed += usize::from(verdict == "missed");
+        println!("{key:<60} {number:>12.4}  at most {bar:<8} {verdict}");
+    }
+    println!("{} of {} bars reached", BARS.len() - missed, BARS.len());
+}

@@ -1,0 +1,124 @@
+//! Fields beside fidget and parry: distances and gradients of S1 to S4 and of a 2D
+//! scene.
+
+mod ours;
+mod points;
+mod theirs;
+
+use std::collections::BTreeMap;
+use std::error::Error;
+
+use crate::peers::{Body, Tape, formula};
+use crate::rounds::{self, Subject};
+use crate::scenes::{self, Work};
+use fidget::jit::JitFunction;
+use fidget::vm::VmFunction;
+use ours::Ours;
+use points::Points;
+
+/// Keys and numbers.
+pub(crate) type Rows = BTreeMap<String, f64>;
+
+/// All rows of the suite.
+pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
+    let mut rows = Rows::new();
+    for work in scenes::spatial()? {
+        eprintln!("measuring {} …", work.name);
+        measure_work(&work, &mut rows)?;
+    }
+    let wrench = scenes::planar()?;
+    eprintln!("measuring {} …", wrench.name);
+    measure_work(&wrench, &mut rows)?;
+    measure_build(&mut rows)?;
+    derive_ratios(&mut rows);
+    Ok(rows)
+}
+
+fn measure_work<const D: usize>(work: &Work<D>, rows: &mut Rows) -> Result<(), Box<dyn Error>>
+where
+    Points<D>: Ours<D>,
+{
+    let points = Points::new(work.half);
+    let formula = formula(&work.scene)?;
+    let mut jit = Tape::<JitFunction>::new(&formula);
+    let mut vm = Tape::<VmFunction>::new(&formula);
+    theirs::agree(&work.shape, &points, &mut jit)?;
+    let body = Body::of(&work.scene);
+
+    let jit = std::cell::RefCell::new(jit);
+    let vm = std::cell::RefCell::new(vm);
+    let mut subjects: Vec<Subject<'_>> = Vec::new();
+    points.ours(work.name, &work.shape, &mut subjects);
+    theirs::tape(work.name, "fidget_jit", &points, &jit, &mut subjects);
+    theirs::tape(work.name, "fidget_vm", &points, &vm, &mut subjects);
+    if let Some(body) = &body {
+        theirs::parry(work.name, &points, body, &mut subjects);
+    }
+    for (key, time) in rounds::measure(&mut subjects) {
+        rows.insert(format!("{key}.ns"), time);
+    }
+    Ok(())
+}
+
+/// Building S4 from its data.
+fn measure_build(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    for work in scenes::spatial()? {
+        if let Ok(members) = scenes::members(&work.scene) {
+            scenes::build(&members)?;
+            let key = format!("{}.build.scene", work.name);
+            let mut subjects = [Subject::new(key, 1, || {
+                scenes::build(&members).map_or(f64::NAN, |shape| shape.depth() as f64)
+            })];
+            for (key, time) in rounds::measure(&mut subjects) {
+                rows.insert(format!("{key}.ns"), time);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Ours over each peer, and f64 over f32.
+fn derive_ratios(rows: &mut Rows) {
+    let times = rows.clone();
+    for (key, time) in &times {
+        let Some(key) = key.strip_suffix(".ns") else { continue };
+        if let Some((ours, peer)) = key.rsplit_once('.')
+            && theirs::PEERS.contains(&peer)
+        {
+            // Peers have one number type: every way we have of doing the same is
+            // compared with it.
+            for ours in [ours.to_owned(), ours.replace(".point", ".point_f32")] {
+                if let Some(own) = times.get(&format!("{ours}.ns")) {
+                    rows.insert(format!("{ours}.ours_over_{peer}"), own / time);
+                }
+            }
+        }
+        if let Some((single, case)) = key.split_once("_f64.") {
+            let single = format!("{single}.{case}");
+            if let Some(single_time) = times.get(&format!("{single}.ns")) {
+                rows.insert(format!("{single}.f64_over_f32"), time / single_time);
+            }
+        }
+    }
+    best_of_clustered(rows);
+}
+
+/// For clustered points, the better of fidget's JIT as it is and simplified for
+/// each cluster.
+fn best_of_clustered(rows: &mut Rows) {
+    let simplified: Vec<_> = rows
+        .iter()
+        .filter_map(|(key, time)| {
+            let work = key.strip_suffix(".clustered_simplified.fidget_jit.ns")?;
+            Some((work.to_owned(), *time))
+        })
+        .collect();
+    for (work, time) in simplified {
+        let plain = rows.get(&format!("{work}.clustered.fidget_jit.ns")).copied();
+        let ours = rows.get(&format!("{work}.clustered.ns")).copied();
+        if let (Some(plain), Some(ours)) = (plain, ours) {
+            let ratio = ours / plain.min(time);
+            rows.insert(format!("{work}.clustered.ours_over_fidget_jit"), ratio);
+        }
+    }
+}

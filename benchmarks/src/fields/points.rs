@@ -1,0 +1,99 @@
+//! The points at which fields are asked, in every shape they are asked in.
+
+use palpate::field::scalar::{Float, Model};
+use palpate::field::{BLOCK, Block, Lane, Vector};
+
+use crate::random::Random;
+
+/// Points of a slice.
+pub(crate) const SLICE: usize = 65_536;
+
+/// Points asked one at a time.
+pub(crate) const SINGLE: usize = 1024;
+
+/// Clusters of [`BLOCK`] points.
+pub(crate) const CLUSTERS: usize = 64;
+
+/// The radius of a cluster [m].
+const CLUSTER_RADIUS: f64 = 0.02;
+
+/// Half the side of the cells that models bound [m].
+const CELL: f64 = 0.05;
+
+/// Scattered and clustered points in `D` dimensions.
+pub(crate) struct Points<const D: usize> {
+    /// Points in single precision, so that all ask at the same places.
+    pub(crate) scattered: Vec<Vector<f32, D>>,
+    pub(crate) clustered: Vec<Vector<f32, D>>,
+}
+
+impl<const D: usize> Points<D> {
+    pub(crate) fn new(half: f64) -> Self {
+        let mut random = Random::new(7);
+        let scattered = (0..SLICE).map(|_| single(random.point([0.0; D], half))).collect();
+        let mut clustered = Vec::with_capacity(CLUSTERS * BLOCK);
+        for _ in 0..CLUSTERS {
+            let centre: [f64; D] = random.point([0.0; D], half);
+            while clustered.len() % BLOCK != 0 || clustered.is_empty() {
+                clustered.push(single(in_ball(&mut random, centre)));
+            }
+            if clustered.len() < CLUSTERS * BLOCK {
+                clustered.push(single(in_ball(&mut random, centre)));
+            }
+        }
+        clustered.truncate(CLUSTERS * BLOCK);
+        Self { scattered, clustered }
+    }
+
+    /// Blocks of `W` of `points`.
+    pub(crate) fn blocks<T: Float + Lane, const W: usize>(
+        points: &[Vector<f32, D>],
+    ) -> Vec<Block<T, D, W>> {
+        points
+            .chunks(W)
+            .map(|points| {
+                let mut block = Block::zero();
+                for (i, p) in points.iter().enumerate() {
+                    block.set(i, Vector(p.0.map(|x| T::constant(f64::from(x)))));
+                }
+                block
+            })
+            .collect()
+    }
+
+    /// Blocks of cells about `points`.
+    pub(crate) fn cells(points: &[Vector<f32, D>]) -> Vec<Block<Model, D, BLOCK>> {
+        points
+            .chunks(BLOCK)
+            .map(|points| {
+                let mut block = Block::zero();
+                for (i, p) in points.iter().enumerate() {
+                    block.set(i, Vector(Model::cell(p.0.map(f64::from), [CELL; D])));
+                }
+                block
+            })
+            .collect()
+    }
+
+    /// One array a coordinate, those past `D` zero.
+    pub(crate) fn columns(points: &[Vector<f32, D>]) -> [Vec<f32>; 3] {
+        let column =
+            |k: usize| points.iter().map(|p| p.0.get(k).copied().unwrap_or(0.0)).collect();
+        [column(0), column(1), column(2)]
+    }
+}
+
+fn single<const D: usize>(p: [f64; D]) -> Vector<f32, D> {
+    Vector(p.map(|x| x as f32))
+}
+
+/// A point of the ball of [`CLUSTER_RADIUS`] about `centre`.
+fn in_ball<const D: usize>(random: &mut Random, centre: [f64; D]) -> [f64; D] {
+    loop {
+        let p = random.point(centre, CLUSTER_RADIUS);
+        let from_centre = Vector(p) - Vector(centre);
+        if from_centre.norm() <= CLUSTER_RADIUS {
+            return p;
+        }
+    }
+}

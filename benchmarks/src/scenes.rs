@@ -1,0 +1,102 @@
+//! The benchmark scenes, read from `scenes/`.
+
+use std::error::Error;
+
+use palpate::field::kernel::{Argument, Entry};
+use palpate::field::{Pose, Rotation, Shape, Vector};
+use palpate::scene::{Form, Node, Scene, World, WrittenRotation};
+
+const S1: &str = include_str!("../../scenes/s1.json");
+const S2: &str = include_str!("../../scenes/s2.json");
+const S3: &str = include_str!("../../scenes/s3.json");
+const S4: &str = include_str!("../../scenes/s4.json");
+const WRENCH: &str = include_str!("../../scenes/wrench.json");
+
+/// A scene of `D` dimensions, and the cube that points are drawn from.
+pub(crate) struct Work<const D: usize> {
+    pub(crate) name: &'static str,
+    pub(crate) scene: Scene,
+    pub(crate) shape: Shape<D>,
+    /// Half the side of the cube about the origin [m].
+    pub(crate) half: f64,
+}
+
+/// S1 to S4.
+pub(crate) fn spatial() -> Result<Vec<Work<3>>, Box<dyn Error>> {
+    let scenes = [("S1", S1, 1.1), ("S2", S2, 1.1), ("S3", S3, 1.1), ("S4", S4, 2.6)];
+    scenes
+        .into_iter()
+        .map(|(name, text, half)| {
+            let scene = Scene::from_json(text)?;
+            match scene.build()? {
+                World::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
+                World::Planar(_) => Err(format!("{name} is not spatial").into()),
+            }
+        })
+        .collect()
+}
+
+/// The wrench.
+pub(crate) fn planar() -> Result<Work<2>, Box<dyn Error>> {
+    let scene = Scene::from_json(WRENCH)?;
+    match scene.build()? {
+        World::Planar(world) => {
+            Ok(Work { name: "wrench", scene, shape: world.whole, half: 0.13 })
+        }
+        World::Spatial(_) => Err("the wrench is not planar".into()),
+    }
+}
+
+/// A placed primitive, as data.
+pub(crate) struct Placed {
+    entry: &'static Entry<3>,
+    arguments: Vec<Argument>,
+    pose: Pose<3>,
+}
+
+/// The members of the one union of a scene, as data: what building starts from.
+pub(crate) fn members(scene: &Scene) -> Result<Vec<Placed>, Box<dyn Error>> {
+    let Form::Union(nodes) = &scene.bodies[0].shape.form else {
+        return Err("the scene is not a union".into());
+    };
+    nodes.iter().map(placed).collect()
+}
+
+fn placed(node: &Node) -> Result<Placed, Box<dyn Error>> {
+    let Form::Placed { translate, rotation, of } = &node.form else {
+        return Err("a member is not placed".into());
+    };
+    let Form::Primitive(primitive) = &of.form else {
+        return Err("a member is not a primitive".into());
+    };
+    let entry = Entry::<3>::ALL.iter().find(|entry| entry.name == primitive.name);
+    let entry = entry.ok_or_else(|| format!("no primitive {}", primitive.name))?;
+    let arguments = primitive.arguments.values().cloned().collect();
+    Ok(Placed { entry, arguments, pose: pose(translate.as_deref(), rotation.as_ref())? })
+}
+
+/// The pose of a node in space.
+pub(crate) fn pose(
+    translate: Option<&[f64]>,
+    rotation: Option<&WrittenRotation>,
+) -> Result<Pose<3>, Box<dyn Error>> {
+    let translation = match translate {
+        None => Vector::ZERO,
+        Some(offset) => Vector(offset.try_into()?),
+    };
+    let rotation = match rotation {
+        None => Rotation::identity(),
+        Some(WrittenRotation::Quaternion(q)) => Rotation::from_quaternion(*q)?,
+        Some(_) => return Err("benchmark scenes in space give quaternions".into()),
+    };
+    Ok(Pose::new(rotation, translation))
+}
+
+/// Builds the union of `members`.
+pub(crate) fn build(members: &[Placed]) -> Result<Shape<3>, Box<dyn Error>> {
+    let shapes: Result<Vec<_>, _> = members
+        .iter()
+        .map(|member| member.entry.build(&member.arguments)?.placed(&member.pose))
+        .collect();
+    Ok(Shape::union(shapes?)?)
+}
