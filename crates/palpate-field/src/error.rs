@@ -100,6 +100,10 @@ impl ShapeError {
 /// would lose the range of single precision.
 pub const LARGEST_LENGTH: f64 = 1e15;
 
+/// The smallest positive length accepted [m]: below, squares of lengths would
+/// lose the range of single precision.
+pub const SMALLEST_LENGTH: f64 = 1e-15;
+
 /// Checks that `value` is finite and positive.
 pub(crate) fn positive(
     parameter: &'static str,
@@ -107,7 +111,7 @@ pub(crate) fn positive(
     unit: Unit,
 ) -> Result<f64, ShapeError> {
     // Written so that NaN fails.
-    if value > 0.0 && value <= LARGEST_LENGTH {
+    if (SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&value) {
         Ok(value)
     } else {
         Err(ShapeError::number(parameter, rule_of_range(value, "positive"), value, unit))
@@ -141,5 +145,11 @@ pub(crate) fn finite(
 }
 
 fn rule_of_range(value: f64, rule: &'static str) -> &'static str {
-    if value > LARGEST_LENGTH { "finite and at most 1e15" } else { rule }
+    if value > LARGEST_LENGTH {
+        "finite and at most 1e15"
+    } else if value > 0.0 {
+        "at least 1e-15"
+    } else {
+        rule
+    }
 }

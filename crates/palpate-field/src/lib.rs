@@ -14,7 +14,7 @@ mod shape;
 mod vector;
 
 pub use bounds::{Aabb, BoundingBall, Bounds};
-pub use error::{LARGEST_LENGTH, Quantity, ShapeError, Unit};
+pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit};
 pub use field::CustomField;
 pub use kernel::Kernel;
 pub use machine::{

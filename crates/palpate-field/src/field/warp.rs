@@ -1,13 +1,15 @@
 //! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::Vector;
+use crate::vector::{Vector, unrolled};
 
 /// A map from the node's `D` coordinates to its child's `E`.
 pub(crate) trait Warp<const D: usize, const E: usize>:
@@ -20,6 +22,14 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
     #[inline(always)]
     fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
         child
+    }
+
+    /// The same map for a node moved by `pose`, if it is a motion itself.
+    fn placed(&self, _pose: &Pose<D>) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
     }
 
     /// The node's answer and gradient from the child's: by duals, unless the map
@@ -35,9 +45,7 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
         let moved = self.point(variables);
         let mut gradient = [T::constant(0.0); D];
         for (slope, coordinate) in child_gradient.0.iter().zip(moved.0) {
-            for k in 0..D {
-                gradient[k] = gradient[k] + *slope * coordinate.gradient[k];
-            }
+            unrolled!(k < D => gradient[k] = gradient[k] + *slope * coordinate.gradient[k]);
         }
         let result = self.value(variables, Dual { value: child, gradient });
         (result.value, Vector(result.gradient))
@@ -151,5 +159,13 @@ where
 impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
+        let map = self.map.placed(pose)?;
+        let promise = self.promise.placed(pose);
+        let depth = self.child.depth() + 1;
+        Shape::from_operator(Arc::new(Self { map, child: self.child.clone(), promise }), depth)
+            .ok()
     }
 }

@@ -5,29 +5,37 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Float, Model, Scalar};
-use crate::vector::{Vector, array};
+use crate::vector::{Vector, array, unrolled};
 
-/// Newton steps to the nearest point. From the start below, six reach the last
-/// bit for aspect ratios up to a million; two more are spare.
-const STEPS: usize = 8;
+/// Halvings of the range of the unknown, in its exponent: seven leave a factor of
+/// less than 4 of the 2²⁰⁰ that doubles and aspect ratios up to a million span.
+const HALVINGS: usize = 7;
+
+/// Newton steps after that: each doubles the digits, and the first is within a
+/// factor of 4 of the root.
+const STEPS: usize = 6;
 
 /// Relative rounding of the distance, in operations.
-const OPERATIONS: f64 = 64.0;
+const OPERATIONS: f64 = 24.0;
 
 /// The ellipse or ellipsoid `Σ(pᵢ/rᵢ)² ≤ 1`. Exact.
 ///
 /// # Derivation
 ///
 /// The nearest point `x` to `y ≥ 0` has `y − x` along the normal `xᵢ/rᵢ²`, so
-/// `xᵢ = rᵢ²yᵢ/(t + rᵢ²)` for the largest root `t` of
-/// `g(t) = Σ(rᵢyᵢ/(t + rᵢ²))² − 1`, which is convex and falling there. Start
-/// where the largest of the terms is one: then `0 ≤ g ≤ D − 1`, Newton's method
-/// rises to the root without overshooting, and a fixed number of steps is enough
-/// (after Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
+/// `xᵢ = rᵢ²yᵢ/(t + rᵢ²)` for the largest `t` with `G(t) = Σ(rᵢyᵢ/(t + rᵢ²))² = 1`
+/// (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
 /// hyperellipsoid", 2013). The unknown is `s = t + min rᵢ²`, so that nothing
-/// cancels for thin shapes; a coordinate of zero along the thinnest axis is
-/// moved by an ulp of the size, so that points on the medial axis have a nearest
-/// point too.
+/// cancels for thin shapes; a coordinate of zero along the thinnest axis is moved
+/// by an ulp of the size, so that points on the medial axis have a nearest point
+/// too.
+///
+/// The root lies between the largest `s` at which one term alone is one, and
+/// `‖(rᵢyᵢ)‖`. Next to the plane of the widest section these are many powers of
+/// two apart, and Newton's method would creep along the pole of the thin axis. So
+/// the range is halved in its exponent first. Then Newton's method on `1/√G − 1`,
+/// which is concave and nearly linear (Moré and Sorensen, 1983), rises to the root
+/// from below without overshooting.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ellipsoid};
@@ -81,19 +89,31 @@ impl<const D: usize> Ellipsoid<D> {
             y.scale(self.radii[i])
         });
         let mut s = scaled[0] - excess(0);
-        for i in 1..D {
-            s = s.max(scaled[i] - excess(i));
-        }
-        for _ in 0..STEPS {
-            let mut value = S::constant(-1.0);
+        unrolled!(i < D => s = s.max(scaled[i] - excess(i)));
+        // G, and minus half its slope.
+        let sums = |s: S| {
+            let mut value = S::constant(0.0);
             let mut slope = S::constant(0.0);
-            for i in 0..D {
+            unrolled!(i < D => {
                 let inverse = S::constant(1.0) / (s + excess(i));
                 let share = (scaled[i] * inverse).squared();
                 value = value + share;
-                slope = slope + share * inverse;
-            }
-            s = s + (value / slope).scale(0.5);
+                slope = slope + share * inverse
+            });
+            (value, slope)
+        };
+        let one = S::constant(1.0);
+        let mut high = S::norm(scaled).max(s);
+        for _ in 0..HALVINGS {
+            // The product of the roots: that of the numbers may leave the range.
+            let middle = s.sqrt() * high.sqrt();
+            let (value, _) = sums(middle);
+            s = S::select_less(value, one, s, middle);
+            high = S::select_less(value, one, middle, high);
+        }
+        for _ in 0..STEPS {
+            let (value, slope) = sums(s);
+            s = s + (value.sqrt() - one) * value / slope;
         }
         // The shares xᵢ/rᵢ have length one, which their rounding is made to obey.
         let shares: [S; D] = array!(i < D => scaled[i] / (s + excess(i)));

@@ -83,6 +83,18 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     fn promise(&self) -> Promise<D>;
 }
 
+/// `outside`, or on the surface of a convex shape the distance of its nearest
+/// face's plane.
+///
+/// On an edge or corner, the direction from the nearest point is rounding and may
+/// be no normal of the shape. That of a face is one, and a face's plane is a bound
+/// from below everywhere. `size` is the shape's: on the surface is within a few
+/// roundings of it.
+#[inline(always)]
+pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
+    S::select_less(outside, S::constant(4.0 * S::EPSILON * size), face, outside)
+}
+
 /// Bounds a convex exact kernel over a cell by its tangent plane; `operations`
 /// and `size` as for [`Rounding::of_operations`](crate::Rounding::of_operations).
 #[inline(always)]

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 40.0;
+const OPERATIONS: f64 = 24.0;
 
 /// The convex hull of `D + 1` points: a solid triangle in 2D, a tetrahedron in
 /// 3D. Exact.
@@ -39,6 +39,8 @@ pub struct Simplex<const D: usize> {
     facets: Arc<[Facet<D>]>,
     faces: Arc<[Face<D>]>,
     bounds: Bounds<D>,
+    /// The largest distance of a corner from the origin [m].
+    size: f64,
 }
 
 /// A face of `D − 1` dimensions, with its outward plane.
@@ -148,7 +150,8 @@ impl<const D: usize> Simplex<D> {
             .collect();
         let bounds = Aabb::around(points).map(Bounds::of_box);
         let bounds = bounds.unwrap_or_else(|| Bounds::centred(Vector::ZERO, 0.0));
-        Ok(Self { facets: facets.into(), faces, bounds })
+        let size = bounds.radius_about_origin();
+        Ok(Self { facets: facets.into(), faces, bounds, size })
     }
 }
 
@@ -170,16 +173,16 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
             let here = S::select_less(least, zero, outside, rest.norm());
             outside = outside.min(here);
         }
+        let outside = face_if_on_it(outside, inside, self.size);
         S::select_less(inside, zero, inside, outside)
     }
 
     fn model(&self, cell: Vector<Model, D>) -> Model {
-        tangent_model(self, cell, OPERATIONS, self.bounds.radius_about_origin())
+        tangent_model(self, cell, OPERATIONS, self.size)
     }
 
     fn promise(&self) -> Promise<D> {
-        let size = self.bounds.radius_about_origin();
-        Promise::exact_convex(Some(self.bounds), OPERATIONS, size)
+        Promise::exact_convex(Some(self.bounds), OPERATIONS, self.size)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::field::{Warp, Warped};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
 use crate::shape::Shape;
-use crate::vector::{Vector, array};
+use crate::vector::{Vector, array, unrolled};
 
 /// `f(|pₐ|, …)` along axis a.
 #[derive(Debug)]
@@ -33,12 +33,17 @@ struct Elongation<const D: usize> {
 impl<const D: usize> Warp<D, D> for Elongation<D> {
     #[inline(always)]
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        Vector(array!(i < D => {
-            let half = self.half[i];
-            // max(p − h, 0) + min(p + h, 0): one of the two is always zero.
-            let zero = S::constant(0.0);
-            (p.0[i] - S::constant(half)).max(zero) + (p.0[i] + S::constant(half)).min(zero)
-        }))
+        let zero = S::constant(0.0);
+        let mut q = p;
+        unrolled!(i < D => {
+            // Where nothing is pulled apart, both terms would pass the gradient on.
+            if self.half[i] > 0.0 {
+                let half = S::constant(self.half[i]);
+                // One of the two is always zero.
+                q.0[i] = (p.0[i] - half).max(zero) + (p.0[i] + half).min(zero);
+            }
+        });
+        q
     }
 }
 
@@ -75,7 +80,8 @@ impl<const D: usize> Shape<D> {
     /// The part at positive coordinates of `axis`, and its mirror image:
     /// `f(|x|, …)`.
     ///
-    /// Exact where the shape is if it stays on the positive side, else a bound.
+    /// Outside, exact where the shape is if it stays on the positive side; inside,
+    /// if it does not touch the mirror either. Else a bound.
     ///
     /// # Errors
     ///
@@ -87,6 +93,8 @@ impl<const D: usize> Shape<D> {
         }
         let child = self.promise();
         let one_side = child.bounds.is_some_and(|b| b.aabb.min[axis] >= 0.0);
+        // Halves that touch have a wall between them that is no surface.
+        let apart = child.bounds.is_some_and(|b| b.aabb.min[axis] > 0.0);
         let promise = Promise {
             bounds: child.bounds.map(|b| mirrored_bounds(&b, axis)),
             above_bounds: child.above_bounds && one_side,
@@ -99,7 +107,9 @@ impl<const D: usize> Shape<D> {
                     if i == axis { 0.0 } else { ball.centre[i] }
                 })),
             }),
-            ..if one_side { *child } else { child.bound() }
+            outside: if one_side { child.outside } else { child.outside.bounded() },
+            inside: if apart { child.inside } else { child.inside.bounded() },
+            ..*child
         };
         self.warped(Mirror { axis }, promise)
     }
@@ -201,8 +211,9 @@ impl Shape<2> {
 
     /// The profile turned about the y axis: its x is the distance from the axis.
     ///
-    /// Every promise is kept if the profile lies in x ≥ 0; else a bound, and the
-    /// part at negative x is not seen.
+    /// Outside, exact where the profile is if it lies in x ≥ 0 or is its own mirror
+    /// image; inside, if it does not touch the axis either. Else a bound. A part at
+    /// negative x is not seen.
     ///
     /// # Errors
     ///
@@ -212,6 +223,9 @@ impl Shape<2> {
         let one_side = child.bounds.is_some_and(|b| b.aabb.min[0] >= 0.0);
         // A profile that is its own mirror image turns into itself.
         let kept = one_side || child.symmetric[0];
+        // One that touches the axis leaves a line there that is no surface.
+        let apart = child.bounds.is_some_and(|b| b.aabb.min[0] > 0.0);
+        let solid = apart || child.symmetric[0];
         let bounds = child.bounds.map(|b| {
             let r = b.aabb.max[0].max(0.0);
             let aabb = Aabb {
@@ -227,7 +241,7 @@ impl Shape<2> {
         let own = Rounding::of_operations(3.0 * child.lipschitz.max(1.0), 0.0);
         let promise = Promise {
             outside: if kept { child.outside } else { child.outside.bounded() },
-            inside: if kept { child.inside } else { child.inside.bounded() },
+            inside: if solid { child.inside } else { child.inside.bounded() },
             lipschitz: child.lipschitz,
             region: child.region.map(|ball| BoundingBall {
                 centre: Vector([0.0, ball.centre[1], 0.0]),

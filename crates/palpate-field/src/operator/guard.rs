@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
 use crate::field::{Remap, Remapped};
 use crate::promise::{Promise, Rounding};
@@ -36,9 +36,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// A field that is only a bound may be small far from its shape; an operator
     /// that moves the surface outwards would find a surface there. Inside the
-    /// box nothing changes, since the distance to the box is negative there and
-    /// no deeper than the shape's... unless the shape itself is deeper, which no
-    /// bound is.
+    /// box nothing changes: the distance to it is negative there, and deeper than
+    /// the shape's own, which lies in it.
     pub(crate) fn guarded(self) -> Result<Self, ShapeError> {
         let promise = self.promise();
         let (Some(bounds), false) = (promise.bounds, promise.above_bounds) else {
@@ -46,6 +45,8 @@ impl<const D: usize> Shape<D> {
         };
         let size = bounds.radius_about_origin();
         let promise = Promise {
+            // The ball may be tighter than the box; the guard knows the box alone.
+            bounds: Some(Bounds::of_box(bounds.aabb)),
             above_bounds: true,
             rounding: promise.rounding.or(&Rounding::of_operations(8.0, size)),
             ..*promise

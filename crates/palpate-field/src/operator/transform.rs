@@ -16,6 +16,10 @@ impl<const D: usize> Warp<D, D> for Placement<D> {
         self.to_body(p)
     }
 
+    fn placed(&self, pose: &Pose<D>) -> Option<Self> {
+        Some(Self::new(*pose * self.world_from_body))
+    }
+
     #[inline(always)]
     fn gradient<T: Float>(
         &self,

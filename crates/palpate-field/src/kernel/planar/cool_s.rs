@@ -69,14 +69,17 @@ impl Kernel<2> for CoolS {
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         let zero = S::constant(0.0);
         let folded = p.abs();
-        let turned = Vector([p.0[0].negate_unless_less(zero, p.0[1]), folded.0[1]]);
+        let turned = S::select_less(p.0[1], zero, -p.0[0], p.0[0]);
         // Of the outline, the nearest edge tells the side too.
         let nearer = |a: S, b: S| S::select_less(b.abs(), a.abs(), b, a);
         let outline = nearer(
             nearer(self.side.signed_distance(folded), self.roof.signed_distance(folded)),
             self.waist.signed_distance(folded),
         );
-        let strokes = self.middle.distance(folded).min(self.crossing.distance(turned));
+        // Near the waist the nearest crossing may be the one of the other half.
+        let here = self.crossing.distance(Vector([turned, folded.0[1]]));
+        let there = self.crossing.distance(Vector([-turned, -folded.0[1]]));
+        let strokes = self.middle.distance(folded).min(here).min(there);
         // The larger of two negative numbers is the nearer stroke; outside the
         // outline no stroke is nearer than the outline.
         S::select_less(outline, zero, outline.max(-strokes), outline)

@@ -13,9 +13,9 @@ use crate::vector::{Point, Vector};
 /// The most edges of one polygon: a distance looks at each.
 const MOST_EDGES: usize = 100_000;
 
-/// Closer to an edge than this share of the polygon's size, the gradient is the
-/// edge's normal: the direction from the nearest point is rounding there.
-const ON_EDGE: f64 = 1e-9;
+/// Closer to an edge than this many roundings of the polygon's size, whether a
+/// point is inside and on which side of the edge it lies may disagree.
+const ON_EDGE: f64 = 64.0;
 
 /// How many rounded operations the distance takes at most.
 const OPERATIONS: f64 = 16.0;
@@ -148,7 +148,7 @@ impl Kernel<2> for Polygon {
         let one = T::constant(1.0);
         let inside = self.side_of(p) < zero;
         let signed = if inside { -distance } else { distance };
-        let on_edge = ON_EDGE * self.bounds.radius_about_origin();
+        let on_edge = ON_EDGE * T::EPSILON * self.bounds.radius_about_origin();
         let normal = Vector::of(&nearest.edge.across());
         let [_, past] = nearest.edge.offsets(p);
         let gradient = if distance.to_f64() <= on_edge && past == zero {

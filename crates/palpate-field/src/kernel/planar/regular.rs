@@ -3,7 +3,7 @@
 use super::line::Edge;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
@@ -16,7 +16,7 @@ const MOST_BRANCHES: u32 = 256;
 const FOLDS: usize = 8;
 
 /// How many rounded operations a folded distance takes at most.
-const OPERATIONS: f64 = 64.0;
+const OPERATIONS: f64 = 22.0;
 
 /// The symmetries of a regular polygon, as reflections that fold the plane onto
 /// the wedge between the +y axis and the angle π/n from it.
@@ -71,8 +71,8 @@ fn check_branches(parameter: &'static str, count: u32) -> Result<u32, ShapeError
 /// A regular polygon about the origin, one corner on the +y axis. Exact.
 ///
 /// In the folded wedge there is one edge, from the corner on the y axis to its
-/// middle: `f = ‖(max(s, 0), min(t, 0))‖ + min(s, 0)`, with `s` the offset from
-/// the edge's line and `t` the place along it, from the corner.
+/// middle. With `s` the offset from the edge's line and `t` the place along it from
+/// the corner, the distance is `s` beside the edge and `‖(s, t)‖` past the corner.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RegularPolygon};
@@ -117,7 +117,8 @@ impl Kernel<2> for RegularPolygon {
         let q = self.fold.apply(p) - Vector::of(&[0.0, self.radius]);
         let out = q.dot_constant(&[sin, cos]);
         let along = q.dot_constant(&[cos, -sin]);
-        S::norm([out.max(zero), along.min(zero)]) + out.min(zero)
+        let corner = face_if_on_it(S::norm([out, along]), out, self.radius);
+        S::select_less(along, zero, corner, out)
     }
 
     #[inline(always)]
@@ -128,7 +129,7 @@ impl Kernel<2> for RegularPolygon {
     fn promise(&self) -> Promise<2> {
         let bounds = Bounds::centred(Vector::constant(self.radius), self.radius);
         Promise {
-            symmetric: [true, self.sides % 2 == 0],
+            symmetric: [true, self.sides.is_multiple_of(2)],
             ..Promise::exact_convex(Some(bounds), OPERATIONS, self.radius)
         }
     }
@@ -206,7 +207,7 @@ impl Kernel<2> for RegularStar {
     fn promise(&self) -> Promise<2> {
         let bounds = Bounds::centred(Vector::constant(self.outer_radius), self.outer_radius);
         Promise {
-            symmetric: [true, self.branches % 2 == 0],
+            symmetric: [true, self.branches.is_multiple_of(2)],
             ..Promise::exact(Some(bounds), OPERATIONS, self.outer_radius)
         }
     }

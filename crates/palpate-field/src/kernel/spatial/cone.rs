@@ -2,13 +2,13 @@
 
 use super::cylinder::{from_axis, turned_bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 24.0;
+const OPERATIONS: f64 = 20.0;
 
 /// A cone about the y axis with its tip cut off. Exact.
 ///
@@ -83,7 +83,8 @@ impl Kernel<3> for CappedCone {
         let by_cap = S::select_less(radius, rho, rims, cap.abs());
         let past_top = S::select_less(S::constant(self.side), along, rims, out.abs());
         let by_side = S::select_less(along, zero, rims, past_top);
-        S::select_less(inside, zero, inside, by_cap.min(by_side))
+        let outside = face_if_on_it(by_cap.min(by_side), inside, self.side);
+        S::select_less(inside, zero, inside, outside)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -55,12 +55,14 @@ impl Kernel<3> for Octahedron {
         let beyond = x + y + z - radius;
         // The coordinates in order: a ≥ b ≥ c.
         let (larger, smaller) = (x.max(y), y.min(x));
-        let (a, c) = (larger.max(z), smaller.min(z));
-        let b = smaller.max(larger.min(z));
+        let (a, c) = (larger.max(z), z.min(smaller));
+        let b = smaller.max(z.min(larger));
         let foot = c - beyond.scale(1.0 / 3.0);
         let along = (b - a + radius).scale(0.5).clamp(0.0, self.radius);
         let edge = S::norm([a - radius + along, b - along, c]);
-        S::select_less(foot, zero, edge, beyond.scale(1.0 / 3.0_f64.sqrt()))
+        let face = beyond.scale(1.0 / 3.0_f64.sqrt());
+        let outside = face_if_on_it(edge, face, self.radius);
+        S::select_less(foot, zero, outside, face)
     }
 
     #[inline(always)]

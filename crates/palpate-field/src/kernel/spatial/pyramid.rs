@@ -2,13 +2,13 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 32.0;
+const OPERATIONS: f64 = 22.0;
 
 /// A pyramid on a square in x and z, its tip up along y, centred at half its
 /// height. Exact.
@@ -87,14 +87,15 @@ impl Kernel<3> for Pyramid {
         let on_ridge = Vector(array!(i < 3 => up_ridge.scale(self.ridge[i])));
         let ridge = (corner - on_ridge).norm();
         let edges = base_edge.min(ridge);
-        let base = S::select_less(half, a, edges, y.abs());
+        let base = S::select_less(half, a, edges, (-y).abs());
         // On the side: between base and tip, and no further across than the side
         // is wide there.
         let share = along.scale(1.0 / self.slant);
         let width = half - share.scale(self.half_side);
         let on_side = S::select_less(width, b, edges, out.abs());
         let side = S::select_less(along, zero, edges, on_side);
-        S::select_less(inside, zero, inside, base.min(side))
+        let outside = face_if_on_it(base.min(side), inside, self.ridge_length);
+        S::select_less(inside, zero, inside, outside)
     }
 
     #[inline(always)]
