@@ -16,8 +16,8 @@ use crate::contact::{Rest, slide};
 use crate::error::{HapticsError, not_negative};
 use crate::sampler::{Sample, Sampler};
 
-/// The evaluations a tick may cost, unless asked otherwise. Sliding takes three to five, a
-/// corner six, a strike about ten; the rest is for grazing flights and slots.
+/// The evaluations a tick may cost, unless asked otherwise. Sliding takes one to three, a corner
+/// up to eight, a strike about ten; the rest is for grazing flights, slots and fast hands.
 pub const DEFAULT_BUDGET: u32 = 64;
 
 /// The fewest evaluations a tick can work with: two to see a surface, one to leave it.

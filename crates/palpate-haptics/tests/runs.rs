@@ -70,10 +70,10 @@ fn a_report_counts_what_happened() {
 
     assert_eq!(report.ending, Ending::Finished);
     assert_eq!((report.ticks, report.duration, report.points), (512, 4.0, 1));
-    // Below the wall from the tick after 1 s; back above it by 4/129 s of the last second.
+    // Below the wall from the tick after 1 s; above it again 1/33 s, or 3.9 ticks, after 3 s.
     assert_eq!(report.contact_time, (2.0 * 128.0 + 3.0) / 128.0);
     assert_eq!(report.largest_depth, 0.0078125);
-    // 500 N/m and 1 N·s/m: the deepest approach adds 1/128 N, one tick before the rest.
+    // 500 N/m; the approach at 1/128 m/s adds up to 1/128 N for 1 N·s/m.
     assert!((report.largest_force - 500.0 * 0.0078125).abs() < 0.01);
     let cost = report.cost.unwrap();
     assert_eq!((cost.count, cost.max_ns), (512, 1000));

@@ -24,11 +24,8 @@ fn a_thin_plate_holds_a_strike_of_five_metres_a_second() {
     }
 }
 
-/// A plate of `edge` and `thickness`, and a hand that flies at it somewhere, at up to 10 m/s at
-/// 1 kHz, for 20 ticks, turning at each: whichever way it comes, its proxy must stay above.
-///
-/// A hand may leave the edge of the plate behind, so the plate is closed to a box around its far
-/// side.
+/// A hand that flies about in or around a hollow box with walls of 0.1 mm to 2.1 mm, at up to
+/// 10 m/s at 1 kHz and through the walls: its proxy must stay on the side where it began.
 fn random_strike(
     u: &mut Unstructured<'_>,
     wrap: impl Fn(Shape<3>) -> Shape<3>,

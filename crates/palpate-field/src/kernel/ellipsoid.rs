@@ -16,7 +16,7 @@ const HALVINGS: usize = 7;
 const STEPS: usize = 6;
 
 /// Relative rounding of the distance, in operations.
-const OPERATIONS: f64 = 24.0;
+const OPERATIONS: f64 = 16.0;
 
 /// The ellipse or ellipsoid `Σ(pᵢ/rᵢ)² ≤ 1`. Exact.
 ///

@@ -10,7 +10,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 24.0;
+const OPERATIONS: f64 = 18.0;
 
 /// The convex hull of `D + 1` points: a solid triangle in 2D, a tetrahedron in
 /// 3D. Exact.

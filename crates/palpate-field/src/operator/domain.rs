@@ -28,6 +28,8 @@ impl<const D: usize> Warp<D, D> for Mirror {
 #[derive(Debug)]
 struct Elongation<const D: usize> {
     half: [f64; D],
+    /// Axes about which the child is its own mirror image.
+    symmetric: [bool; D],
 }
 
 impl<const D: usize> Warp<D, D> for Elongation<D> {
@@ -36,9 +38,15 @@ impl<const D: usize> Warp<D, D> for Elongation<D> {
         let zero = S::constant(0.0);
         let mut q = p;
         unrolled!(i < D => {
-            // Where nothing is pulled apart, both terms would pass the gradient on.
-            if self.half[i] > 0.0 {
-                let half = S::constant(self.half[i]);
+            let half = S::constant(self.half[i]);
+            if self.half[i] <= 0.0 {
+                // Nothing is pulled apart: the sum below would have twice the slope
+                // at zero.
+            } else if self.symmetric[i] {
+                // The same for a symmetric child, and convex, which keeps models
+                // of convex children tight.
+                q.0[i] = (p.0[i].abs() - half).max(zero);
+            } else {
                 // One of the two is always zero.
                 q.0[i] = (p.0[i] - half).max(zero) + (p.0[i] + half).min(zero);
             }
@@ -146,7 +154,7 @@ impl<const D: usize> Shape<D> {
             rounding: child.rounding.plus(&own),
             ..*child
         };
-        self.warped(Elongation { half }, promise)
+        self.warped(Elongation { half, symmetric: child.symmetric }, promise)
     }
 
     fn warped(&self, map: impl Warp<D, D>, promise: Promise<D>) -> Result<Self, ShapeError> {

@@ -3,7 +3,7 @@
 
 //! Shapes and hands that several tests use.
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-#![allow(dead_code, reason = "each test uses a part")]
+#![allow(dead_code, unused_imports, reason = "each test uses a part")]
 
 mod cases;
 

@@ -8,7 +8,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 20.0;
+const OPERATIONS: f64 = 16.0;
 
 /// A cone about the y axis with its tip cut off. Exact.
 ///

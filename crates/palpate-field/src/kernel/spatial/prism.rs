@@ -9,7 +9,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 24.0;
+const OPERATIONS: f64 = 18.0;
 
 /// A regular polygon in x and z, extruded along y: the orthant of the polygon's
 /// distance and `|y| − h/2`.

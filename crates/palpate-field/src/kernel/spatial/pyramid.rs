@@ -8,7 +8,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 22.0;
+const OPERATIONS: f64 = 18.0;
 
 /// A pyramid on a square in x and z, its tip up along y, centred at half its
 /// height. Exact.
