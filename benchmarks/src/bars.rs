@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The bars that rows are held against, and printing.
 
 use crate::fields::Rows;

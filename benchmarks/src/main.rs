@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! palpate and its peers, side by side in one run.
 //!
 //! Every row has a key of its own, `WORK.SUBJECT.CASE.STAT`; `README.md` beside

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Points that are the same in every run.
 
 /// Marsaglia's 64-bit xorshift generator (2003).

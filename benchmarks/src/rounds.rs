@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Interleaved rounds: every subject once a round, so that what disturbs the
 //! machine disturbs all alike.
 

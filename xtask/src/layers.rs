@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The layer rule: a crate depends only on crates above it in ARCHITECTURE.md.
 
 use serde_json::Value;

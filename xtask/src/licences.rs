@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The licence rule: what the program is built from is MIT, Apache-2.0, BSD,
 //! MPL-2.0 or as free as they are.
 

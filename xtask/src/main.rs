@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The project's own chores: `cargo xtask test`, `cargo xtask check`.
 
 mod check;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Rules on source files: their length, where `unsafe` may be, and how they
 //! begin.
 

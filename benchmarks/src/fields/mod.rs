@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fields beside fidget and parry: distances and gradients of S1 to S4 and of a 2D
 //! scene.
 
@@ -41,7 +44,7 @@ where
     let points = Points::new(work.half);
     let formula = formula(&work.scene)?;
     let mut jit = Tape::<JitFunction>::new(&formula);
-    let mut vm = Tape::<VmFunction>::new(&formula);
+    let vm = Tape::<VmFunction>::new(&formula);
     theirs::agree(&work.shape, &points, &mut jit)?;
     let body = Body::of(&work.scene);
 

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The points at which fields are asked, in every shape they are asked in.
 
 use palpate::field::scalar::{Float, Model};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! A scalar that records fidget's expression trees.
 //!
 //! Evaluating a kernel with it hands fidget the very formula that ours

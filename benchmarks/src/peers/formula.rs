@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The formula of a scene, for fidget: the same kernels and operators, evaluated
 //! with [`Expression`]s.
 
@@ -5,7 +8,7 @@ use std::error::Error;
 
 use fidget::context::Tree;
 use palpate::field::kernel::{
-    Argument, Ball, Capsule, Cuboid, Cylinder, Kernel, Primitive, RegularPolygon, RegularStar,
+    Argument, Ball, Capsule, Cuboid, Cylinder, Primitive, RegularPolygon, RegularStar,
     RoundedCuboid, Torus,
 };
 use palpate::field::scalar::{Blend, Cubic, Quadratic, Scalar};

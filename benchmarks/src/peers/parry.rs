@@ -1,10 +1,12 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! parry's shapes, where it has the same.
 
 use palpate::field::Pose;
 use palpate::field::kernel::Argument;
 use palpate::scene::{Form, Node, Scene};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
-use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::{Ball, Cuboid, SharedShape};
 
 use crate::scenes::pose;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The trace of a run: every tick as a row. The columns are documented in
 //! `docs/formats.md`.
 

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Rotations and rigid motions.
 //!
 //! Frames are named: a pose called `world_from_body` maps body coordinates to
@@ -45,13 +48,14 @@ impl<const D: usize> Rotation<D> {
         for i in 0..D {
             for k in 0..i {
                 let skew = Vector(matrix[i]).dot(Vector(matrix[k]));
-                if !(skew.abs() <= ORTHONORMAL_TOLERANCE) {
+                // NaN is beyond every tolerance too.
+                if skew.is_nan() || skew.abs() > ORTHONORMAL_TOLERANCE {
                     return Err(wrong(skew));
                 }
                 matrix[i] = (Vector(matrix[i]) - Vector(matrix[k]) * skew).0;
             }
             let length = Vector(matrix[i]).norm();
-            if !((length - 1.0).abs() <= ORTHONORMAL_TOLERANCE) {
+            if length.is_nan() || (length - 1.0).abs() > ORTHONORMAL_TOLERANCE {
                 return Err(wrong(length));
             }
             matrix[i] = (Vector(matrix[i]) * (1.0 / length)).0;
@@ -173,9 +177,9 @@ impl Rotation<3> {
         });
         if largest == 3 {
             q[3] = 1.0 + trace;
-            for i in 0..3 {
+            for (i, q) in q[..3].iter_mut().enumerate() {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                q[i] = m[k][j] - m[j][k];
+                *q = m[k][j] - m[j][k];
             }
         } else {
             let (i, j, k) = (largest, (largest + 1) % 3, (largest + 2) % 3);

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a field's distance says about the true distance.
 
 use crate::bounds::{BoundingBall, Bounds};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What a user builds.
 
 use std::sync::Arc;
@@ -228,7 +231,7 @@ impl<const D: usize> Shape<D> {
                 return Some(p);
             }
             let steepness = gradient.dot(gradient);
-            if !(steepness >= SMALLEST_SLOPE * SMALLEST_SLOPE) {
+            if steepness.is_nan() || steepness < SMALLEST_SLOPE * SMALLEST_SLOPE {
                 return None;
             }
             p -= gradient * (distance / steepness);

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Scalar calls, blocks and instruction sets agree bit for bit.
 //!
 //! One test, since the choice of the instruction set is the process's.

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Gradients, rounding and models, on every primitive and on random trees.
 
 use arbitrary::Unstructured;

@@ -12,9 +12,7 @@ use std::fmt::Write;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use palpate_field::field::Placement;
-use palpate_field::kernel::{
-    Ball, CappedCone, Cuboid, Kernel, Primitive, RegularStar, Torus,
-};
+use palpate_field::kernel::{Ball, CappedCone, Cuboid, Kernel, Primitive, RegularStar, Torus};
 use palpate_field::scalar::{Blend, Cubic, Quadratic, Scalar};
 use palpate_field::{Point, Pose, Rotation, ShapeError, Vector};
 use palpate_testkit::kernels::{Dimension, Space, Visit};
@@ -25,7 +23,8 @@ use palpate_testkit::{arbitrary as draw, cases};
 enum Operation {
     /// A coordinate of the point, by its number.
     Coordinate(usize),
-    Constant(f64),
+    /// By its bits: a negative zero is not a zero.
+    Constant(u64),
     Add,
     Sub,
     Mul,
@@ -108,7 +107,7 @@ impl Scalar for Recorded {
     const EPSILON: f64 = f64::EPSILON;
 
     fn constant(value: f64) -> Self {
-        Self::new(Operation::Constant(value), [])
+        Self::new(Operation::Constant(value.to_bits()), [])
     }
 
     fn scale(self, factor: f64) -> Self {
@@ -174,8 +173,8 @@ impl Formula {
         Self { nodes: NODES.take(), result }
     }
 
-    /// The nodes that the result needs.
-    fn needed(&self) -> Vec<usize> {
+    /// How often the result uses each node.
+    fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.nodes.len()];
         uses[self.result] = 1;
         for (i, node) in self.nodes.iter().enumerate().rev() {
@@ -188,7 +187,7 @@ impl Formula {
 
     /// The formula as text: what is used more than once has a name.
     fn print(&self) -> String {
-        let uses = self.needed();
+        let uses = self.uses();
         let mut texts: Vec<String> = Vec::new();
         let mut lines = String::new();
         let mut names = 0;
@@ -212,7 +211,7 @@ impl Formula {
         };
         match node.operation {
             Operation::Coordinate(i) => ["x", "y", "z"][i].into(),
-            Operation::Constant(value) => format!("{value:?}"),
+            Operation::Constant(bits) => format!("{:?}", f64::from_bits(bits)),
             Operation::Add => format!("({} + {})", all[0], all[1]),
             Operation::Sub => format!("({} - {})", all[0], all[1]),
             Operation::Mul => format!("({} * {})", all[0], all[1]),
@@ -241,7 +240,7 @@ impl Formula {
             let x: Vec<f64> = node.arguments.iter().map(|a| values[*a]).collect();
             values.push(match node.operation {
                 Operation::Coordinate(i) => p[i],
-                Operation::Constant(value) => value,
+                Operation::Constant(bits) => f64::from_bits(bits),
                 Operation::Add => x[0] + x[1],
                 Operation::Sub => x[0] - x[1],
                 Operation::Mul => x[0] * x[1],

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The smallest case of each bug that a law or an oracle found.
 
 use palpate_field::kernel::{

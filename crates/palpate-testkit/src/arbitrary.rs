@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Generators of trees and points, biased towards what breaks formulas.
 //!
 //! They draw from [`Unstructured`], so that property tests and fuzzing share

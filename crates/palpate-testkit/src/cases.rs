@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Runs a property a fixed number of times.
 
 use arbitrary::Unstructured;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Numbers of twice the precision, to measure rounding with.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

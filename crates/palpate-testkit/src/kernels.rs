@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! From a name in the catalogue to the type of its kernel.
 
 use palpate_field::kernel::{self, Argument, Entry, Primitive};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the tests of palpate share.
 //!
 //! - [`arbitrary`]: trees and points, biased towards what breaks formulas;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Shapes as plain data, and their formulas written a second time.
 //!
 //! [`Tree::shape`] builds a shape as a user would. [`Tree::distance`] evaluates

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Signed distance functions that can be touched.
 //!
 //! One crate for everything: the [`field`]s and their promises, [`scene`] files,

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The answer for one point, and how it is written.
 
 use palpate::field::{Point, Shape, Vector};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Many points from a file, in bounded memory and on all cores.
 
 use std::fs::File;

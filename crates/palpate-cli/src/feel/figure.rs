@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The picture of a run: the path, the proxy and the force over the isolines, and
 //! the force over time.
 

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Nodes that fold an operation over their children's answers.
 
 use std::fmt::Debug;

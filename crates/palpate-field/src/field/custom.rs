@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Fields that are not formulas: closures, and later grids and meshes.
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};

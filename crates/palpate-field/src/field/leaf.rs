@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Leaves: a kernel, perhaps in a frame of its own.
 
 use std::sync::Arc;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What the engine calls: fields as objects.
 //!
 //! A [`Field`] answers for one point, for a block of points with and without

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Nodes that change their child's answer in place: offset, shell, guard.
 
 use std::fmt::Debug;

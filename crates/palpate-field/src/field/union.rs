@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The sharp union of any number of members, with members out of reach skipped.
 //!
 //! A member is skipped only where its value is sure to be larger than the
@@ -205,9 +208,10 @@ impl<const D: usize> Union<D> {
     {
         let ask = |i: usize| self.members[i].field().distance(x, y, z);
         let mut best: Option<(T, usize)> = None;
-        let mut offer = |value: T, i: usize| match best {
-            Some((smallest, _)) if !(value < smallest) => {}
-            _ => best = Some((value, i)),
+        let mut offer = |value: T, i: usize| {
+            if best.is_none_or(|(smallest, _)| value < smallest) {
+                best = Some((value, i));
+            }
         };
         if self.groups.is_empty() {
             for i in 0..self.members.len() {

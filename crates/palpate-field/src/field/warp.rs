@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
 
 use std::fmt::Debug;

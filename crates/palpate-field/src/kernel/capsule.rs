@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Capsules: all points within a radius of a segment.
 
 use crate::bounds::Bounds;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Half-spaces.
 
 use crate::error::{ShapeError, Unit, finite};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! The one declaration of each primitive, and the catalogue of all.
 
 use crate::error::{ShapeError, Unit};

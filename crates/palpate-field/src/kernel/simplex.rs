@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Simplices: triangles in 2D, tetrahedra in 3D.
 
 use std::sync::Arc;

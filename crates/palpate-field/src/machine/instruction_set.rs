@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Runs the loops over blocks with the best instruction set of the machine.
 //!
 //! A loop over lanes is compiled three times, with the instructions that every

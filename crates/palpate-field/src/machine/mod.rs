@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What knows the machine: blocks of lanes in memory, and the instruction sets
 //! that work through them.
 //!

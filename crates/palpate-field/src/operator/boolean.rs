@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Sharp booleans: union, intersection, difference, symmetric difference.
 
 use std::sync::Arc;

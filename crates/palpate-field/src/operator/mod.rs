@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Operators: what turns shapes into shapes.
 //!
 //! Each file holds the formulas of one family, the rule by which the family's

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Numbers that carry their derivative.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

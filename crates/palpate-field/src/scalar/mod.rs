@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Numbers a formula can be evaluated with.
 //!
 //! A kernel is written once, over [`Scalar`]. Evaluating it with

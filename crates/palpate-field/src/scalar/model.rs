@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Numbers that bound a formula over a whole cell.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -313,6 +316,7 @@ impl Div for Model {
     type Output = Self;
 
     #[inline(always)]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "one bound for both operations")]
     fn div(self, other: Self) -> Self {
         self * other.reciprocal()
     }

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Sine and cosine as branch-free polynomials, so that blocks of them vectorise.
 //!
 //! The argument is reduced by the nearest multiple of π/2, subtracted in three
@@ -8,11 +11,8 @@ use super::Float;
 
 /// π/2 in three parts of 33, 33 and 53 bits: the products with a quadrant up to
 /// 2¹⁹ are exact in the first two.
-const HALF_PI: [f64; 3] = [
-    1.570_796_326_734_125_614_2,
-    6.077_100_506_303_965_976_6e-11,
-    2.022_266_248_795_950_631_5e-21,
-];
+const HALF_PI: [f64; 3] =
+    [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
 /// Adding and subtracting 1.5·2⁵² rounds to the nearest integer without a call
 /// into a library, which would stop vectorisation.

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Scalar calls and blocks agree bit for bit.
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, SHORT, Shape, Vector};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Gradients are never NaN, never too long, and of length one where promised.
 
 use palpate_field::{Point, Quality, Shape, Vector};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! What every field must obey, whatever its formula.
 //!
 //! Each law looks at one shape and one point, and says what is wrong.

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Distances from definitions, without any formula of the library.
 //!
 //! A shape is defined by what it contains and by a parametrised boundary. The

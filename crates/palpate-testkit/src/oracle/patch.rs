@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Parametrised pieces of a boundary, and the distance to them.
 
 use std::cmp::Ordering;

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Definitions of the primitives of the plane.
 
 use std::f64::consts::{PI, TAU};

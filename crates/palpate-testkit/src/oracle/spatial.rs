@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Definitions of the primitives of space.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Cones about the y axis, whole and capped.
 
 use super::cylinder::{from_axis, turned_bounds};

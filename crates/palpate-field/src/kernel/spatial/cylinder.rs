@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Cylinders about the y axis: sharp, rounded and without ends.
 
 use crate::bounds::Bounds;

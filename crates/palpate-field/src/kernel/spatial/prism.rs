@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
 //! Prisms along the y axis on regular polygons.
 
 use crate::bounds::Bounds;
