@@ -43,10 +43,10 @@ pub(crate) fn check(metadata: &Value) -> Result<(), Failure> {
                 wrong.push(format!("{name} depends on {on} outside its tests"));
             }
             let below = LAYERS.iter().position(|crate_name| *crate_name == on);
-            if let (Some(layer), Some(below), false) = (layer, below, in_tests) {
-                if below >= layer {
-                    wrong.push(format!("{name} depends on {on}, which is below it"));
-                }
+            if let (Some(layer), Some(below), false) = (layer, below, in_tests)
+                && below >= layer
+            {
+                wrong.push(format!("{name} depends on {on}, which is below it"));
             }
         }
     }

@@ -20,7 +20,6 @@ const HEADER: &str = "// SPDX-FileCopyrightText: The palpate authors\n\
 const UNSAFE_MODULES: &[(&str, &str)] = &[
     ("crates/palpate-field/src/machine", "instruction sets and unwritten scratch memory"),
     ("crates/palpate-field/tests", "an allocator that counts, to prove that none happens"),
-    ("crates/palpate-haptics/tests", "an allocator that counts, to prove that none happens"),
 ];
 
 /// Checks every Rust file of the repository.

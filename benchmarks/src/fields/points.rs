@@ -37,14 +37,8 @@ impl<const D: usize> Points<D> {
         let mut clustered = Vec::with_capacity(CLUSTERS * BLOCK);
         for _ in 0..CLUSTERS {
             let centre: [f64; D] = random.point([0.0; D], half);
-            while clustered.len() % BLOCK != 0 || clustered.is_empty() {
-                clustered.push(single(in_ball(&mut random, centre)));
-            }
-            if clustered.len() < CLUSTERS * BLOCK {
-                clustered.push(single(in_ball(&mut random, centre)));
-            }
+            clustered.extend((0..BLOCK).map(|_| single(in_ball(&mut random, centre))));
         }
-        clustered.truncate(CLUSTERS * BLOCK);
         Self { scattered, clustered }
     }
 

@@ -90,16 +90,16 @@ pub(crate) struct FeelOptions {
     /// How many contact points the built-in hand has.
     #[arg(long, default_value_t = 1, conflicts_with = "path")]
     pub(crate) contacts: usize,
-    /// Stiffness of the surface [N/m].
+    /// Stiffness of the surface [N/m]; the first body's if left out.
     #[arg(long)]
     pub(crate) stiffness: Option<f64>,
-    /// Damping of the surface [N·s/m].
+    /// Damping of the surface [N·s/m]; the first body's if left out.
     #[arg(long)]
     pub(crate) damping: Option<f64>,
-    /// The largest force on a contact point [N].
-    #[arg(long, default_value_t = 3.3)]
-    pub(crate) max_force: f64,
-    /// Radius of the ball that touches [m].
+    /// The largest force on a contact point [N]; the tool's, or 3.3 N, if left out.
+    #[arg(long)]
+    pub(crate) max_force: Option<f64>,
+    /// Radius of the ball that touches [m]; the tool's, or 2 mm, if left out.
     #[arg(long)]
     pub(crate) radius: Option<f64>,
     /// One tick after the other, without waiting for the clock.

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Promise, Quality, Vector};
-use palpate::scene::{BuiltScene, Scene, World};
+use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
+use palpate::scene::{BuiltScene, Scene, Tool, World};
 
 use crate::outcome::Failure;
 
@@ -17,6 +17,7 @@ const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
 pub(crate) struct Named {
     pub(crate) name: String,
     pub(crate) world: World,
+    pub(crate) tool: Option<Tool>,
 }
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
@@ -25,9 +26,9 @@ pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
         None => ("the built-in gallery".to_owned(), Scene::from_json(GALLERY)),
         Some(path) => (path.display().to_string(), Scene::from_file(path)),
     };
-    let world = scene.and_then(|scene| scene.build());
-    match world {
-        Ok(world) => Ok(Named { name, world }),
+    let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool)));
+    match built {
+        Ok((world, tool)) => Ok(Named { name, world, tool }),
         Err(error) => Err(Failure::input(format!("{name}: {error}"))),
     }
 }
@@ -41,8 +42,13 @@ pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failur
         .map(|number| number.trim().parse().map_err(|_| wrong()))
         .collect::<Result<_, _>>()?;
     let numbers: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
-    let point = Vector(numbers);
-    if point.is_finite() { Ok(point) } else { Err(wrong()) }
+    for x in numbers {
+        if x.is_nan() || x.abs() > LARGEST_LENGTH {
+            let rule = format!("a coordinate must be at most {LARGEST_LENGTH:e} m, got {x}");
+            return Err(Failure::input(rule));
+        }
+    }
+    Ok(Vector(numbers))
 }
 
 /// The box around all bounded bodies of a scene.

@@ -37,7 +37,7 @@ impl Drawable<2> for Dimensions {
     }
 
     fn view(_: &Slice, bounds: &Aabb<2>) -> Result<View, PlotError> {
-        View::from_bounds(bounds.min.0, bounds.max.0, margin(bounds))
+        View::from_bounds(bounds.min.0, bounds.max.0, MARGIN)
     }
 
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
@@ -55,7 +55,7 @@ impl Drawable<3> for Dimensions {
     }
 
     fn view(plane: &Slice, bounds: &Aabb<3>) -> Result<View, PlotError> {
-        View::of_box(plane, bounds.min.0, bounds.max.0, margin(bounds))
+        View::of_box(plane, bounds.min.0, bounds.max.0, MARGIN)
     }
 
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {
@@ -65,10 +65,6 @@ impl Drawable<3> for Dimensions {
     fn project(plane: &Slice, p: Vector<f64, 3>) -> [f64; 2] {
         plane.project(p.0)
     }
-}
-
-fn margin<const D: usize>(bounds: &Aabb<D>) -> f64 {
-    MARGIN * 2.0 * bounds.half_extents().0.iter().fold(0.0_f64, |m, h| m.max(*h))
 }
 
 /// The isolines of `shape` on `plane`.

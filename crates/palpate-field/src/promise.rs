@@ -5,6 +5,7 @@
 
 use crate::bounds::{BoundingBall, Bounds};
 use crate::pose::Pose;
+use crate::vector::Point;
 
 /// What the value `f` of a field says about `d`, the distance to its surface.
 ///
@@ -177,17 +178,23 @@ impl<const D: usize> Promise<D> {
         Self { outside: self.outside.bounded(), inside: self.inside.bounded(), ..self }
     }
 
-    /// The radius of a ball about a point with value `f` that is sure to hold no
-    /// surface [m].
+    /// The radius of a ball about `p` that is sure to hold no surface, where the
+    /// value is `f` [m].
     ///
-    /// The rounding of `f` is not part of it: subtract
+    /// Where only a Lipschitz constant is known, the ball ends with the region in
+    /// which it holds. The rounding of `f` is not part of it: subtract
     /// [`rounding`](Self::rounding) where it matters.
     #[must_use]
-    pub fn safe_radius(&self, f: f64) -> f64 {
+    pub fn safe_radius(&self, p: Point<D>, f: f64) -> f64 {
         let quality = if f < 0.0 { self.inside } else { self.outside };
         match quality {
             Quality::Exact | Quality::Bound => f.abs(),
-            Quality::Lipschitz => f.abs() / self.lipschitz,
+            Quality::Lipschitz => {
+                let in_region = self
+                    .region
+                    .map_or(f64::INFINITY, |region| region.radius - (p - region.centre).norm());
+                (f.abs() / self.lipschitz).min(in_region).max(0.0)
+            }
         }
     }
 

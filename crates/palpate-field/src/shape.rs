@@ -200,8 +200,7 @@ impl<const D: usize> Shape<D> {
     #[must_use]
     pub fn safe_radius(&self, p: Point<D>) -> f64 {
         let promise = self.promise();
-        let radius = promise.safe_radius(self.distance(p));
-        (radius - promise.rounding.within(p.norm())).max(0.0)
+        (promise.safe_radius(p, self.distance(p)) - promise.rounding.within(p.norm())).max(0.0)
     }
 
     /// A point of the surface near `p` [m]: the nearest one where the promise is

@@ -134,11 +134,12 @@ fn bad(parameter: &Parameter, dimension: usize) -> Vec<Argument> {
             if matches!(parameter.name, "size" | "radii") {
                 list.extend([-0.02, 0.0, 1e-300]);
             }
-            let mut all: Vec<_> = vectors(&list).into_iter().map(Argument::Vector).collect();
-            if parameter.name == "normal" {
-                all.push(Argument::Vector(vec![0.0; dimension]));
-            }
-            all
+            vectors(&list).into_iter().map(Argument::Vector).collect()
+        }
+        ParameterKind::Direction => {
+            let mut all = vectors(&never);
+            all.extend([vec![0.0; dimension], vec![-0.0; dimension], vec![1e-310; dimension]]);
+            all.into_iter().map(Argument::Vector).collect()
         }
         ParameterKind::Points => {
             let mut all = vec![vec![], vec![vec![0.5; dimension]; dimension + 1]];

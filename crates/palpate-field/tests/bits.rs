@@ -94,6 +94,26 @@ where
     });
 }
 
+/// Blocks of every number of points, from one to a whole block.
+fn partial_blocks<const D: usize>()
+where
+    Space: Solid<D> + Turn<D>,
+{
+    cases::check(12, |u| {
+        let tree: Tree<D> = draw::tree(u, 4)?;
+        let shape = match tree.shape() {
+            Ok(shape) => shape,
+            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
+        };
+        let points =
+            (0..BLOCK).map(|_| draw::point(u, &shape)).collect::<Result<Vec<_>, _>>()?;
+        Ok((1..=BLOCK).try_for_each(|count| {
+            laws::bits_agree(&shape, &points[..count])
+                .map_err(|complaint| format!("{complaint}, {count} points\n  {tree:?}"))
+        }))
+    });
+}
+
 #[test]
 fn every_way_to_evaluate_gives_the_same_bits() {
     for set in InstructionSet::ALL {
@@ -103,6 +123,8 @@ fn every_way_to_evaluate_gives_the_same_bits() {
         }
         on_trees::<2>(900);
         on_trees::<3>(900);
+        partial_blocks::<2>();
+        partial_blocks::<3>();
         unions_are_folds::<2>(60);
         unions_are_folds::<3>(60);
     }

@@ -158,6 +158,20 @@ fn two(u: &mut Unstructured<'_>) -> Result<[Model; 2]> {
     Ok([first, near(u, &first)?])
 }
 
+/// Two whose values differ by about the reach of a blend, at times by far more.
+fn in_reach(u: &mut Unstructured<'_>) -> Result<[Model; 2]> {
+    let [a, b] = two(u)?;
+    if u.ratio(1_u8, 4_u8)? {
+        return Ok([a, b]);
+    }
+    let size = 10.0_f64.powf(draw::within(u, -3.0, 0.0)?);
+    let shrink = |u: &mut Unstructured<'_>, x: Model| -> Result<Model> {
+        let value = draw::within(u, -0.3, 0.3)?;
+        Ok(Model { value, ..x.scale(size / x.deviation().max(1.0)) })
+    };
+    Ok([shrink(u, a)?, shrink(u, b)?])
+}
+
 fn three(u: &mut Unstructured<'_>) -> Result<[Model; 3]> {
     let first = model(u)?;
     Ok([first, near(u, &first)?, near(u, &first)?])
@@ -189,8 +203,8 @@ operations! {
     orthant_of_one: one, |x| Scalar::orthant(x);
     orthant_of_two: two, |x| Scalar::orthant(x);
     orthant_of_three: three, |x| Scalar::orthant(x);
-    smooth_min_quadratic: two, |x| x[0].smooth_min::<Quadratic>(x[1], 0.3);
-    smooth_min_cubic: two, |x| x[0].smooth_min::<Cubic>(x[1], 0.3);
+    smooth_min_quadratic: in_reach, |x| x[0].smooth_min::<Quadratic>(x[1], 0.3);
+    smooth_min_cubic: in_reach, |x| x[0].smooth_min::<Cubic>(x[1], 0.3);
     scale_up: one, |x| x[0].scale(1.0 / 3.0e-5);
     scale_down: one, |x| x[0].scale(-0.1);
     scale_to_nothing: one, |x| x[0].scale(0.0);

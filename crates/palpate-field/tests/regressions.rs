@@ -7,8 +7,10 @@ use palpate_field::kernel::{
     Ball, CoolS, CylinderApproximation, Ellipsoid, HexagonalPrism, Octahedron, Polygon,
     Pyramid, RegularPolygon, Simplex,
 };
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, Column, Kernel, Point, Shape, ShapeError, Vector};
+use palpate_field::scalar::{Cubic, Model, Scalar};
+use palpate_field::{
+    BLOCK, Block, Column, Kernel, Point, Quantity, Shape, ShapeError, Unit, Vector,
+};
 
 type Outcome = Result<(), ShapeError>;
 
@@ -198,4 +200,54 @@ fn tangent_models_are_tight_to_32_ulp() -> Outcome {
         assert!(ulp <= 32.0, "{name}: {ulp} ulp, all: {all:?}");
     }
     Ok(())
+}
+
+/// The remainders of a choice between far values did not cover the rounding of their
+/// difference.
+#[test]
+fn models_of_choices_enclose_both_values() {
+    let x = Model {
+        value: -2.0,
+        gradient: [0.0, 0.011_424_605_414_110_393, 0.0],
+        ..Model::default()
+    };
+    let limit = Model { value: -2.0, upper: 0.25, ..Model::default() };
+    let either = Model::select_less(x, limit, x, -x);
+    // x at u = (0, −1, 0), without rounding: 2·value cancels first.
+    let plane = -either.gradient[1];
+    let room = (either.lower - 2.0 * either.value) - plane;
+    assert!(room >= 0.011_424_605_414_110_393, "{room:e} of {either:?}");
+}
+
+/// Where the fill takes away most of both values, the rounding is theirs and not that
+/// of what is left.
+#[test]
+fn models_of_smooth_minima_allow_for_the_rounding_of_their_operands() {
+    let (a, b) = (0.057_971_636_792_525_59, 0.057_968_758_733_569_01);
+    let model = Model::constant(a).smooth_min::<Cubic>(Model::constant(b), 0.3);
+    let rounding = f64::EPSILON * (a + 0.3 / 6.0);
+    assert!(model.upper >= rounding && model.lower >= rounding, "{model:?}");
+}
+
+/// Numbers far from one were written with all their zeros.
+#[test]
+fn messages_show_huge_and_tiny_numbers_with_exponents() {
+    let shown = |x| Quantity(x, Unit::Metre).to_string();
+    assert_eq!(shown(1e300), "1e300 m");
+    assert_eq!(shown(1e-20), "1e-20 m");
+    assert_eq!(shown(-0.02), "-0.02 m");
+}
+
+/// Each scale is in range, but not all of them together.
+#[test]
+fn scales_of_scales_give_numbers_or_an_error() {
+    let mut shape = Shape::<2>::from_kernel(Ball::new(1.0).unwrap_or_else(|e| panic!("{e}")));
+    for _ in 0..12 {
+        match shape.scaled(1e-15) {
+            Ok(smaller) => shape = smaller,
+            Err(_) => return,
+        }
+        let (f, g) = shape.distance_gradient(Vector([1.0, 0.0]));
+        assert!(f.is_finite() && g.is_finite(), "{f}, {g:?} at depth {}", shape.depth());
+    }
 }

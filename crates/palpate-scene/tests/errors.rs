@@ -6,7 +6,9 @@
 
 mod common;
 
-use palpate_scene::{Body, Dimension, Node, Scene, schema};
+use common::refusal::Schema::{Accepts, Refuses};
+use common::refusal::check_all;
+use palpate_scene::{Body, Dimension, Node, Scene};
 
 #[test]
 fn a_negative_radius_is_found_in_its_line() {
@@ -52,28 +54,6 @@ fn without_a_file_there_is_a_path_and_no_line() {
 fn a_file_that_is_not_there_is_named() {
     let error = Scene::from_file("no/such/scene.json").unwrap_err();
     assert!(error.to_string().starts_with("cannot read no/such/scene.json: "), "{error}");
-}
-
-/// What the schema thinks of a bad file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Schema {
-    Refuses,
-    /// It cannot say what is wrong.
-    Accepts,
-}
-use Schema::{Accepts, Refuses};
-
-/// Checks that each text is refused with its message and judged by the schema.
-fn check_all(cases: &[(&str, &str, Schema)], text_of: impl Fn(&str) -> String) {
-    let validator = jsonschema::validator_for(&schema()).expect("a schema");
-    for (part, expected, verdict) in cases {
-        let text = text_of(part);
-        let error = Scene::from_json(&text).expect_err(part);
-        assert_eq!(error.to_string(), *expected, "{text}");
-        let value = serde_json::from_str(&text);
-        let valid = value.is_ok_and(|value| validator.is_valid(&value));
-        assert_eq!(valid, *verdict == Accepts, "the schema on {text}");
-    }
 }
 
 #[test]
@@ -447,157 +427,6 @@ fn angles_are_refused_in_degrees_and_radians() {
         "{error}"
     );
     assert!(error.ends_with(", got -1.5707963267948966 rad (-90°)"), "{error}");
-}
-
-#[test]
-fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {
-    check_all(
-        &[
-            (
-                r#""shapes": { "": "x" }"#,
-                "shapes.\"\", line 2: a shape must have a name, got \"\"",
-                Refuses,
-            ),
-            (
-                r#""tool": { "radius": -1 }"#,
-                "tool.radius, line 2: radius must be zero or more, got -1 m",
-                Refuses,
-            ),
-            (
-                r#""tool": { "points": [[0, 0]] }"#,
-                "tool.points[0], line 2: points[0] must have 3 numbers in 3D, got 2",
-                Refuses,
-            ),
-            (
-                r#""tool": { "points": [[0, 0, 0]], "shape": "x" }"#,
-                "tool.points, line 2: a tool has either contact points or a shape",
-                Accepts,
-            ),
-            (
-                r#""tool": { "coupling": { "stiffness": 0 } }"#,
-                "tool.coupling.stiffness, line 2: stiffness must be positive, got 0 N/m",
-                Refuses,
-            ),
-            (
-                r#""tool": { "workspace": { "scale": 0 } }"#,
-                "tool.workspace.scale, line 2: scale must be positive, got 0",
-                Refuses,
-            ),
-            (
-                r#""tool": { "workspace": { "pose": { "rotate_degrees": 3 } } }"#,
-                "tool.workspace.pose.rotate_degrees, line 2: rotate_degrees must be an object with `axis` and `angle` in 3D, got a number",
-                Refuses,
-            ),
-            (
-                r#""tool": { "max_force": -3 }"#,
-                "tool.max_force, line 2: max_force must be positive, got -3 N",
-                Refuses,
-            ),
-            (
-                r#""motions": [{ "body": "b", "to": {} }]"#,
-                "motions[0].body, line 2: unknown body `b`; known are `a`",
-                Accepts,
-            ),
-            (
-                r#""motions": [{ "body": "a" }]"#,
-                "motions[0], line 2: missing key `to`",
-                Refuses,
-            ),
-            (
-                r#""motions": [{ "body": "a", "to": {}, "duration": 0 }]"#,
-                "motions[0].duration, line 2: duration must be positive, got 0 s",
-                Refuses,
-            ),
-            (
-                r#""motions": [{ "body": "a", "to": {}, "turns": 0.5 }]"#,
-                "motions[0].turns, line 2: turns must be a whole number, got 0.5",
-                Refuses,
-            ),
-            (
-                r#""motions": [{ "body": "a", "to": { "rotation": [0, 0, 0, 1], "rotate_degrees": { "axis": [0, 0, 1], "angle": 3 } } }]"#,
-                "motions[0].to, line 2: `rotate_degrees` and `rotation` say the same; give one of them",
-                Refuses,
-            ),
-            (
-                r#""views": [{ "name": "v" }, { "name": "v" }]"#,
-                "views[1].name, line 2: name must be unique, but \"v\" is also the name at [0]",
-                Accepts,
-            ),
-            (
-                r#""views": [{ "name": "" }]"#,
-                "views[0].name, line 2: name must not be empty",
-                Refuses,
-            ),
-            (
-                r#""views": [{ "name": "v", "plane": "zx" }]"#,
-                "views[0].plane, line 2: unknown value `zx`; known are `xy`, `xz` and `yz`",
-                Refuses,
-            ),
-            (
-                r#""views": [{ "name": "v", "width": 0 }]"#,
-                "views[0].width, line 2: width must be positive, got 0 m",
-                Refuses,
-            ),
-            (
-                r#""views": [{ "name": "v", "plane": { "origin": [0, 0, 0], "right": [1, 0, 0], "up": [2, 0, 0] } }]"#,
-                "views[0].plane.up, line 2: up must not be along `right`",
-                Accepts,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "material": { "stiffness": -3 } }]"#,
-                "bodies[0].material.stiffness, line 2: stiffness must be zero or more, got -3 N/m",
-                Refuses,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "material": { "static_friction": 0.2 } }]"#,
-                "bodies[0].material.dynamic_friction, line 2: dynamic_friction must be at most the static friction 0.2, got 0.3",
-                Accepts,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "material": { "texture": { "kind": "height", "amplitude": 0, "wavelength": 1 } } }]"#,
-                "bodies[0].material.texture.amplitude, line 2: amplitude must be positive, got 0 m",
-                Refuses,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "material": { "layers": [{ "depth": 2 }, { "depth": 1 }] } }]"#,
-                "bodies[0].material.layers[1].depth, line 2: depth must be more than that of the layer above, 2 m, got 1 m",
-                Accepts,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "material": { "stifness": 3 } }]"#,
-                "bodies[0].material.stifness, line 2: unknown key `stifness`, did you mean `stiffness`?",
-                Refuses,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x", "pose": { "translation": [1] } }]"#,
-                "bodies[0].pose.translation, line 2: translation must have 3 numbers in 3D, got 1",
-                Refuses,
-            ),
-            (
-                r#""bodies": [{ "name": "b", "shape": "x" }, { "name": "b", "shape": "x" }]"#,
-                "bodies[1].name, line 2: name must be unique, but \"b\" is also the name at [0]",
-                Accepts,
-            ),
-            (
-                r#""bodies": [{ "name": "b" }]"#,
-                "bodies[0], line 2: missing key `shape`",
-                Refuses,
-            ),
-        ],
-        |part| {
-            let shapes = if part.starts_with("\"shapes\"") {
-                ""
-            } else {
-                r#""shapes": { "x": { "ball": { "radius": 1 } } },"#
-            };
-            let bodies = if part.starts_with("\"bodies\"") {
-                ""
-            } else {
-                r#", "bodies": [{ "name": "a", "shape": { "ball": { "radius": 1 } } }]"#
-            };
-            format!("{{ \"palpate\": 1, \"dimension\": 3, {shapes}\n{part}\n{bodies} }}")
-        },
-    );
 }
 
 #[test]

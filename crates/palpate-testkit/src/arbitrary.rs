@@ -85,7 +85,7 @@ fn argument<const D: usize>(u: &mut Unstructured<'_>, what: &Parameter) -> Resul
             0 => u.int_in_range(3..=256)?,
             _ => u.int_in_range(3..=12)?,
         }),
-        ParameterKind::Vector => {
+        ParameterKind::Vector | ParameterKind::Direction => {
             // Sizes and radii must be positive; all else may have any sign.
             let positive = what.name == "size" || what.name == "radii";
             Argument::Vector(components(u, positive)?)

@@ -40,7 +40,7 @@ impl<const D: usize> Answer<D> {
             gradient,
             surface: shape.surface_point(point),
             inside: distance < 0.0,
-            safe_radius: (promise.safe_radius(distance) - rounding).max(0.0),
+            safe_radius: (promise.safe_radius(point, distance) - rounding).max(0.0),
         }
     }
 

@@ -13,10 +13,10 @@ use palpate::haptics::{
     Ending, HandPath, HapticsError, Interpolation, Material, Pace, Probe, Progress, Recorder,
     RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run as run_servo,
 };
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{BuiltScene, Tool, World};
 
 use crate::arguments::FeelOptions;
-use crate::input;
+use crate::input::{self, Named};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{Dimensions, Drawable};
 use crate::{hand_csv, trace};
@@ -37,20 +37,22 @@ const LIVE_EVERY: Duration = Duration::from_millis(100);
 pub(crate) fn run(options: &FeelOptions) -> Result<Outcome, Failure> {
     let named = input::scene(options.scene.as_deref())?;
     match &named.world {
-        World::Planar(scene) => feel(&named.name, scene, options),
-        World::Spatial(scene) => feel(&named.name, scene, options),
+        World::Planar(scene) => feel(&named, scene, options),
+        World::Spatial(scene) => feel(&named, scene, options),
     }
 }
 
 fn feel<const D: usize>(
-    name: &str,
+    named: &Named,
     scene: &BuiltScene<D>,
     options: &FeelOptions,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
 {
-    let servo_options = servo_options(options).map_err(Failure::input)?;
+    let name = named.name.as_str();
+    let servo_options =
+        servo_options(scene, named.tool.as_ref(), options).map_err(Failure::input)?;
     let paths = paths(scene, options, &servo_options)?;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
@@ -98,15 +100,29 @@ where
     Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
 }
 
-fn servo_options(options: &FeelOptions) -> Result<ServoOptions, HapticsError> {
+/// What the command line says, else the scene, else the default.
+///
+/// A servo has one material: that of the first body.
+fn servo_options<const D: usize>(
+    scene: &BuiltScene<D>,
+    tool: Option<&Tool>,
+    options: &FeelOptions,
+) -> Result<ServoOptions, HapticsError> {
     let default = ServoOptions::default();
-    let stiffness = options.stiffness.unwrap_or(default.material.stiffness());
-    let damping = options.damping.unwrap_or(default.material.damping());
+    let material = scene.bodies.first().map(|body| &body.material);
+    let written = material
+        .map_or((default.material.stiffness(), default.material.damping()), |material| {
+            (material.stiffness, material.damping)
+        });
+    let stiffness = options.stiffness.unwrap_or(written.0);
+    let damping = options.damping.unwrap_or(written.1);
+    let radius = options.radius.or(tool.map(|tool| tool.radius));
+    let max_force = options.max_force.or(tool.and_then(|tool| tool.max_force));
     Ok(ServoOptions {
         rate: options.rate,
         material: Material::new(stiffness, damping)?,
-        probe: Probe::new(options.radius.unwrap_or(default.probe.radius()))?,
-        max_force: options.max_force,
+        probe: Probe::new(radius.unwrap_or(default.probe.radius()))?,
+        max_force: max_force.unwrap_or(default.max_force),
         ..default
     })
 }

@@ -58,7 +58,7 @@ primitive! {
     about: "All points behind a plane.",
     model: ClosedForm,
     parameters: {
-        normal: Vector = "the direction out of the half-space, of any length",
+        normal: Direction = "the direction out of the half-space, of any length",
         offset: Coordinate = "where the plane is along the normal",
     },
     example: (Vector(std::array::from_fn(|i| [0.3, 1.0, -0.2][i])), 0.1),

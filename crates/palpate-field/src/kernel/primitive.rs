@@ -21,8 +21,10 @@ pub enum ParameterKind {
     Angle,
     /// A whole number.
     Count,
-    /// A position or direction, one number a dimension [m].
+    /// A position or size, one number a dimension [m].
     Vector,
+    /// A direction of any length, one number a dimension.
+    Direction,
     /// Several positions [m].
     Points,
     /// Several closed polygons, each a list of positions [m].
@@ -35,7 +37,7 @@ impl ParameterKind {
     pub const fn unit(self) -> Unit {
         match self {
             Self::Angle => Unit::Radian,
-            Self::Count => Unit::One,
+            Self::Count | Self::Direction => Unit::One,
             _ => Unit::Metre,
         }
     }

@@ -153,7 +153,10 @@ impl<const D: usize> Shape<D> {
             }),
             above_bounds: child.above_bounds && kept,
             convex: kept,
-            region: child.region,
+            // Points move by at most `reach`, and as far from each other at most.
+            region: child
+                .region
+                .map(|ball| BoundingBall { radius: (ball.radius - reach).max(0.0), ..ball }),
             rounding: child.rounding.plus(&own),
             ..*child
         };

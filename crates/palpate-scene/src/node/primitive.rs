@@ -121,7 +121,9 @@ impl<'de> DeserializeSeed<'de> for Value {
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Argument, D::Error> {
         match self.0 {
             ParameterKind::Count => u32::deserialize(deserializer).map(Argument::Count),
-            ParameterKind::Vector => Vec::deserialize(deserializer).map(Argument::Vector),
+            ParameterKind::Vector | ParameterKind::Direction => {
+                Vec::deserialize(deserializer).map(Argument::Vector)
+            }
             ParameterKind::Points => Vec::deserialize(deserializer).map(Argument::Points),
             ParameterKind::Rings => Vec::deserialize(deserializer).map(Argument::Rings),
             _ => f64::deserialize(deserializer).map(Argument::Number),

@@ -212,6 +212,7 @@ fn value(parameter: &Parameter) -> Value {
         ParameterKind::Angle => (" [°]", json!({ "type": "number" })),
         ParameterKind::Count => ("", json!({ "type": "integer", "minimum": 0 })),
         ParameterKind::Vector => (" [m]", vector),
+        ParameterKind::Direction => ("", vector),
         ParameterKind::Points => (" [m]", list(vector)),
         ParameterKind::Rings => (" [m]", list(list(vector))),
         // A coordinate, and what later kinds are at least.

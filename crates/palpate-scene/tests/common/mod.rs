@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
 pub mod random;
+pub mod refusal;
 
 use std::path::{Path, PathBuf};
 

@@ -56,7 +56,7 @@ fn arguments<const D: usize>(parameters: &[Parameter], attempt: usize) -> Vec<Ar
         .map(|parameter| match parameter.kind {
             ParameterKind::Angle => Argument::Number(100.0_f64.to_radians()),
             ParameterKind::Count => Argument::Count(5 + next() as u32),
-            ParameterKind::Vector => {
+            ParameterKind::Vector | ParameterKind::Direction => {
                 let shift = next();
                 Argument::Vector((0..D).map(|i| LENGTHS[(i + shift) % 5]).collect())
             }

@@ -49,9 +49,16 @@ pub fn gradient_is_bounded<const D: usize>(
     Ok(())
 }
 
+/// Slopes that differ by more show a kink between them.
+const KINK: f64 = 1e-3;
+
+/// How much shorter the second step is that looks for kinks.
+const SHORTER: f64 = 16.0;
+
 /// Away from kinks, the gradient is the slope of the values around `p`.
 ///
-/// A kink shows in that forward and backward differences disagree.
+/// A kink shows in that forward and backward differences disagree, two kinks on either
+/// side in that differences over a shorter step do.
 ///
 /// # Errors
 ///
@@ -63,18 +70,25 @@ pub fn gradient_is_the_slope<const D: usize>(
     let (f, g) = shape.distance_gradient(p);
     let step = 1e-6 * (p.norm() + f.abs()).max(1e-3);
     let error = (4.0 * rounding(shape, p) + 4.0 * f64::EPSILON * p.norm()) / step;
-    let around = |along: Vector<f64, D>| {
+    let around = |along: Vector<f64, D>, step: f64| {
         let along = along * step;
         [shape.distance(p + along) - f, f - shape.distance(p - along)].map(|x| x / step)
     };
-    let differences: [[f64; 2]; D] = std::array::from_fn(|axis| around(Vector::unit(axis)));
+    let differences: [[f64; 2]; D] =
+        std::array::from_fn(|axis| around(Vector::unit(axis), step));
+    let shorter = step / SHORTER;
+    let plateau = (0..D).any(|axis| {
+        let closer = around(Vector::unit(axis), shorter);
+        let apart = (0..2).map(|i| (closer[i] - differences[axis][i]).abs());
+        apart.fold(0.0, f64::max) > KINK + 2.0 * SHORTER * error
+    });
     let slope = Vector(differences.map(|[ahead, behind]| 0.5 * (ahead + behind)));
     // Several kinks can hide from the axes, where they cross.
-    let diagonal = around(Vector::constant(1.0));
+    let diagonal = around(Vector::constant(1.0), step);
     let all = differences.iter().chain([&diagonal]);
     let bend = all.fold(0.0_f64, |m, [ahead, behind]| m.max((ahead - behind).abs()));
     let apart = (slope - g).norm();
-    if bend < 1e-3 && apart > 4.0 * bend + 2.0 * error + 1e-5 {
+    if bend < KINK && !plateau && apart > 4.0 * bend + 2.0 * error + 1e-5 {
         return Err(format!("gradient {g:?} at {p:?}, but slope {slope:?}, value {f:e}"));
     }
     Ok(())

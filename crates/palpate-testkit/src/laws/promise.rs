@@ -30,7 +30,7 @@ pub fn never_overclaims<const D: usize>(
     let (f, g) = shape.distance_gradient(p);
     let quality = if f < 0.0 { promise.inside } else { promise.outside };
     let slack = rounding(shape, p) + POINT * (p.norm() + f.abs());
-    let free = promise.safe_radius(f) - slack;
+    let free = promise.safe_radius(p, f) - slack;
     if free > 0.0 {
         let towards = -f.signum();
         let starts = directions.iter().copied().chain([g * towards, g * -towards]);

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The program as its users run it.
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn palpate(arguments: &[&str]) -> Output {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    Command::new(env!("CARGO_BIN_EXE_palpate"))
+        .args(arguments)
+        .current_dir(repository)
+        .output()
+        .unwrap()
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = palpate(arguments);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A folder of its own for a test's files.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn name(&self, name: &str) -> String {
+        self.path(name).to_str().unwrap().to_owned()
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        std::fs::write(self.path(name), text).unwrap();
+        self.name(name)
+    }
+}
+
+const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+  "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
+
+#[test]
+fn eval_answers_at_one_point() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let answer = json(&["eval", &scene, "--at", "0,2,0", "--json"]);
+    assert_eq!(answer["distance_m"], 1.5);
+    assert_eq!(answer["gradient"], serde_json::json!([0.0, 1.0, 0.0]));
+    assert_eq!(answer["surface_point_m"], serde_json::json!([0.0, 0.5, 0.0]));
+    assert_eq!(answer["inside"], false);
+    assert_eq!(answer["promise"], "exact outside, exact inside");
+    let radius = answer["safe_radius_m"].as_f64().unwrap();
+    assert!((1.5 - 1e-14..=1.5).contains(&radius));
+}
+
+#[test]
+fn eval_refuses_what_is_no_point() {
+    for at in ["1,2", "1,2,x", "1,2,nan", "1e300,0,0", "", "1,2,3,4"] {
+        let output = palpate(&["eval", "scenes/s1.json", "--at", at]);
+        assert_eq!(status(&output), 2, "{at}");
+        assert!(!errors(&output).is_empty());
+    }
+}
+
+/// Many points give the bytes of one point each, for any number of threads.
+#[test]
+fn eval_streams_the_same_bytes_for_any_number_of_threads() {
+    let folder = Folder::new();
+    let mut points = "x_m,y_m,z_m\n".to_owned();
+    for i in 0..70_000 {
+        let t = f64::from(i);
+        let [x, y, z] = [t * 0.618, t * 0.414, t * 0.732].map(|x| 2.0 * x.fract() - 1.0);
+        points.push_str(&format!("{x},{y},{z}\n"));
+    }
+    let points = folder.write("points.csv", &points);
+    let eval = |threads: &str| {
+        let arguments = ["eval", "scenes/s3.json", "--points", &points, "--threads", threads];
+        let output = palpate(&arguments);
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        text(&output)
+    };
+    let one = eval("1");
+    assert_eq!(one, eval("3"));
+    let lines: Vec<_> = one.lines().collect();
+    assert_eq!(lines.len(), 70_001);
+    assert_eq!(
+        lines[0],
+        "x_m,y_m,z_m,distance_m,gradient_x,gradient_y,gradient_z,\
+         surface_x_m,surface_y_m,surface_z_m,inside,safe_radius_m"
+    );
+    let row: Vec<_> = lines[66_000].split(',').collect();
+    let at = row[..3].join(",");
+    let single = json(&["eval", "scenes/s3.json", "--at", &at, "--json"]);
+    assert_eq!(row[3].parse::<f64>().unwrap(), single["distance_m"].as_f64().unwrap());
+}
+
+#[test]
+fn a_bad_row_is_named_by_its_line() {
+    let folder = Folder::new();
+    let points = folder.write("points.csv", "x_m,y_m,z_m\n0,0,0\n0,oops,0\n");
+    let output = palpate(&["eval", "scenes/s1.json", "--points", &points]);
+    assert_eq!(status(&output), 2);
+    assert!(errors(&output).contains("line 3: a finite number is needed, got \"oops\""));
+    let flat = folder.write("flat.csv", "x_m,y_m\n0,0\n");
+    let output = palpate(&["eval", "scenes/s1.json", "--points", &flat]);
+    assert!(errors(&output).contains("there is no column z_m for a 3D scene"));
+}
+
+#[test]
+fn check_answers_yes_or_no() {
+    let output = palpate(&["check", "scenes/cup.json"]);
+    assert_eq!(status(&output), 0);
+    let folder = Folder::new();
+    let bad = folder.write("bad.json", &BALL.replace("0.5", "-0.5"));
+    let output = palpate(&["check", &bad]);
+    assert_eq!(status(&output), 1);
+    let message = "bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.5 m";
+    assert!(text(&output).contains(message), "{}", text(&output));
+    let answer: Value =
+        serde_json::from_slice(&palpate(&["check", &bad, "--json"]).stdout).unwrap();
+    assert_eq!(answer["ok"], false);
+    assert_eq!(answer["line"], 2);
+    assert_eq!(status(&palpate(&["check", "no/such/file.json"])), 2);
+    assert_eq!(status(&palpate(&["plot", &bad])), 2);
+}
+
+#[test]
+fn the_schema_is_the_committed_one() {
+    let committed = include_str!("../../palpate-scene/schema/scene.schema.json");
+    assert_eq!(text(&palpate(&["schema"])), committed);
+}
+
+#[test]
+fn shapes_lists_the_catalogue_with_units_and_models() {
+    let all = json(&["shapes", "--json"]);
+    let all = all.as_array().unwrap();
+    assert_eq!(all.len(), 36);
+    let arc = all.iter().find(|shape| shape["name"] == "arc").unwrap();
+    assert_eq!(arc["parameters"][1]["key"], "angle_degrees");
+    assert_eq!(arc["parameters"][1]["unit"], "degrees");
+    let by_default = |shape: &&Value| shape["model"] == "default (Lipschitz)";
+    assert!(all.iter().filter(by_default).count() <= 10);
+    let planar = text(&palpate(&["shapes", "--dimension", "2"]));
+    assert!(planar.contains("14 primitives") && !planar.contains("(3D)"));
+}
+
+#[test]
+fn plot_writes_svg_and_png() {
+    let folder = Folder::new();
+    for (scene, plane) in [
+        ("scenes/memoir_star.json", "xy"),
+        ("scenes/s2.json", "xz"),
+        ("scenes/s2.json", "0,0,0:1,0,0:0,1,1"),
+    ] {
+        let svg = folder.name("picture.svg");
+        let output = palpate(&["plot", scene, "--plane", plane, "--output", &svg]);
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        assert!(std::fs::read_to_string(&svg).unwrap().starts_with("<svg"));
+    }
+    let png = folder.name("picture.png");
+    let answer =
+        json(&["plot", "scenes/s1.json", "--output", &png, "--width", "400", "--json"]);
+    assert!(answer["step_m"].as_f64().unwrap() > 0.0);
+    assert_eq!(&std::fs::read(&png).unwrap()[1..4], b"PNG");
+    assert_eq!(status(&palpate(&["plot", "scenes/s1.json", "--output", "picture.gif"])), 2);
+}
+
+/// The built-in scene, felt without waiting for the clock, twice the same.
+#[test]
+fn feel_reports_traces_and_draws() {
+    let folder = Folder::new();
+    let (trace, plot) = (folder.name("trace.csv"), folder.name("feel.svg"));
+    let arguments =
+        ["feel", "--fast", "--duration", "2", "--json", "--trace", &trace, "--plot", &plot];
+    let report = json(&arguments);
+    assert_eq!(report["ticks"], 2000);
+    assert_eq!(report["ending"]["kind"], "finished");
+    assert!(report["contact_time"].as_f64().unwrap() > 0.1);
+    assert!(report["largest_force"].as_f64().unwrap() <= 3.3);
+    assert!(report["cost"]["p50_ns"].as_u64().unwrap() > 0);
+    let rows = std::fs::read_to_string(&trace).unwrap();
+    assert_eq!(rows.lines().count(), 2001);
+    assert_eq!(
+        rows.lines().next().unwrap(),
+        "time_s,point,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,\
+         force_x_n,force_y_n,force_z_n,normal_x,normal_y,normal_z,\
+         contact,evaluations,cost_ns,lateness_ns"
+    );
+    assert!(std::fs::read_to_string(&plot).unwrap().starts_with("<svg"));
+    let again = json(&arguments);
+    for key in ["ticks", "contact_time", "largest_force", "largest_depth", "evaluations"] {
+        assert_eq!(report[key], again[key], "{key}");
+    }
+}
+
+#[test]
+fn feel_follows_a_hand_of_several_points() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let hand = folder.write(
+        "hand.csv",
+        "time_s,point,x_m,y_m,z_m\n0,0,0,0.6,0\n0,1,0.6,0,0\n1,0,0,0.499,0\n1,1,0.499,0,0\n",
+    );
+    let arguments = [
+        "feel",
+        &scene,
+        "--path",
+        &hand,
+        "--fast",
+        "--stiffness",
+        "1000",
+        "--damping",
+        "0",
+        "--json",
+    ];
+    let report = json(&arguments);
+    assert_eq!(report["points"], 2);
+    // A probe of 2 mm on a ball pressed by 1 mm: 3 mm deep.
+    assert!((report["largest_depth"].as_f64().unwrap() - 0.003).abs() < 1e-4);
+    assert!((report["largest_force"].as_f64().unwrap() - 3.0).abs() < 0.1);
+    let bad = folder.write("bad.csv", "time_s,x_m,y_m,z_m\n0,0,0,0\n0,0,0,1\n");
+    assert_eq!(status(&palpate(&["feel", &scene, "--path", &bad])), 2);
+    assert_eq!(status(&palpate(&["feel", &scene, "--rate", "-5", "--fast"])), 2);
+    assert_eq!(status(&palpate(&["feel", &scene, "--contacts", "0", "--fast"])), 2);
+}
+
+#[test]
+fn ten_points_feel_a_flat_scene() {
+    let report = json(&[
+        "feel",
+        "scenes/wrench.json",
+        "--contacts",
+        "10",
+        "--duration",
+        "1",
+        "--fast",
+        "--json",
+    ]);
+    assert_eq!((&report["points"], &report["ticks"]), (&10.into(), &1000.into()));
+}
