@@ -35,9 +35,15 @@ pub struct Quantity(pub f64, pub Unit);
 
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size.is_finite() && size != 0.0 && !(1e-6..1e16).contains(&size) {
+            write!(f, "{:e}", self.0)?;
+        } else {
+            write!(f, "{}", self.0)?;
+        }
         match self.1.symbol() {
-            "" => write!(f, "{}", self.0),
-            symbol => write!(f, "{} {symbol}", self.0),
+            "" => Ok(()),
+            symbol => write!(f, " {symbol}"),
         }
     }
 }

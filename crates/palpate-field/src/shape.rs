@@ -11,6 +11,7 @@ use crate::field::{
 };
 use crate::kernel::Kernel;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
+use crate::operator::doors;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float};
 use crate::vector::{Point, Vector};
@@ -70,13 +71,13 @@ impl<const D: usize> Shape<D> {
 
     /// An operator over shapes, `depth` levels deep.
     pub(crate) fn from_operator(
-        field: Arc<dyn Field<D>>,
+        node: impl Field<D> + 'static,
         depth: usize,
     ) -> Result<Self, ShapeError> {
         if depth > MAX_DEPTH {
             return Err(ShapeError::TooDeep { depth, limit: MAX_DEPTH });
         }
-        Ok(Self { field, depth })
+        Ok(Self { field: doors::open(node), depth })
     }
 
     /// The depth of the deepest of `shapes`.

@@ -251,3 +251,16 @@ fn scales_of_scales_give_numbers_or_an_error() {
         assert!(f.is_finite() && g.is_finite(), "{f}, {g:?} at depth {}", shape.depth());
     }
 }
+
+/// Far from everything the limit for skipping members is infinite, and so is the
+/// distance of the lanes past the last member: they were asked too.
+#[test]
+fn a_union_can_be_asked_at_the_farthest_point() -> Outcome {
+    let members = (0..7).map(|i| {
+        let ball = Shape::<3>::from_kernel(Ball::new(1.0)?);
+        ball.translated(Vector([3.0 * f64::from(i), 0.0, 0.0]))
+    });
+    let row = Shape::union(members.collect::<Result<Vec<_>, _>>()?)?;
+    assert!(row.distance(Vector([1e15; 3])) > 1e15);
+    Ok(())
+}

@@ -92,7 +92,7 @@ impl Default for Probe {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following<const D: usize> {
     /// The proxy: on or outside the surface offset by the probe's radius; the device point
-    /// itself where nothing is touched [m].
+    /// itself where nothing is touched, as far as the field's promise goes [m].
     pub proxy: Point<D>,
     /// The unit normal of the surface last seen, pointing out.
     pub normal: Vector<f64, D>,
@@ -169,6 +169,11 @@ impl<const D: usize> Proxy<D> {
     /// shape, so it crosses no wall at any speed; it rests at points with `f ≥ r − 1e-9` of the
     /// size of the shape's bounding ball, with the field's value `f` and the probe's radius `r`.
     ///
+    /// Of a field that outside its surface promises a Lipschitz constant in a region only
+    /// ([`Promise::region`](palpate_field::Promise::region)), nothing is known beyond: the proxy
+    /// stays in the region, at the point of it closest to the device where that is free. A device
+    /// point that starts outside has no proxy, and touches nothing, until it enters.
+    ///
     /// A device point that is not finite, or beyond 1e15 m, moves nothing and touches nothing.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the shape at most
@@ -196,7 +201,8 @@ impl<const D: usize> Proxy<D> {
             self.contact = false;
             return self.following(device, false, sampler.evaluations());
         };
-        let rest = self.pursue(&mut sampler, start, (device, moved));
+        let goal = sampler.within_region(device);
+        let rest = self.pursue(&mut sampler, start, (goal, moved));
         self.at = Some(rest.sample);
         self.normal = rest.normal;
         self.contact = rest.contact;

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{BoundingBall, Point, Quality, Shape, Vector};
 
 /// How deep the proxy's offset may be violated at rest, as a part of the size of the scene.
 /// Far above the rounding of a kernel, far below what a hand can feel (0.1 nm at 1 m).
@@ -27,6 +27,10 @@ const POINT_RADIUS: f64 = 1e-6;
 /// that of a ridge, a blend or a centre. Dividing by it would throw the proxy far away.
 const LEAST_SLOPE: f64 = 0.1;
 
+/// A goal beyond the region of the field's promise is sought this part of its radius within it:
+/// far more than rounding can carry it out again.
+const REGION_EDGE: f64 = 1e-9;
+
 /// An evaluated point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample<const D: usize> {
@@ -43,6 +47,10 @@ pub(crate) struct Sample<const D: usize> {
 /// The *offset surface* is `f = r` with the probe's radius `r`. The centre of the probe may dip
 /// below it during a move, by less than a *skin*, and never rests there. With a radius the skin
 /// is the radius: the centre never enters the shape itself.
+///
+/// Of a field that outside its surface promises a Lipschitz constant in a region only, points
+/// beyond the region are not evaluated: nothing is proven there. A ball is convex, so straight
+/// moves between evaluated points stay in the region, and the constant holds all along them.
 #[derive(Debug)]
 pub(crate) struct Sampler<'a, const D: usize> {
     shape: &'a Shape<D>,
@@ -50,6 +58,8 @@ pub(crate) struct Sampler<'a, const D: usize> {
     skin: f64,
     tolerance: f64,
     lipschitz: f64,
+    /// Where something is proven of the field; everywhere if `None`.
+    region: Option<BoundingBall<D>>,
     budget: u32,
     evaluations: u32,
 }
@@ -72,7 +82,9 @@ impl<'a, const D: usize> Sampler<'a, D> {
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
         let skin = skin.max(4.0 * tolerance);
         let lipschitz = promise.lipschitz;
-        Self { shape, radius, skin, tolerance, lipschitz, budget, evaluations: 0 }
+        // Distances that are exact or bounds need no constant.
+        let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
+        Self { shape, radius, skin, tolerance, lipschitz, region, budget, evaluations: 0 }
     }
 
     /// How deep below the offset surface a point may rest [m].
@@ -95,36 +107,48 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.evaluations
     }
 
-    /// The value at `point`; `None` if the budget is spent or the field is not finite there.
+    /// The point closest to `goal` of which something is proven.
+    pub(crate) fn within_region(&self, goal: Point<D>) -> Point<D> {
+        let Some(region) = self.region else { return goal };
+        let (way, radius) = (goal - region.centre, region.radius * (1.0 - REGION_EDGE));
+        let length = way.norm();
+        if length > radius { region.centre + way * (radius / length) } else { goal }
+    }
+
+    /// The value at `point`; `None` if the budget is spent, the field is not finite there, or
+    /// nothing is proven of it.
     pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
-        self.spend()?;
+        self.spend(point)?;
         let gap = self.shape.distance(point) - self.radius;
         gap.is_finite().then_some(Sample { point, gap, gradient: None })
     }
 
     /// The value and gradient at `point`, likewise.
     pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
-        self.spend()?;
+        self.spend(point)?;
         let (value, gradient) = self.shape.distance_gradient(point);
         let gap = value - self.radius;
         let is_finite = gap.is_finite() && gradient.is_finite();
         is_finite.then_some(Sample { point, gap, gradient: Some(gradient) })
     }
 
-    fn spend(&mut self) -> Option<()> {
-        if self.evaluations >= self.budget {
+    fn spend(&mut self, point: Point<D>) -> Option<()> {
+        let is_proven = self.region.is_none_or(|ball| {
+            // Written so that NaN fails.
+            (point - ball.centre).norm() <= ball.radius
+        });
+        if self.evaluations >= self.budget || !is_proven {
             return None;
         }
         self.evaluations += 1;
         Some(())
     }
 
-    /// The radius of a ball about the sample that is sure not to reach the offset surface [m].
+    /// How far any straight move in the region is sure not to reach the offset surface [m].
     ///
-    /// `(f − r − ε) / L` with the rounding `ε`; where the Lipschitz constant is promised in a
-    /// region only, everything outside it is free.
+    /// `(f − r − ε) / L` with the rounding `ε`.
     pub(crate) fn free_radius(&self, sample: &Sample<D>) -> f64 {
-        self.sure(sample, sample.gap - self.tolerance)
+        (sample.gap - self.tolerance) / self.lipschitz
     }
 
     /// How far the probe's centre may move from the sample in any direction [m], so that it
@@ -135,22 +159,12 @@ impl<'a, const D: usize> Sampler<'a, D> {
     pub(crate) fn reach(&self, sample: &Sample<D>) -> f64 {
         let to_half = sample.gap + 0.5 * self.skin;
         let half_way = 0.5 * (sample.gap + self.skin);
-        self.sure(sample, to_half.max(half_way))
+        to_half.max(half_way) / self.lipschitz
     }
 
-    /// The radius of a ball about the sample that is sure to be less than a skin deep [m].
+    /// How far any straight move in the region is sure to be less than a skin deep [m].
     pub(crate) fn clear_radius(&self, sample: &Sample<D>) -> f64 {
-        self.sure(sample, sample.gap + self.skin).max(0.0)
-    }
-
-    fn sure(&self, sample: &Sample<D>, height: f64) -> f64 {
-        match self.shape.promise().region {
-            Some(region) => {
-                let outside = (sample.point - region.centre).norm() - region.radius;
-                if outside > 0.0 { outside.max(self.near()) } else { height / self.lipschitz }
-            }
-            None => height / self.lipschitz,
-        }
+        ((sample.gap + self.skin) / self.lipschitz).max(0.0)
     }
 
     /// The unit normal and the signed distance to the offset surface along it [m], to first

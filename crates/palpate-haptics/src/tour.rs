@@ -3,23 +3,27 @@
 
 //! A hand path made up for a shape: around it, over it, into it and away again.
 
-use std::f64::consts::TAU;
+mod orbit;
+mod smoothing;
 
 use palpate_field::{Aabb, Point, Shape, Vector};
 
 use crate::error::{HapticsError, not_negative, positive};
 use crate::hand_path::{HandPath, Interpolation};
 
-/// Points of the orbit looked at for each grain travelled: finer than the smoothing, so that a
-/// jump from one body to the next is seen as one.
-const POINTS_A_GRAIN: f64 = 100.0;
+use orbit::orbit;
+use smoothing::{highest, smoothed, smoothed_points};
+
+/// The points of an orbit are this part of the hand's detail apart, so that between two of them
+/// the hand goes no deeper than it may, and a jump from one body to the next is seen as one.
+const STEP: f64 = 1.0 / 15.0;
 
 /// The grain of a scene is the shortest edge of its box, as bodies stand side by side along the
 /// others; but no less than this part of the longest.
 const FINEST_GRAIN: f64 = 0.1;
 
-/// The largest number of points of an orbit: ten minutes of touching take this many.
-const MOST_POINTS: f64 = 200_000.0;
+/// The largest number of points of an orbit: ten minutes of touching take a quarter of it.
+const MOST_POINTS: f64 = 1_000_000.0;
 
 /// The most steps of a ray: what a surface seen at a grazing angle takes.
 const RAY_STEPS: u32 = 128;
@@ -42,18 +46,28 @@ const STEEPEST: f64 = 2.5;
 /// deeper than the probe is wide would leave its proxy behind there.
 const SHARPEST: f64 = 0.9;
 
-/// How far the hand keeps from the surface in flight, as a part of the grain.
-const CLEARANCE: f64 = 0.06;
+/// The hand's detail is this many times its depth or the probe's radius: shorter notches are
+/// flown over, longer ones entered.
+const DETAIL: f64 = 5.0;
 
-/// The length over which corners of the path are rounded, likewise.
-const SMOOTHING: f64 = 0.08;
+/// The largest detail, as a part of the grain.
+const COARSEST_DETAIL: f64 = 0.08;
 
-/// Turns about the axis for each pass from pole to pole: enough that neighbouring turns are a
-/// twelfth of the shape apart. Not a whole number, so that passes interleave.
-const TURNS_A_PASS: f64 = 6.18;
+/// How far the hand keeps from the surface in flight, as a part of the detail.
+const CLEARANCE: f64 = 0.75;
 
-/// How much of the way from the box's middle to its pole an orbit goes.
-const HIGHEST_LATITUDE: f64 = 0.97;
+/// The depth that no point of the path exceeds, as a multiple of the depth asked for. Between
+/// two points the hand may go a little deeper.
+const DEEPEST: f64 = 1.25;
+
+/// Newton steps of a correction: the second mends what a blend or a corner left of the first.
+const CORRECTIONS: u32 = 4;
+
+/// Below this part of the Lipschitz constant a slope is that of a ridge, and leads nowhere.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// How often the hand is lifted where its path is too deep. Each time is wider than the last.
+const MOST_LIFTS: usize = 8;
 
 /// How much faster the hand flies than it slides.
 const FLIGHT_SPEED: f64 = 2.0;
@@ -189,61 +203,109 @@ impl<const D: usize> Tour<D> {
         self.depth.unwrap_or(felt.min(smooth))
     }
 
+    /// The length below which the hand does not follow the shape [m].
+    fn detail(&self) -> f64 {
+        let coarsest = COARSEST_DETAIL * self.grain();
+        let detail = DETAIL * self.depth().max(self.probe_radius);
+        if detail > 0.0 { detail.min(coarsest) } else { coarsest }
+    }
+
     /// Where the hand goes while its orbit goes `way` [m].
     fn follow(&self, shape: &Shape<D>, way: f64) -> Result<Route<D>, HapticsError> {
-        let count = (way / self.grain() * POINTS_A_GRAIN).clamp(100.0, MOST_POINTS) as usize;
+        let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
-        let sights: Vec<Sight<D>> =
-            self.orbit(step, count).map(|from| self.look(shape, from)).collect();
+        let height = ORBIT_HEIGHT * self.size + self.probe_radius;
+        let mut sights: Vec<Sight<D>> = orbit(&self.bounds, height, step, count)
+            .map(|from| self.look(shape, from))
+            .collect();
         if sights.iter().all(|s| s.seen.is_none()) {
             return Err(HapticsError::NothingToTouch);
         }
-        let window = ((0.5 * SMOOTHING * self.grain() / step).ceil() as usize).max(1);
-        let press = self.presses(&sights, step, window);
-        let height: Vec<f64> = sights.iter().map(Sight::height).collect();
-        // As wide before as after smoothing, so that the flight is nowhere below the surface.
-        let flight = smoothed(&highest(&height, 4 * window), 2 * window);
-        let positions = (0..=count).map(|i| {
-            let touching = height[i] - self.depth();
-            let flying = flight[i] + CLEARANCE * self.grain();
-            let height = flying + (touching - flying) * press[i];
-            sights[i].foot + sights[i].up * height
-        });
-        let positions = smoothed_points(&positions.collect::<Vec<_>>(), window);
-        let ways = positions.windows(2).zip(&press).enumerate().map(|(i, (pair, press))| {
-            let from_end = i.min(count - 1 - i) as f64;
-            let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
-            let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
-            (pair[1] - pair[0]).norm() / haste
-        });
-        // Where the hand turns back, it goes little way, but takes its time.
-        let ways = smoothed(&ways.collect::<Vec<_>>(), 2 * window);
-        let mut passed = vec![0.0];
-        let mut sum = 0.0;
-        for way in ways {
-            sum += way.max(SHORTEST_STEP * step);
-            passed.push(sum);
+        let window = ((0.5 * self.detail() / step).ceil() as usize).max(1);
+        let mut press = self.presses(&sights, step, window);
+        bridge(&mut sights);
+        let mut positions = self.positions(shape, &sights, &press, window);
+        for lift in 1..=MOST_LIFTS {
+            let deep: Vec<f64> = self.too_deep(shape, &positions);
+            if deep.iter().all(|deep| *deep == 0.0) {
+                break;
+            }
+            let lifted = smoothed(&highest(&deep, 2 * (lift + 1) * window), lift * window);
+            press.iter_mut().zip(lifted).for_each(|(press, lift)| *press *= ease(1.0 - lift));
+            positions = self.positions(shape, &sights, &press, window);
         }
-        Ok(Route { positions, passed })
+        Ok(Route { passed: passed(&positions, &press, (step, window)), positions })
     }
 
-    /// Points `step` apart [m] on a box around everything, winding from pole to pole.
-    fn orbit(&self, step: f64, count: usize) -> impl Iterator<Item = Point<D>> {
-        let grown = self.bounds.grown(ORBIT_HEIGHT * self.size + self.probe_radius);
-        let (centre, half) = (grown.centre(), grown.half_extents());
-        // The angle is advanced by what the last advance travelled.
-        let mut angle = 0.0;
-        let mut rate = step / half.norm();
-        let mut here = on_box(direction(angle), centre, half);
-        (0..=count).map(move |_| {
-            let result = here;
-            let ahead = on_box(direction(angle + rate), centre, half);
-            let travelled = (ahead - here).norm();
-            rate *= (step / travelled.max(0.1 * step)).clamp(0.5, 2.0);
-            angle += rate;
-            here = on_box(direction(angle), centre, half);
-            result
-        })
+    /// The smooth path that is down as far as `press` says, and corrected by the field.
+    ///
+    /// Smoothing cuts corners; the field leads what is too deep out again, at first with corners,
+    /// then after some more smoothing with hardly any.
+    fn positions(
+        &self,
+        shape: &Shape<D>,
+        sights: &[Sight<D>],
+        press: &[f64],
+        window: usize,
+    ) -> Vec<Point<D>> {
+        let clearance = CLEARANCE * self.detail();
+        let height: Vec<f64> = sights.iter().map(|sight| sight.height).collect();
+        // As wide before as after all smoothing, so that the flight is nowhere below the surface.
+        let flight = smoothed(&highest(&height, 8 * window), 2 * window);
+        let positions: Vec<Point<D>> = (0..sights.len())
+            .map(|i| {
+                let touching = height[i] - self.depth();
+                let flying = flight[i] + clearance;
+                let height = flying + (touching - flying) * press[i];
+                sights[i].foot + sights[i].up * height
+            })
+            .collect();
+        let correct = |positions: Vec<Point<D>>| -> Vec<Point<D>> {
+            let levels = press.iter().map(|press| clearance - (clearance + self.depth()) * press);
+            let positions = positions.into_iter().zip(levels);
+            positions.map(|(point, level)| self.corrected(shape, point, level)).collect()
+        };
+        let positions = correct(smoothed_points(&positions, window));
+        correct(smoothed_points(&positions, (window / 2).max(1)))
+    }
+
+    /// `point`, or the point up the gradient from it that is `level` above the offset surface [m]
+    /// if it is lower. At most as far away as the hand's detail.
+    fn corrected(&self, shape: &Shape<D>, point: Point<D>, level: f64) -> Point<D> {
+        let lipschitz = shape.promise().lipschitz;
+        let mut corrected = point;
+        for _ in 0..CORRECTIONS {
+            let (value, gradient) = shape.distance_gradient(corrected);
+            let missing = level + self.probe_radius - value;
+            let slope = gradient.norm();
+            // Written so that NaN ends the search.
+            let leads_out = missing > 0.0 && slope > LEAST_SLOPE * lipschitz;
+            if !leads_out {
+                break;
+            }
+            let next = corrected + gradient * (missing / (slope * slope));
+            let is_near = (next - point).norm() <= self.detail();
+            if !is_near {
+                break;
+            }
+            corrected = next;
+        }
+        corrected
+    }
+
+    /// 1 for each point that is deeper than it may be, or halfway to its neighbour is, or is
+    /// further from it than the surface is steep; 0 for the others.
+    fn too_deep(&self, shape: &Shape<D>, positions: &[Point<D>]) -> Vec<f64> {
+        let deepest = DEEPEST * self.depth() + RAY_TOLERANCE * self.size;
+        let lowest = self.probe_radius - deepest;
+        (0..positions.len())
+            .map(|i| {
+                let (here, next) = (positions[i], positions[(i + 1).min(positions.len() - 1)]);
+                let halfway = (here + next) * 0.5;
+                let is_deep = shape.distance(here) < lowest || shape.distance(halfway) < lowest;
+                f64::from(u8::from(is_deep || (next - here).norm() > 0.5 * self.detail()))
+            })
+            .collect()
     }
 
     /// What is seen from a point of the orbit.
@@ -258,7 +320,9 @@ impl<const D: usize> Tour<D> {
             }));
         let length = (from - foot).norm();
         let up = (from - foot) * (1.0 / length);
-        Sight { foot, up, seen: self.trace(shape, from, up, length) }
+        let seen = self.trace(shape, from, up, length);
+        let height = seen.as_ref().map_or(0.0, |seen| seen.height);
+        Sight { foot, up, height, seen }
     }
 
     /// The first offset surface on the way down; none before the foot.
@@ -328,11 +392,12 @@ impl<const D: usize> Route<D> {
     }
 }
 
-/// What is seen from a point of the orbit: the foot of the ray, its direction upwards, and the
-/// surface if it meets one.
+/// What is seen from a point of the orbit: the foot of the ray, its direction upwards, a height
+/// above which it is free [m], and the surface if it meets one, at that height.
 struct Sight<const D: usize> {
     foot: Point<D>,
     up: Vector<f64, D>,
+    height: f64,
     seen: Option<Seen<D>>,
 }
 
@@ -342,39 +407,43 @@ struct Seen<const D: usize> {
     normal: Vector<f64, D>,
 }
 
-impl<const D: usize> Sight<D> {
-    fn height(&self) -> f64 {
-        self.seen.as_ref().map_or(0.0, |seen| seen.height)
-    }
-}
-
-/// The unit vector of the orbit at `angle` [rad] of its turns.
-fn direction<const D: usize>(angle: f64) -> Vector<f64, D> {
-    let (sin, cos) = libm::sincos(angle);
-    let mut direction = [0.0; D];
-    match &mut direction[..] {
-        [x, y] => (*x, *y) = (sin, cos),
-        [x, y, z] => {
-            // From the middle up to one pole, down to the other and back.
-            let pass = angle / (TAU * TURNS_A_PASS);
-            let triangle = 4.0 * (0.5 - ((0.5 * pass + 0.75).fract() - 0.5).abs()) - 1.0;
-            let latitude = 0.25 * TAU * HIGHEST_LATITUDE * triangle;
-            let (height, radius) = libm::sincos(latitude);
-            (*x, *y, *z) = (radius * sin, height, radius * cos);
+/// Gives the rays that meet nothing the heights of a straight line over the gap, so that the
+/// hand need not go down and up again.
+fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
+    let seen: Vec<usize> = (0..sights.len()).filter(|&i| sights[i].seen.is_some()).collect();
+    let (Some(&first), Some(&last)) = (seen.first(), seen.last()) else { return };
+    let (start, end) = (sights[first].height, sights[last].height);
+    sights[..first].iter_mut().for_each(|sight| sight.height = start);
+    sights[last + 1..].iter_mut().for_each(|sight| sight.height = end);
+    for pair in seen.windows(2) {
+        let (from, to) = (sights[pair[0]].height, sights[pair[1]].height);
+        let gap = (pair[1] - pair[0]) as f64;
+        for i in pair[0] + 1..pair[1] {
+            sights[i].height = from + (to - from) * ((i - pair[0]) as f64 / gap);
         }
-        _ => {}
     }
-    Vector(direction)
 }
 
-/// The point of the box `|pᵢ − cᵢ| ≤ hᵢ` in `direction`, with the box stretched to a cube.
-fn on_box<const D: usize>(
-    direction: Vector<f64, D>,
-    centre: Point<D>,
-    half: Vector<f64, D>,
-) -> Point<D> {
-    let largest = direction.0.into_iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    centre + Vector(std::array::from_fn(|i| half.0[i] * direction.0[i] / largest))
+/// The way to each point [m], with ways in flight counted as shorter as the hand is faster there.
+fn passed<const D: usize>(
+    positions: &[Point<D>],
+    press: &[f64],
+    (step, window): (f64, usize),
+) -> Vec<f64> {
+    let last = positions.len() - 2;
+    let ways = positions.windows(2).zip(press).enumerate().map(|(i, (pair, press))| {
+        let from_end = i.min(last - i) as f64;
+        let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
+        let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
+        (pair[1] - pair[0]).norm() / haste
+    });
+    // Where the hand turns back, it goes little way, but takes its time.
+    let ways = smoothed(&ways.collect::<Vec<_>>(), 2 * window);
+    let sums = ways.iter().scan(0.0, |sum, way| {
+        *sum += way.max(SHORTEST_STEP * step);
+        Some(*sum)
+    });
+    std::iter::once(0.0).chain(sums).collect()
 }
 
 /// A rise from 0 to 1 with no slope at either end: `3u² − 2u³`.
@@ -386,40 +455,4 @@ fn ease(u: f64) -> f64 {
 fn envelope(phase: f64) -> f64 {
     let from_end = phase.min(1.0 - phase) * 2.0;
     ease((from_end / (1.0 - DOWN)).clamp(0.0, 1.0))
-}
-
-/// The highest value within `window` places of each.
-fn highest(values: &[f64], window: usize) -> Vec<f64> {
-    (0..values.len())
-        .map(|i| {
-            let (from, to) = around(i, window, values.len());
-            values[from..to].iter().copied().fold(f64::NEG_INFINITY, f64::max)
-        })
-        .collect()
-}
-
-/// The mean of the values within `window` places of each, taken twice: without corners.
-fn smoothed(values: &[f64], window: usize) -> Vec<f64> {
-    let points: Vec<Vector<f64, 1>> = values.iter().map(|v| Vector([*v])).collect();
-    smoothed_points(&points, window).into_iter().map(|v| v.0[0]).collect()
-}
-
-fn smoothed_points<const D: usize>(points: &[Vector<f64, D>], window: usize) -> Vec<Point<D>> {
-    mean_around(&mean_around(points, window), window)
-}
-
-fn mean_around<const D: usize>(points: &[Vector<f64, D>], window: usize) -> Vec<Point<D>> {
-    (0..points.len())
-        .map(|i| {
-            let (from, to) = around(i, window, points.len());
-            let sum = points[from..to].iter().fold(Vector::ZERO, |sum, p| sum + *p);
-            sum * (1.0 / (to - from) as f64)
-        })
-        .collect()
-}
-
-/// The places within `window` of place `i`, fewer on both sides near an end.
-fn around(i: usize, window: usize, count: usize) -> (usize, usize) {
-    let window = window.min(i).min(count - 1 - i);
-    (i - window, i + window + 1)
 }

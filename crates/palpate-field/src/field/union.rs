@@ -126,6 +126,12 @@ fn at_most(line: &[f32; LINE], limit: f32) -> u32 {
     bits
 }
 
+/// A word with its lowest `count` bits set, all of a line at most.
+#[inline(always)]
+fn first_bits(count: usize) -> u32 {
+    if count >= LINE { (1 << LINE) - 1 } else { (1 << count) - 1 }
+}
+
 impl<const D: usize> Union<D> {
     pub(crate) fn new(members: Vec<Shape<D>>, promise: Promise<D>) -> Self {
         let choosing = members.len() >= WORTH_CHOOSING;
@@ -187,7 +193,11 @@ impl<const D: usize> Union<D> {
                 bound = bound.min(value(g * GROUP + k * LINE + first));
             }
             for (k, line) in lines.iter().enumerate() {
-                let mut bits = at_most(line, (bound + slack) as f32);
+                // The lanes past the last member are infinitely far, but so may the
+                // limit be.
+                let members =
+                    self.members.len() - (g * GROUP + k * LINE).min(self.members.len());
+                let mut bits = at_most(line, (bound + slack) as f32) & first_bits(members);
                 while bits != 0 {
                     let i = bits.trailing_zeros() as usize;
                     bits &= bits - 1;

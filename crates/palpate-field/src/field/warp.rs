@@ -3,9 +3,6 @@
 
 //! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
 
-use std::fmt::Debug;
-use std::sync::Arc;
-
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
@@ -13,6 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
 use crate::vector::{Vector, unrolled};
+use std::fmt::Debug;
 
 /// A map from the node's `D` coordinates to its child's `E`.
 pub(crate) trait Warp<const D: usize, const E: usize>:
@@ -168,7 +166,6 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
         let map = self.map.placed(pose)?;
         let promise = self.promise.placed(pose);
         let depth = self.child.depth() + 1;
-        Shape::from_operator(Arc::new(Self { map, child: self.child.clone(), promise }), depth)
-            .ok()
+        Shape::from_operator(Self { map, child: self.child.clone(), promise }, depth).ok()
     }
 }

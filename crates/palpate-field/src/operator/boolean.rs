@@ -3,8 +3,6 @@
 
 //! Sharp booleans: union, intersection, difference, symmetric difference.
 
-use std::sync::Arc;
-
 use crate::bounds::{BoundingBall, Bounds};
 use crate::error::ShapeError;
 use crate::field::{Combine, Combined, Union};
@@ -152,7 +150,7 @@ pub(crate) fn combined<const D: usize, O: Combine>(
     if children.len() == 1 {
         return Ok(children[0].clone());
     }
-    Shape::from_operator(Arc::new(Combined { operation, children, promise }), depth)
+    Shape::from_operator(Combined { operation, children, promise }, depth)
 }
 
 fn nothing_in(name: &'static str) -> ShapeError {
@@ -182,7 +180,7 @@ impl<const D: usize> Shape<D> {
         let promise =
             fold_promises(&members, promise_of_union).ok_or_else(|| nothing_in("union"))?;
         let depth = Self::deepest(&members) + 1;
-        Self::from_operator(Arc::new(Union::new(members, promise)), depth)
+        Self::from_operator(Union::new(members, promise), depth)
     }
 
     /// The intersection of all `shapes`: `max(a, b, …)`.

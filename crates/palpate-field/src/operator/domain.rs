@@ -4,8 +4,6 @@
 //! Operators that fold or stretch space: mirror, elongation, extrusion,
 //! revolution.
 
-use std::sync::Arc;
-
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::field::{Warp, Warped};
@@ -16,7 +14,7 @@ use crate::vector::{Vector, array, unrolled};
 
 /// `f(|pₐ|, …)` along axis a.
 #[derive(Debug)]
-struct Mirror {
+pub(crate) struct Mirror {
     axis: usize,
 }
 
@@ -29,7 +27,7 @@ impl<const D: usize> Warp<D, D> for Mirror {
 
 /// `f(p − clamp(p, −h, h))`.
 #[derive(Debug)]
-struct Elongation<const D: usize> {
+pub(crate) struct Elongation<const D: usize> {
     half: [f64; D],
     /// Axes about which the child is its own mirror image.
     symmetric: [bool; D],
@@ -60,7 +58,7 @@ impl<const D: usize> Warp<D, D> for Elongation<D> {
 
 /// The orthant distance of the profile in (x, z) and of |y| − h/2.
 #[derive(Debug)]
-struct Extrusion {
+pub(crate) struct Extrusion {
     half_height: f64,
 }
 
@@ -78,7 +76,7 @@ impl Warp<3, 2> for Extrusion {
 
 /// The profile in (√(x² + z²), y).
 #[derive(Debug)]
-struct Revolution;
+pub(crate) struct Revolution;
 
 impl Warp<3, 2> for Revolution {
     #[inline(always)]
@@ -165,7 +163,7 @@ impl<const D: usize> Shape<D> {
 
     fn warped(&self, map: impl Warp<D, D>, promise: Promise<D>) -> Result<Self, ShapeError> {
         let depth = self.depth() + 1;
-        Self::from_operator(Arc::new(Warped { map, child: self.clone(), promise }), depth)
+        Self::from_operator(Warped { map, child: self.clone(), promise }, depth)
     }
 }
 
@@ -220,7 +218,7 @@ impl Shape<2> {
             rounding: child.rounding.times(2.0).plus(&own),
         };
         let node = Warped { map: Extrusion { half_height }, child: self.clone(), promise };
-        Shape::from_operator(Arc::new(node), self.depth() + 1)
+        Shape::from_operator(node, self.depth() + 1)
     }
 
     /// The profile turned about the y axis: its x is the distance from the axis.
@@ -270,6 +268,6 @@ impl Shape<2> {
             rounding: child.rounding.plus(&own),
         };
         let node = Warped { map: Revolution, child: self.clone(), promise };
-        Shape::from_operator(Arc::new(node), self.depth() + 1)
+        Shape::from_operator(node, self.depth() + 1)
     }
 }

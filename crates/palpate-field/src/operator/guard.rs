@@ -3,8 +3,6 @@
 
 //! The guard: a field raised to the distance to its own box.
 
-use std::sync::Arc;
-
 use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
 use crate::field::{Remap, Remapped};
@@ -56,6 +54,6 @@ impl<const D: usize> Shape<D> {
         };
         let depth = self.depth() + 1;
         let node = Remapped { map: Guard::new(&bounds.aabb), child: self, promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)
     }
 }

@@ -9,6 +9,7 @@
 
 pub(crate) mod boolean;
 mod domain;
+pub(crate) mod doors;
 mod guard;
 mod smooth;
 mod surface;

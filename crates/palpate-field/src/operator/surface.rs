@@ -3,8 +3,6 @@
 
 //! Operators that move the surface: offset and shell.
 
-use std::sync::Arc;
-
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::field::{Remap, Remapped};
 use crate::promise::{Promise, Quality, Rounding};
@@ -14,7 +12,7 @@ use crate::vector::Vector;
 
 /// `f − r`.
 #[derive(Debug)]
-struct Offset {
+pub(crate) struct Offset {
     distance: f64,
 }
 
@@ -27,7 +25,7 @@ impl<const D: usize> Remap<D> for Offset {
 
 /// `|f| − t/2`.
 #[derive(Debug)]
-struct Shell {
+pub(crate) struct Shell {
     half_thickness: f64,
 }
 
@@ -85,7 +83,7 @@ impl<const D: usize> Shape<D> {
         };
         let depth = child.depth() + 1;
         let node = Remapped { map: Offset { distance }, child, promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)
     }
 
     /// A shell of `thickness` [m], half of it on either side of the surface:
@@ -114,6 +112,6 @@ impl<const D: usize> Shape<D> {
         };
         let depth = child.depth() + 1;
         let node = Remapped { map: Shell { half_thickness }, child, promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)
     }
 }

@@ -3,8 +3,6 @@
 
 //! Rigid motions and scales.
 
-use std::sync::Arc;
-
 use crate::error::{LARGEST_LENGTH, ShapeError, Unit};
 use crate::field::{Placement, Warp, Warped};
 use crate::pose::{Pose, Rotation};
@@ -36,7 +34,7 @@ impl<const D: usize> Warp<D, D> for Placement<D> {
 
 /// `s·f(p / s)`.
 #[derive(Debug)]
-struct UniformScale {
+pub(crate) struct UniformScale {
     factor: f64,
     inverse: f64,
 }
@@ -66,7 +64,7 @@ impl<const D: usize> Warp<D, D> for UniformScale {
 
 /// `min sᵢ · f(pᵢ / sᵢ)`.
 #[derive(Debug)]
-struct AxisScale<const D: usize> {
+pub(crate) struct AxisScale<const D: usize> {
     inverse: [f64; D],
     smallest: f64,
 }
@@ -110,7 +108,7 @@ impl<const D: usize> Shape<D> {
         let depth = self.depth() + 1;
         let map = Placement::new(*world_from_body);
         let node = Warped { map, child: self.clone(), promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)
     }
 
     /// The shape moved by `offset` [m].
@@ -155,7 +153,7 @@ impl<const D: usize> Shape<D> {
         let depth = self.depth() + 1;
         let map = UniformScale { factor, inverse: 1.0 / factor };
         let node = Warped { map, child: self.clone(), promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)?.in_range(factor)
     }
 
     /// The shape scaled by `factors[i]` along axis `i`: `min sᵢ · f(pᵢ/sᵢ)`.
@@ -189,7 +187,18 @@ impl<const D: usize> Shape<D> {
         let depth = self.depth() + 1;
         let map = AxisScale { inverse: factors.map(|f| 1.0 / f), smallest };
         let node = Warped { map, child: self.clone(), promise };
-        Self::from_operator(Arc::new(node), depth)
+        Self::from_operator(node, depth)?.in_range(smallest)
+    }
+
+    /// The shape, if scales within scales leave its distances in the range of
+    /// numbers, which a look at the farthest point shows.
+    fn in_range(self, factor: f64) -> Result<Self, ShapeError> {
+        let farthest = self.distance(Vector::constant(LARGEST_LENGTH));
+        if farthest.is_finite() {
+            return Ok(self);
+        }
+        let rule = "such that it and the scales within it stay in the range of numbers";
+        Err(ShapeError::number("scale", rule, factor, Unit::One))
     }
 }
 

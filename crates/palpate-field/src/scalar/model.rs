@@ -426,7 +426,8 @@ impl Scalar for Model {
             lower: near.lower.max_of((between + far.lower) * INFLATE - apart),
             upper: near.upper.max_of((between + far.upper) * INFLATE + apart),
             ..near
-        };
+        }
+        .rounded(2.0, f64::abs(far.value));
         Self::choose(always, if_less, Self::choose(never, otherwise, either))
     }
 
@@ -535,6 +536,7 @@ impl Scalar for Model {
             lower: weight * self.lower + rest * other.lower + below,
             upper: weight * self.upper + rest * other.upper,
         }
-        .rounded(8.0, spread)
+        // The operands and the fill may cancel in the value.
+        .rounded(8.0, spread + f64::abs(self.value) + f64::abs(other.value) + x * reach)
     }
 }
