@@ -243,7 +243,16 @@ fn feel_follows_a_hand_of_several_points() {
     let bad = folder.write("bad.csv", "time_s,x_m,y_m,z_m\n0,0,0,0\n0,0,0,1\n");
     assert_eq!(status(&palpate(&["feel", &scene, "--path", &bad])), 2);
     assert_eq!(status(&palpate(&["feel", &scene, "--rate", "-5", "--fast"])), 2);
-    assert_eq!(status(&palpate(&["feel", &scene, "--contacts", "0", "--fast"])), 2);
+    for contacts in ["0", "1000000000"] {
+        assert_eq!(status(&palpate(&["feel", &scene, "--contacts", contacts, "--fast"])), 2);
+    }
+    for huge in ["1e300", "1e9", "nan", "-1"] {
+        assert_eq!(
+            status(&palpate(&["feel", &scene, "--duration", huge, "--fast"])),
+            2,
+            "{huge}"
+        );
+    }
 }
 
 #[test]

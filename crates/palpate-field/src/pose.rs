@@ -300,6 +300,15 @@ impl From<Pose<3>> for glam::DAffine3 {
     }
 }
 
+impl TryFrom<glam::DAffine3> for Pose<3> {
+    type Error = ShapeError;
+
+    /// The matrix must be a rotation: scale and shear are refused.
+    fn try_from(affine: glam::DAffine3) -> Result<Self, ShapeError> {
+        Ok(Self::new(affine.matrix3.try_into()?, affine.translation.into()))
+    }
+}
+
 impl From<Rotation<3>> for glam::DQuat {
     fn from(rotation: Rotation<3>) -> Self {
         Self::from_array(rotation.quaternion())
@@ -344,8 +353,10 @@ mod tests {
         ] {
             let rotation = Rotation::from_quaternion(q).unwrap();
             let again = Rotation::from_quaternion(rotation.quaternion()).unwrap();
-            let from_glam =
-                Rotation::try_from(glam::DMat3::from_quat(rotation.into())).unwrap();
+            let pose = Pose::new(rotation, Vector([1.0, 2.0, 3.0]));
+            let from_glam = Pose::try_from(glam::DAffine3::from(pose)).unwrap();
+            assert_eq!(from_glam.translation, pose.translation);
+            let from_glam = from_glam.rotation;
             for i in 0..3 {
                 for k in 0..3 {
                     assert!((rotation.matrix[i][k] - again.matrix[i][k]).abs() < 1e-15);

@@ -21,6 +21,8 @@ fn m<const D:usize>(n:&str,s:&Shape<D>,r:f64)->R<()>{ let b=s.promise().bounds.u
  let mut dev=SimulatedDevice::new(vec![path.clone()])?; let mut servo=Servo::new(s.clone(),1,ServoOptions{probe:Probe::new(r)?,max_force:f64::INFINITY,..Default::default()})?;
  let rep=run(&mut servo,&mut dev,RunOptions{pace:Pace::AsFastAsPossible,..RunOptions::new(10.0)})?;
  println!("{n}: share {:.2} depth {:.3}mm path-depth {:.3}mm speed {:.2} jerk {:.4}@{wj} n {} in {:?} spent {}",rep.contact_time/rep.duration,rep.largest_depth*1e3,-low*1e3,fast,jerk,path.times().len(),made,rep.evaluations.budget_spent); Ok(())}
-fn main()->R<()>{ for r in [0.002,0.003]{ m("star",&star()?,r)?; m("cup",&cup()?,r)?; m("gallery",&gallery()?,r)?;
+fn main()->R<()>{ if std::env::args().count()>1 { dump(&Shape::from_kernel(Torus::new(0.05,0.02)?),0.002,2.6922)?; return dump(&gallery()?,0.002,1.0443); } for r in [0.002,0.003]{ m("star",&star()?,r)?; m("cup",&cup()?,r)?; m("gallery",&gallery()?,r)?;
  m("ball",&Shape::<3>::from_kernel(Ball::new(0.05)?),r)?; m("box",&Shape::<3>::from_kernel(Cuboid::new(Vector([0.1;3]))?),r)?; m("box2",&Shape::<2>::from_kernel(Cuboid::new(Vector([0.1,0.06]))?),r)?;
  m("torus",&Shape::from_kernel(Torus::new(0.05,0.02)?),r)?; m("flat",&Shape::from_kernel(Cuboid::new(Vector([0.4,0.1,0.2]))?),r)?;} Ok(()) }
+#[allow(dead_code)] pub fn dump<const D:usize>(s:&Shape<D>,r:f64,n:f64)->R<()>{ let b=s.promise().bounds.unwrap(); let path=Tour::new(b.aabb,10.0)?.with_probe_radius(r)?.over(s)?;
+ let i=path.times().partition_point(|t|*t<n); for k in i-8..i+8{ let p=path.positions()[k]; println!("{:.5} {:?} f {:.6} chord {:.6}",path.times()[k],p.0,s.distance(p),(path.positions()[k+1]-p).norm()); } Ok(()) }

@@ -40,7 +40,7 @@ const RAY_TOLERANCE: f64 = 1e-6;
 
 /// The surface jumps where its height changes by this many times the way between two points: an
 /// angle at which a hand would push against a wall instead of sliding over it.
-const STEEPEST: f64 = 2.5;
+const STEEPEST: f64 = 4.0;
 
 /// The cosine of the turn of the surface between two points that is an edge, not a bend. A hand
 /// deeper than the probe is wide would leave its proxy behind there.
@@ -85,13 +85,13 @@ const DEPTH: f64 = 0.01;
 const SMOOTH_DEPTH: f64 = 0.75;
 
 /// The least time between two samples, as a part of the time for one step of the orbit.
-const SHORTEST_STEP: f64 = 1e-3;
+const SHORTEST_STEP: f64 = 0.3;
 
 /// The length of a press and the flight after it, as a part of the shape's size.
 const PRESS_LENGTH: f64 = 0.8;
 
 /// The part of a press in which the hand is down; the rest is rising, flying and landing.
-const DOWN: f64 = 0.7;
+const DOWN: f64 = 0.85;
 
 /// A hand that tours a shape.
 ///
@@ -261,7 +261,7 @@ impl<const D: usize> Tour<D> {
             })
             .collect();
         let correct = |positions: Vec<Point<D>>| -> Vec<Point<D>> {
-            let levels = press.iter().map(|press| clearance - (clearance + self.depth()) * press);
+            let levels = press.iter().map(|press| -self.depth() * press);
             let positions = positions.into_iter().zip(levels);
             positions.map(|(point, level)| self.corrected(shape, point, level)).collect()
         };
@@ -364,7 +364,7 @@ impl<const D: usize> Tour<D> {
             _ => true,
         };
         let near_jump: Vec<f64> = (0..=last).map(|i| f64::from(u8::from(jumps(i)))).collect();
-        let near_jump = smoothed(&highest(&near_jump, 4 * window), window);
+        let near_jump = smoothed(&highest(&near_jump, window), (window / 2).max(1));
         // Whole presses, so that the path begins and ends in flight.
         let way = step * sights.len() as f64;
         let count = (way / (PRESS_LENGTH * self.size)).round().max(1.0);
@@ -431,15 +431,16 @@ fn passed<const D: usize>(
     (step, window): (f64, usize),
 ) -> Vec<f64> {
     let last = positions.len() - 2;
-    let ways = positions.windows(2).zip(press).enumerate().map(|(i, (pair, press))| {
+    let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
+    // Where the hand turns back, it goes little way, but takes its time.
+    let steady = smoothed(&ways, 2 * window);
+    let ways = ways.iter().zip(steady).zip(press).enumerate().map(|(i, ((way, steady), press))| {
         let from_end = i.min(last - i) as f64;
         let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
         let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
-        (pair[1] - pair[0]).norm() / haste
+        way.max(steady) / haste
     });
-    // Where the hand turns back, it goes little way, but takes its time.
-    let ways = smoothed(&ways.collect::<Vec<_>>(), 2 * window);
-    let sums = ways.iter().scan(0.0, |sum, way| {
+    let sums = ways.scan(0.0, |sum, way| {
         *sum += way.max(SHORTEST_STEP * step);
         Some(*sum)
     });

@@ -7,8 +7,8 @@
 mod common;
 
 use arbitrary::Unstructured;
-use common::{cases, cuboid, direction, proxy, rotation, scaled, stroke, unit, vector};
-use palpate_field::{Point, Pose, Shape, Vector};
+use common::{Scaled, cases, cuboid, direction, proxy, rotation, scaled, stroke, unit, vector};
+use palpate_field::{BoundingBall, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{Probe, Proxy};
 
 #[test]
@@ -22,6 +22,43 @@ fn a_thin_plate_holds_a_strike_of_five_metres_a_second() {
         assert!((following.proxy - Vector([0.01, held, 0.01])).norm() < 1e-9);
         assert_eq!(following.contact, height < 0.001);
     }
+}
+
+#[test]
+fn a_wall_beyond_the_region_of_a_promise_is_not_crossed() {
+    // Known to be no steeper than 1 within 0.1 m of the origin; the plate is at x = 0.3.
+    let plate = cuboid([0.02, 1.0, 1.0]).translated(Vector([0.3, 0.0, 0.0])).unwrap();
+    let region = Some(BoundingBall { centre: Vector::ZERO, radius: 0.1 });
+    let promise = Promise { region, ..Promise::lipschitz(plate.promise().bounds, 1.0) };
+    let shape = Shape::custom(Scaled { shape: plate, factor: 1.0, promise });
+    for radius in [0.0, 0.002] {
+        let mut proxy = proxy(radius);
+        proxy.follow(&shape, Vector::ZERO);
+        for tick in 0..100 {
+            let device = Vector([0.01 * f64::from(tick), 0.0, 0.0]);
+            let following = proxy.follow(&shape, device);
+            let closest = Vector([device[0].min(0.1), 0.0, 0.0]);
+            assert!((following.proxy - closest).norm() < 1e-9, "{following:?}");
+            assert!(!following.contact);
+        }
+        let back = Vector([0.0, 0.05, 0.0]);
+        assert_eq!(proxy.follow(&shape, back).proxy, back);
+    }
+}
+
+#[test]
+fn a_hand_that_starts_beyond_the_region_of_a_promise_touches_nothing_until_it_enters() {
+    let region = Some(BoundingBall { centre: Vector::ZERO, radius: 0.1 });
+    let cube = cuboid([0.05; 3]);
+    let promise = Promise { region, ..Promise::lipschitz(cube.promise().bounds, 1.0) };
+    let shape = Shape::custom(Scaled { shape: cube, factor: 1.0, promise });
+    let mut proxy = proxy(0.002);
+    let far = Vector([0.0, 0.5, 0.0]);
+    let following = proxy.follow(&shape, far);
+    assert_eq!((following.proxy, following.contact), (far, false));
+    let last = stroke(&mut proxy, &shape, (far, Vector([0.0, 0.026, 0.0])), 300);
+    assert!(last.contact);
+    assert!((last.proxy - Vector([0.0, 0.027, 0.0])).norm() < 1e-8, "{last:?}");
 }
 
 /// A hand that flies about in or around a hollow box with walls of 0.1 mm to 2.1 mm, at up to

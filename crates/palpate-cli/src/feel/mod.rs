@@ -31,6 +31,12 @@ const LAG: f64 = 0.5;
 /// 150 bytes.
 const MOST_ROWS: f64 = 3.6e6;
 
+/// The most ticks of a run: eleven days at 1 kHz.
+const MOST_TICKS: f64 = 1e9;
+
+/// The most contact points: more than all hands in a room have fingers.
+const MOST_CONTACTS: usize = 1000;
+
 /// How often the live line is renewed.
 const LIVE_EVERY: Duration = Duration::from_millis(100);
 
@@ -61,8 +67,16 @@ where
     let mut servo =
         Servo::new(scene.whole.clone(), contacts, servo_options).map_err(Failure::input)?;
 
+    let ticks = duration * options.rate;
+    if ticks > MOST_TICKS {
+        let rate = options.rate;
+        let problem = format!(
+            "a run has {MOST_TICKS:e} ticks at most; {duration} s at {rate} Hz are {ticks:e}"
+        );
+        return Err(Failure::input(problem));
+    }
     let keeps_rows = options.trace.is_some() || options.plot.is_some();
-    let rows = duration * options.rate * contacts as f64;
+    let rows = ticks * contacts as f64;
     if keeps_rows && rows > MOST_ROWS {
         let problem = format!("--trace and --plot keep {MOST_ROWS} rows at most, not {rows}");
         return Err(Failure::input(problem));
@@ -136,6 +150,10 @@ fn paths<const D: usize>(
 ) -> Result<Vec<HandPath<D>>, Failure> {
     if let Some(path) = &options.path {
         return hand_csv::read(path);
+    }
+    if options.contacts > MOST_CONTACTS {
+        let problem = format!("at most {MOST_CONTACTS} contacts, got {}", options.contacts);
+        return Err(Failure::input(problem));
     }
     let duration = options.duration.unwrap_or(DURATION);
     let lag = LAG * options.contacts.saturating_sub(1) as f64;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::kernel::Kernel;
-use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::machine::{Block, Column, Gradients, Job, Lane, PointJob, run, run_point};
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
@@ -113,6 +113,13 @@ impl<T: Float, K: Kernel<D>, const D: usize> EvaluatePoint<T, D> for Leaf<K, D> 
     }
 
     fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
+        run_point(self, (x, y, z), gradient)
+    }
+}
+
+impl<T: Float, K: Kernel<D>, const D: usize> PointJob<T, Vector<T, D>> for Leaf<K, D> {
+    #[inline(always)]
+    fn at(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
         let p = Vector::of_coordinates(x, y, z);
         let distance;
         match &self.placement {

@@ -171,3 +171,32 @@ where
 {
     for_each_lane(job, a, b, count, out);
 }
+
+/// What to do at one point, where it is worth the better instructions.
+pub(crate) trait PointJob<T, G> {
+    /// The distance at a point; puts its gradient into `gradient`.
+    fn at(&self, x: T, y: T, z: T, gradient: &mut G) -> T;
+}
+
+/// Runs `job` with the instruction set in use: with AVX2 at most, since one point
+/// fills no wider vector. Its blends replace branches that are hard to predict.
+#[inline(always)]
+pub(crate) fn run_point<T, G, J: PointJob<T, G>>(
+    job: &J,
+    (x, y, z): (T, T, T),
+    gradient: &mut G,
+) -> T {
+    #[cfg(target_arch = "x86_64")]
+    if InstructionSet::in_use() >= InstructionSet::Avx2 {
+        // SAFETY: in_use() returns only sets for which is_available() found every
+        // feature that the function is compiled with; AVX-512 includes AVX2.
+        return unsafe { point_with_avx2(job, x, y, z, gradient) };
+    }
+    job.at(x, y, z, gradient)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi2")]
+fn point_with_avx2<T, G, J: PointJob<T, G>>(job: &J, x: T, y: T, z: T, gradient: &mut G) -> T {
+    job.at(x, y, z, gradient)
+}

@@ -20,5 +20,5 @@ mod lanes;
 
 pub use block::{BLOCK, Block, Column, Gradients, SHORT};
 pub use instruction_set::InstructionSet;
-pub(crate) use instruction_set::{Job, run};
+pub(crate) use instruction_set::{Job, PointJob, run, run_point};
 pub use lanes::{Lane, LaneArray, Lanes, ModelLanes};
