@@ -59,6 +59,8 @@ where
     let name = named.name.as_str();
     let servo_options =
         servo_options(scene, named.tool.as_ref(), options).map_err(Failure::input)?;
+    // Before a path of that length is made.
+    ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let paths = paths(scene, options, &servo_options)?;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
@@ -67,14 +69,7 @@ where
     let mut servo =
         Servo::new(scene.whole.clone(), contacts, servo_options).map_err(Failure::input)?;
 
-    let ticks = duration * options.rate;
-    if ticks > MOST_TICKS {
-        let rate = options.rate;
-        let problem = format!(
-            "a run has {MOST_TICKS:e} ticks at most; {duration} s at {rate} Hz are {ticks:e}"
-        );
-        return Err(Failure::input(problem));
-    }
+    let ticks = ticks(duration, options.rate)?;
     let keeps_rows = options.trace.is_some() || options.plot.is_some();
     let rows = ticks * contacts as f64;
     if keeps_rows && rows > MOST_ROWS {
@@ -112,6 +107,17 @@ where
         write!(out, "{}", report::text(name, &outcome, servo.options()))?;
     }
     Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
+}
+
+/// The ticks of a run.
+fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
+    let ticks = duration * rate;
+    if ticks > MOST_TICKS {
+        return Err(Failure::input(format!(
+            "a run has {MOST_TICKS:e} ticks at most; {duration} s at {rate} Hz are {ticks:e}"
+        )));
+    }
+    Ok(ticks)
 }
 
 /// What the command line says, else the scene, else the default.
