@@ -58,7 +58,7 @@ const CLEARANCE: f64 = 0.75;
 
 /// The depth that no point of the path exceeds, as a multiple of the depth asked for. Between
 /// two points the hand may go a little deeper.
-const DEEPEST: f64 = 1.25;
+const DEEPEST: f64 = 1.35;
 
 /// Newton steps of a correction: the second mends what a blend or a corner left of the first.
 const CORRECTIONS: u32 = 4;
@@ -173,7 +173,14 @@ impl<const D: usize> Tour<D> {
     /// ray towards the core of the box (the box shrunk by its shortest half edge, so that long
     /// and flat scenes are touched all over) finds the surface that is seen from there. The hand
     /// presses into it for some time, rises, flies and lands again, and rises as well where what
-    /// is seen jumps from one body to another.
+    /// is seen jumps from one body to another. In space nothing is looked at from below the box
+    /// (y points up), where a scene has its table.
+    ///
+    /// Where that path is too deep, the field leads it out along its gradient; where it still is
+    /// at more than 1.35 times the depth asked for, the hand is lifted into flight, which is free
+    /// as its rays are. So the hand is nowhere deeper than that, but for what the shape does
+    /// between two points of the path, and for shapes that reach out of the box to
+    /// where the hand would fly: an orbit within a shape cannot be left.
     ///
     /// # Errors
     ///
@@ -226,7 +233,7 @@ impl<const D: usize> Tour<D> {
         bridge(&mut sights);
         let mut positions = self.positions(shape, &sights, &press, window);
         for lift in 1..=MOST_LIFTS {
-            let deep: Vec<f64> = self.too_deep(shape, &positions);
+            let deep = self.too_deep(shape, &positions);
             if deep.iter().all(|deep| *deep == 0.0) {
                 break;
             }
@@ -239,8 +246,9 @@ impl<const D: usize> Tour<D> {
 
     /// The smooth path that is down as far as `press` says, and corrected by the field.
     ///
-    /// Smoothing cuts corners; the field leads what is too deep out again, at first with corners,
-    /// then after some more smoothing with hardly any.
+    /// Smoothing cuts corners; the field leads what is too deep out again. That makes corners, so
+    /// both are done twice, the second time over half the width, and what corners are left are
+    /// rounded once more over a quarter of it.
     fn positions(
         &self,
         shape: &Shape<D>,
@@ -266,7 +274,8 @@ impl<const D: usize> Tour<D> {
             positions.map(|(point, level)| self.corrected(shape, point, level)).collect()
         };
         let positions = correct(smoothed_points(&positions, window));
-        correct(smoothed_points(&positions, (window / 2).max(1)))
+        let positions = correct(smoothed_points(&positions, (window / 2).max(1)));
+        smoothed_points(&positions, (window / 4).max(1))
     }
 
     /// `point`, or the point up the gradient from it that is `level` above the offset surface [m]
@@ -418,8 +427,8 @@ fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
     for pair in seen.windows(2) {
         let (from, to) = (sights[pair[0]].height, sights[pair[1]].height);
         let gap = (pair[1] - pair[0]) as f64;
-        for i in pair[0] + 1..pair[1] {
-            sights[i].height = from + (to - from) * ((i - pair[0]) as f64 / gap);
+        for (i, sight) in (0_u32..).zip(&mut sights[pair[0]..pair[1]]) {
+            sight.height = from + (to - from) * (f64::from(i) / gap);
         }
     }
 }
@@ -434,12 +443,13 @@ fn passed<const D: usize>(
     let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
     // Where the hand turns back, it goes little way, but takes its time.
     let steady = smoothed(&ways, 2 * window);
-    let ways = ways.iter().zip(steady).zip(press).enumerate().map(|(i, ((way, steady), press))| {
-        let from_end = i.min(last - i) as f64;
-        let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
-        let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
-        way.max(steady) / haste
-    });
+    let ways =
+        ways.iter().zip(steady).zip(press).enumerate().map(|(i, ((way, steady), press))| {
+            let from_end = i.min(last - i) as f64;
+            let start = FIRST_SPEED + (1.0 - FIRST_SPEED) * ease((from_end / START).min(1.0));
+            let haste = (FLIGHT_SPEED + (1.0 - FLIGHT_SPEED) * press) * start;
+            way.max(steady) / haste
+        });
     let sums = ways.scan(0.0, |sum, way| {
         *sum += way.max(SHORTEST_STEP * step);
         Some(*sum)

@@ -22,7 +22,10 @@ pub(super) fn smoothed(values: &[f64], window: usize) -> Vec<f64> {
 }
 
 /// Likewise of points.
-pub(super) fn smoothed_points<const D: usize>(points: &[Vector<f64, D>], window: usize) -> Vec<Point<D>> {
+pub(super) fn smoothed_points<const D: usize>(
+    points: &[Vector<f64, D>],
+    window: usize,
+) -> Vec<Point<D>> {
     mean_around(&mean_around(points, window), window)
 }
 
