@@ -177,15 +177,15 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
     }
 
     fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
-        let world_from_body = match &self.placement {
-            None => *pose,
-            Some(placement) => *pose * placement.world_from_body,
+        // From the kernel's promise, so that boxes do not grow twice.
+        let (world_from_body, promise) = match &self.placement {
+            None => (*pose, self.promise),
+            Some(placement) => (*pose * placement.world_from_body, self.kernel.promise()),
         };
         Some(Shape::from_node(Arc::new(Self {
             kernel: self.kernel.clone(),
             placement: Some(Placement::new(world_from_body)),
-            // From the kernel's promise, so that boxes do not grow twice.
-            promise: self.kernel.promise().placed(&world_from_body),
+            promise: promise.placed(&world_from_body),
         })))
     }
 }

@@ -101,6 +101,9 @@ impl<const D: usize> Shape<D> {
         for x in world_from_body.translation.0 {
             crate::error::finite("translate", x, Unit::Metre)?;
         }
+        if *world_from_body == Pose::identity() {
+            return Ok(self.clone());
+        }
         if let Some(shape) = self.field().placed(world_from_body) {
             return Ok(shape);
         }
