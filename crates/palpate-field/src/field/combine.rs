@@ -7,6 +7,7 @@ use std::fmt::Debug;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
@@ -216,8 +217,32 @@ where
     }
 }
 
-impl<O: Combine, const D: usize> Field<D> for Combined<O, D> {
+/// The children moved by `pose`, if a motion may go into their operator.
+pub(super) fn placed_children<const D: usize>(
+    children: &[Shape<D>],
+    pose: &Pose<D>,
+) -> Option<Vec<Shape<D>>> {
+    let unplaced: usize = children.iter().map(|child| child.field().unplaced()).sum();
+    if unplaced > 1 {
+        return None;
+    }
+    children.iter().map(|child| child.placed(pose).ok()).collect()
+}
+
+impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn unplaced(&self) -> usize {
+        self.children.iter().map(|child| child.field().unplaced()).sum()
+    }
+
+    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
+        let children = placed_children(&self.children, pose)?;
+        let depth = Shape::deepest(&children) + 1;
+        let promise = self.promise.placed(pose);
+        let operation = self.operation.clone();
+        Shape::from_operator(Self { operation, children, promise }, depth).ok()
     }
 }

@@ -176,6 +176,10 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         &self.promise
     }
 
+    fn unplaced(&self) -> usize {
+        usize::from(self.placement.is_none())
+    }
+
     fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
         // From the kernel's promise, so that boxes do not grow twice.
         let (world_from_body, promise) = match &self.placement {

@@ -94,6 +94,15 @@ pub trait Field<const D: usize>:
         None
     }
 
+    /// How many changes of coordinates an evaluation would have more if a motion
+    /// went into the node instead of around it.
+    ///
+    /// A motion around a node is one change more too, and one that everything below
+    /// waits for: operators let it in where it adds at most that.
+    fn unplaced(&self) -> usize {
+        1
+    }
+
     /// The members, if this is a sharp union: nested unions are flattened.
     fn members(&self) -> Option<&[Shape<D>]> {
         None

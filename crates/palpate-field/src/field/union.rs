@@ -6,10 +6,11 @@
 //! A member is skipped only where its value is sure to be larger than the
 //! smallest, rounding included, so skipping changes no bit of the result.
 
-use super::combine::{GradientFold, ValueFold};
+use super::combine::{GradientFold, ValueFold, placed_children};
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
 use crate::machine::{BLOCK, Block, Column, Gradients, Job, Lane, run};
 use crate::operator::boolean::Smaller;
+use crate::pose::Pose;
 use crate::promise::{Promise, Quality};
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
@@ -217,32 +218,33 @@ impl<const D: usize> Union<D> {
         dyn Field<D>: EvaluatePoint<T, D>,
     {
         let ask = |i: usize| self.members[i].field().distance(x, y, z);
+        if self.groups.is_empty() {
+            // Selects, since which of two members is nearer is hard to predict.
+            let (mut smallest, mut winner) = (ask(0), 0);
+            for i in 1..self.members.len() {
+                let value = ask(i);
+                winner = if value < smallest { i } else { winner };
+                smallest = smallest.min(value);
+            }
+            return (smallest, winner);
+        }
         let mut best: Option<(T, usize)> = None;
-        let mut offer = |value: T, i: usize| {
+        let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
+        let query = Query { centre, radius: 0.0 };
+        let first = std::cell::Cell::new((usize::MAX, T::default()));
+        let bound = |i| {
+            let value = ask(i);
+            first.set((i, value));
+            value.to_f64()
+        };
+        self.for_each_near(query, bound, |i| {
+            let known = first.get();
+            let value = if known.0 == i { known.1 } else { ask(i) };
             if best.is_none_or(|(smallest, _)| value < smallest) {
                 best = Some((value, i));
             }
-        };
-        if self.groups.is_empty() {
-            for i in 0..self.members.len() {
-                offer(ask(i), i);
-            }
-        } else {
-            let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
-            let query = Query { centre, radius: 0.0 };
-            let first = std::cell::Cell::new((usize::MAX, T::default()));
-            let value = |i| {
-                let value = ask(i);
-                first.set((i, value));
-                value.to_f64()
-            };
-            self.for_each_near(query, value, |i| {
-                let known = first.get();
-                let value = if known.0 == i { known.1 } else { ask(i) };
-                offer(value, i);
-                value.to_f64()
-            });
-        }
+            value.to_f64()
+        });
         best.unwrap_or((T::constant(f64::INFINITY), 0))
     }
 
@@ -340,6 +342,16 @@ where
 impl<const D: usize> Field<D> for Union<D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn unplaced(&self) -> usize {
+        self.members.iter().map(|member| member.field().unplaced()).sum()
+    }
+
+    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
+        let members = placed_children(&self.members, pose)?;
+        let depth = Shape::deepest(&members) + 1;
+        Shape::from_operator(Self::new(members, self.promise.placed(pose)), depth).ok()
     }
 
     fn members(&self) -> Option<&[Shape<D>]> {

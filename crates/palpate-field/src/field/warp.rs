@@ -16,6 +16,9 @@ use std::fmt::Debug;
 pub(crate) trait Warp<const D: usize, const E: usize>:
     Debug + Send + Sync + 'static
 {
+    /// `true` for rigid motions, which take another motion into themselves.
+    const IS_MOTION: bool = false;
+
     /// Where the child is asked.
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, E>;
 
@@ -160,6 +163,10 @@ where
 impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn unplaced(&self) -> usize {
+        usize::from(!M::IS_MOTION)
     }
 
     fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {

@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 use crate::shape::Shape;
 
 /// Union: `min(a, b)`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Smaller;
 
 impl Combine for Smaller {
@@ -22,7 +22,7 @@ impl Combine for Smaller {
 }
 
 /// Intersection: `max(a, b)`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Larger;
 
 impl Combine for Larger {
@@ -33,7 +33,7 @@ impl Combine for Larger {
 }
 
 /// Difference, a without b: `max(a, −b)`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Without;
 
 impl Combine for Without {
@@ -44,7 +44,7 @@ impl Combine for Without {
 }
 
 /// Symmetric difference: `max(min(a, b), −max(a, b))`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct InOne;
 
 impl Combine for InOne {
@@ -139,7 +139,7 @@ pub(crate) fn fold_promises<const D: usize>(
 }
 
 /// Folds `operation` over `shapes`, with its rule for promises.
-pub(crate) fn combined<const D: usize, O: Combine>(
+pub(crate) fn combined<const D: usize, O: Combine + Clone>(
     operation: O,
     name: &'static str,
     children: Vec<Shape<D>>,

@@ -21,7 +21,7 @@ pub enum Smooth {
     Cubic,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SmoothMin<B> {
     reach: f64,
     profile: PhantomData<B>,

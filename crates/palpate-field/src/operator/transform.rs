@@ -12,6 +12,8 @@ use crate::shape::Shape;
 use crate::vector::{Vector, array};
 
 impl<const D: usize> Warp<D, D> for Placement<D> {
+    const IS_MOTION: bool = true;
+
     #[inline(always)]
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
         self.to_body(p)
@@ -92,7 +94,8 @@ fn check_factor(factor: f64) -> Result<f64, ShapeError> {
 impl<const D: usize> Shape<D> {
     /// The shape moved by `world_from_body`. Every promise but symmetry is kept.
     ///
-    /// Motions of a leaf, and motions of motions, become one.
+    /// Motions of a leaf, and motions of motions, become one; those of an operator
+    /// go into its children where that costs no more.
     ///
     /// # Errors
     ///
