@@ -21,6 +21,16 @@ pub struct Placement<const D: usize> {
     pub world_from_body: Pose<D>,
     /// The columns of its rotation.
     columns: [[f64; D]; D],
+    /// The same numbers in single precision.
+    single: Single<D>,
+}
+
+/// A pose in single precision.
+#[derive(Clone, Copy, Debug)]
+struct Single<const D: usize> {
+    translation: [f32; D],
+    columns: [[f32; D]; D],
+    rows: [[f32; D]; D],
 }
 
 impl<const D: usize> Placement<D> {
@@ -28,21 +38,29 @@ impl<const D: usize> Placement<D> {
     #[must_use]
     pub fn new(world_from_body: Pose<D>) -> Self {
         let columns = *world_from_body.rotation.inverse().matrix();
-        Self { world_from_body, columns }
+        let rows = world_from_body.rotation.matrix();
+        let single = Single {
+            translation: world_from_body.translation.0.map(|x| x as f32),
+            columns: columns.map(|column| column.map(|x| x as f32)),
+            rows: rows.map(|row| row.map(|x| x as f32)),
+        };
+        Self { world_from_body, columns, single }
     }
 
     /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        let q = p - Vector::of(&self.world_from_body.translation.0);
-        Vector(array!(i < D => q.dot_constant(&self.columns[i])))
+        let t = &self.world_from_body.translation;
+        let single = &self.single;
+        let q = p - Vector(array!(i < D => S::stored(t[i], single.translation[i])));
+        Vector(array!(i < D => S::stored_sum(q.0, &self.columns[i], &single.columns[i])))
     }
 
     /// `R·v`: a gradient in the body's frame, back in the world's.
     #[inline(always)]
     pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
         let rows = self.world_from_body.rotation.matrix();
-        Vector(array!(i < D => v.dot_constant(&rows[i])))
+        Vector(array!(i < D => T::stored_sum(v.0, &rows[i], &self.single.rows[i])))
     }
 }
 

@@ -18,7 +18,7 @@ pub trait Float:
 }
 
 macro_rules! float {
-    ($t:ident, $line:literal) => {
+    ($t:ident, $line:literal, $double:ident, $single:ident, $stored:ident) => {
         impl Float for $t {
             const LINE: usize = $line;
 
@@ -39,6 +39,24 @@ macro_rules! float {
             #[inline(always)]
             fn scale(self, factor: f64) -> Self {
                 self * factor as $t
+            }
+
+            #[inline(always)]
+            fn stored($double: f64, $single: f32) -> Self {
+                $stored
+            }
+
+            #[inline(always)]
+            fn stored_sum<const N: usize>(
+                x: [Self; N],
+                $double: &[f64; N],
+                $single: &[f32; N],
+            ) -> Self {
+                let mut sum = x[0] * $stored[0];
+                for i in 1..N {
+                    sum += x[i] * $stored[i];
+                }
+                sum
             }
 
             #[inline(always)]
@@ -113,5 +131,5 @@ macro_rules! float {
     };
 }
 
-float!(f32, 16);
-float!(f64, 8);
+float!(f32, 16, _double, single, single);
+float!(f64, 8, double, _single, double);

@@ -63,6 +63,20 @@ pub trait Scalar:
         sum
     }
 
+    /// The number `double`, or `single` where that is what `Self` holds: constants
+    /// kept in both precisions spare a conversion in every evaluation.
+    #[inline(always)]
+    fn stored(double: f64, _single: f32) -> Self {
+        Self::constant(double)
+    }
+
+    /// As [`weighted_sum`](Self::weighted_sum), with weights kept in both
+    /// precisions.
+    #[inline(always)]
+    fn stored_sum<const N: usize>(x: [Self; N], double: &[f64; N], _single: &[f32; N]) -> Self {
+        Self::weighted_sum(x, double)
+    }
+
     /// `self²`.
     fn squared(self) -> Self;
 
