@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Draws three figures into the folder given on the command line:
-//! `cargo run -p palpate-plot --example gallery -- /tmp/figures`
+//! `cargo run -p palpate-plot --example gallery -- figures`
 
 use std::path::Path;
 
