@@ -267,12 +267,3 @@ fn select_less_between_any() {
         |[a, b, c, d]| Some(Double::select_less(a, b, c, d)),
     );
 }
-
-#[test]
-fn negate_unless_less() {
-    encloses(
-        three,
-        |[x, a, b]| x.negate_unless_less(a, b),
-        |[x, a, b]| Some(x.negate_unless_less(a, b)),
-    );
-}

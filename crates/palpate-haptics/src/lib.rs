@@ -44,10 +44,6 @@
 //! # Ok(())
 //! # }
 //! ```
-#![allow(
-    rustdoc::broken_intra_doc_links,
-    reason = "units are written as [m], which rustdoc takes for links"
-)]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 #[cfg(test)]

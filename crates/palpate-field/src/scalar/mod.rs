@@ -118,10 +118,4 @@ pub trait Scalar:
     fn clamp(self, low: f64, high: f64) -> Self {
         self.max(Self::constant(low)).min(Self::constant(high))
     }
-
-    /// `self` where `a < b`, else `-self`.
-    #[inline(always)]
-    fn negate_unless_less(self, a: Self, b: Self) -> Self {
-        Self::select_less(a, b, self, -self)
-    }
 }
