@@ -142,6 +142,24 @@ impl<const D: usize> Bounds<D> {
         Self { aabb, ball: if around.radius < ball.radius { around } else { ball } }
     }
 
+    /// Bounds of the union of all; `None` if there are none, or one has none.
+    ///
+    /// The ball is about the centre of the box.
+    #[must_use]
+    pub fn union_of(parts: impl Iterator<Item = Option<Self>> + Clone) -> Option<Self> {
+        let mut others = parts.clone();
+        let mut aabb = others.next()??.aabb;
+        for part in others {
+            aabb = aabb.union(&part?.aabb);
+        }
+        let around = Self::of_box(aabb).ball;
+        let reach = parts.flatten().fold(0.0_f64, |reach, Self { ball, .. }| {
+            reach.max((ball.centre - around.centre).norm() + ball.radius)
+        });
+        let radius = around.radius.min(reach * (1.0 + 4.0 * f64::EPSILON));
+        Some(Self { aabb, ball: BoundingBall { radius, ..around } })
+    }
+
     /// Bounds of all points within `margin` [m].
     #[must_use]
     pub fn grown(&self, margin: f64) -> Self {

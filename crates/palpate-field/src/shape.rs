@@ -12,6 +12,7 @@ use crate::field::{
 use crate::kernel::Kernel;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
 use crate::operator::doors;
+use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float};
 use crate::vector::{Point, Vector};
@@ -96,6 +97,13 @@ impl<const D: usize> Shape<D> {
     #[inline(always)]
     pub(crate) fn field(&self) -> &(dyn Field<D> + 'static) {
         &*self.field
+    }
+
+    /// The shape moved by `pose`, if its node takes the motion into itself; else the
+    /// shape back.
+    pub(crate) fn taking_motion(self, pose: &Pose<D>) -> Result<Self, Self> {
+        let depth = self.depth;
+        self.field.placed(pose).map_err(|field| Self { field, depth })
     }
 
     /// What the distances promise.

@@ -135,7 +135,7 @@ fn every_operator<const D: usize>(
         p.0[1] - p.0[0].scale(20.0).sin().scale(0.01)
     });
     let pair = || [leaf.clone(), other.clone()];
-    let moved = other.stretched([0.8; D])?.translated(Vector::constant(0.25))?;
+    let moved = other.clone().stretched([0.8; D])?.translated(Vector::constant(0.25))?;
     let parts = [
         Shape::intersection([Shape::union(pair())?, wavy])?,
         leaf.clone().difference([moved.clone()])?,
@@ -144,7 +144,7 @@ fn every_operator<const D: usize>(
         Shape::smooth_union([moved.clone(), other.clone()], Smooth::Cubic, 0.05)?,
         leaf.clone().offset(0.1)?.shell(0.05)?,
         moved.elongated([0.3; D])?.offset(0.05)?,
-        other.translated(Vector::constant(0.5))?.mirrored(0)?,
+        other.clone().translated(Vector::constant(0.5))?.mirrored(0)?,
         leaf.scaled(0.5)?,
         crowd(64)?,
     ];
@@ -168,7 +168,7 @@ fn no_operator_allocates() -> Result<(), ShapeError> {
     let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.8, 0.6]))?);
     let solid = Shape::union([
         every_operator::<3>(torus, cube)?,
-        star.extruded(0.4)?.placed(&Pose::new(third, Vector([0.2, 0.1, 0.0])))?,
+        star.clone().extruded(0.4)?.placed(&Pose::new(third, Vector([0.2, 0.1, 0.0])))?,
         star.translated(Vector([2.0, 0.0]))?.revolved()?,
         Shape::from_kernel(Cylinder::new(0.3, 2.0)?),
     ])?;

@@ -257,9 +257,9 @@ fn nesting_beyond_the_limit_is_refused() -> Outcome {
         ("difference", shape.clone().difference([ball()?])),
         ("symmetric difference", Shape::symmetric_difference(both())),
         ("smooth union", Shape::smooth_union(both(), Smooth::Cubic, 0.1)),
-        ("scaled", shape.scaled(2.0)),
-        ("stretched", shape.stretched([1.0, 2.0, 1.0])),
-        ("elongated", shape.elongated([0.1; 3])),
+        ("scaled", shape.clone().scaled(2.0)),
+        ("stretched", shape.clone().stretched([1.0, 2.0, 1.0])),
+        ("elongated", shape.clone().elongated([0.1; 3])),
         ("mirrored", shape.mirrored(0)),
     ] {
         assert!(matches!(result, Err(ShapeError::TooDeep { .. })), "{what}: {result:?}");
@@ -333,7 +333,8 @@ where
             let built = arguments.map(|arguments| entry.build(&arguments));
             let built = built.unwrap_or_else(|| panic!("{} has no example", entry.name));
             let built = built.unwrap_or_else(|error| panic!("{what}: {error}"));
-            let scaled = example.scaled(size).unwrap_or_else(|error| panic!("{what}: {error}"));
+            let scaled =
+                example.clone().scaled(size).unwrap_or_else(|error| panic!("{what}: {error}"));
             for p in extreme_points() {
                 assert_numbers(&built, size, p, &what);
                 assert_numbers(&scaled, size, p, &what);

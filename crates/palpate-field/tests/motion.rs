@@ -93,7 +93,7 @@ fn motions_compose() {
         let tree: Tree<3> = draw::tree(u, 3)?;
         let (a, b): (Pose<3>, Pose<3>) = (draw::pose(u)?, draw::pose(u)?);
         let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
-        let both = shape.placed(&b).and_then(|shape| shape.placed(&a));
+        let both = shape.clone().placed(&b).and_then(|shape| shape.placed(&a));
         let (Ok(both), Ok(once)) = (both, shape.placed(&(a * b))) else {
             return Ok(Err(format!("{tree:?}")));
         };

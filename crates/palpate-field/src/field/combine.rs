@@ -4,8 +4,9 @@
 //! Nodes that fold an operation over their children's answers.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
@@ -226,7 +227,7 @@ pub(super) fn placed_children<const D: usize>(
     if unplaced > 1 {
         return None;
     }
-    children.iter().map(|child| child.placed(pose).ok()).collect()
+    children.iter().map(|child| child.clone().placed(pose).ok()).collect()
 }
 
 impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
@@ -238,11 +239,12 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
         self.children.iter().map(|child| child.field().unplaced()).sum()
     }
 
-    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
-        let children = placed_children(&self.children, pose)?;
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let Some(children) = placed_children(&self.children, pose) else { return Err(self) };
         let depth = Shape::deepest(&children) + 1;
         let promise = self.promise.placed(pose);
         let operation = self.operation.clone();
-        Shape::from_operator(Self { operation, children, promise }, depth).ok()
+        Shape::from_operator(Self { operation, children, promise }, depth)
+            .map_err(|_| self as _)
     }
 }

@@ -3,8 +3,11 @@
 
 //! Fields that are not formulas: closures, and later grids and meshes.
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use std::sync::Arc;
+
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Lane};
+use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Model};
 use crate::vector::{Point, Vector};
@@ -146,5 +149,9 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
 impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
     fn promise(&self) -> &Promise<D> {
         self.0.promise()
+    }
+
+    fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
+        Err(self)
     }
 }

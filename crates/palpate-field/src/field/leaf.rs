@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::kernel::Kernel;
 use crate::machine::{Block, Column, Gradients, Job, Lane, PointJob, run, run_point};
 use crate::pose::Pose;
@@ -198,16 +198,18 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         usize::from(self.placement.is_none())
     }
 
-    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
-        // From the kernel's promise, so that boxes do not grow twice.
-        let (world_from_body, promise) = match &self.placement {
-            None => (*pose, self.promise),
-            Some(placement) => (*pose * placement.world_from_body, self.kernel.promise()),
+    fn placed(mut self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let leaf = Arc::make_mut(&mut self);
+        let (world_from_body, promise) = match &leaf.placement {
+            None => (*pose, leaf.promise.placed(pose)),
+            Some(placement) => {
+                // From the kernel's promise, so that boxes do not grow twice.
+                let moved = *pose * placement.world_from_body;
+                (moved, leaf.kernel.promise().placed(&moved))
+            }
         };
-        Some(Shape::from_node(Arc::new(Self {
-            kernel: self.kernel.clone(),
-            placement: Some(Placement::new(world_from_body)),
-            promise: promise.placed(&world_from_body),
-        })))
+        leaf.placement = Some(Placement::new(world_from_body));
+        leaf.promise = promise;
+        Ok(Shape::from_node(self))
     }
 }

@@ -16,6 +16,7 @@ mod union;
 mod warp;
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
@@ -67,6 +68,9 @@ pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
     );
 }
 
+/// A shape after a motion that its node took into itself, or the node back.
+pub type Moved<const D: usize> = Result<Shape<D>, Arc<dyn Field<D>>>;
+
 /// A signed distance field, as the engine sees it.
 ///
 /// Implemented by the nodes of this crate; what users write is a
@@ -89,10 +93,11 @@ pub trait Field<const D: usize>:
     /// What the values promise.
     fn promise(&self) -> &Promise<D>;
 
-    /// The same shape moved by `pose`, if the node can move itself at no cost.
-    fn placed(&self, _pose: &Pose<D>) -> Option<Shape<D>> {
-        None
-    }
+    /// The same shape moved by `pose`, if the motion can go into the node at no
+    /// cost; else the node back.
+    ///
+    /// A node that nobody else holds may change where it is.
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D>;
 
     /// How many changes of coordinates an evaluation would have more if a motion
     /// went into the node instead of around it.

@@ -4,9 +4,11 @@
 //! Nodes that change their child's answer in place: offset, shell, guard.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
+use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
@@ -108,5 +110,9 @@ where
 impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
+        Err(self)
     }
 }

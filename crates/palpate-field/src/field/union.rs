@@ -6,8 +6,10 @@
 //! A member is skipped only where its value is sure to be larger than the
 //! smallest, rounding included, so skipping changes no bit of the result.
 
+use std::sync::Arc;
+
 use super::combine::{GradientFold, ValueFold, placed_children};
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{BLOCK, Block, Column, Gradients, Job, Lane, run};
 use crate::operator::boolean::Smaller;
 use crate::pose::Pose;
@@ -348,10 +350,11 @@ impl<const D: usize> Field<D> for Union<D> {
         self.members.iter().map(|member| member.field().unplaced()).sum()
     }
 
-    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
-        let members = placed_children(&self.members, pose)?;
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let Some(members) = placed_children(&self.members, pose) else { return Err(self) };
         let depth = Shape::deepest(&members) + 1;
-        Shape::from_operator(Self::new(members, self.promise.placed(pose)), depth).ok()
+        Shape::from_operator(Self::new(members, self.promise.placed(pose)), depth)
+            .map_err(|_| self as _)
     }
 
     fn members(&self) -> Option<&[Shape<D>]> {

@@ -3,7 +3,7 @@
 
 //! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field};
+use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
@@ -11,6 +11,7 @@ use crate::scalar::{Dual, Float, Scalar};
 use crate::shape::Shape;
 use crate::vector::{Vector, unrolled};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A map from the node's `D` coordinates to its child's `E`.
 pub(crate) trait Warp<const D: usize, const E: usize>:
@@ -169,10 +170,11 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
         usize::from(!M::IS_MOTION)
     }
 
-    fn placed(&self, pose: &Pose<D>) -> Option<Shape<D>> {
-        let map = self.map.placed(pose)?;
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let Some(map) = self.map.placed(pose) else { return Err(self) };
         let promise = self.promise.placed(pose);
         let depth = self.child.depth() + 1;
-        Shape::from_operator(Self { map, child: self.child.clone(), promise }, depth).ok()
+        let node = Self { map, child: self.child.clone(), promise };
+        Shape::from_operator(node, depth).map_err(|_| self as _)
     }
 }

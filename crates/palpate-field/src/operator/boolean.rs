@@ -79,16 +79,20 @@ fn common_region<const D: usize>(
 }
 
 /// Bounds that hold both sets; none if one has none.
-pub(crate) fn both_bounds<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Option<Bounds<D>> {
+fn both_bounds<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Option<Bounds<D>> {
     Some(a.bounds?.union(&b.bounds?))
 }
 
 /// Exact outside if both are, a bound inside.
 pub(crate) fn promise_of_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+    Promise { bounds: both_bounds(a, b), ..unbounded_union(a, b) }
+}
+
+/// The same, with bounds left as of `a`.
+fn unbounded_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
     Promise {
         outside: a.outside.and(b.outside),
         inside: a.inside.and(b.inside).bounded(),
-        bounds: both_bounds(a, b),
         above_bounds: a.above_bounds && b.above_bounds,
         has_interior: a.has_interior || b.has_interior,
         ..joined(a, b)
@@ -167,7 +171,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// If there are no shapes, or they are nested too deeply.
     pub fn union(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
-        let mut members = Vec::new();
+        let shapes = shapes.into_iter();
+        let mut members = Vec::with_capacity(shapes.size_hint().0);
         for shape in shapes {
             match shape.field().members() {
                 Some(nested) => members.extend_from_slice(nested),
@@ -178,7 +183,9 @@ impl<const D: usize> Shape<D> {
             return Ok(members.swap_remove(0));
         }
         let promise =
-            fold_promises(&members, promise_of_union).ok_or_else(|| nothing_in("union"))?;
+            fold_promises(&members, unbounded_union).ok_or_else(|| nothing_in("union"))?;
+        let bounds = Bounds::union_of(members.iter().map(|member| member.promise().bounds));
+        let promise = Promise { bounds, ..promise };
         let depth = Self::deepest(&members) + 1;
         Self::from_operator(Union::new(members, promise), depth)
     }

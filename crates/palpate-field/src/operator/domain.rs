@@ -95,7 +95,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// If there is no such axis, or shapes are nested too deeply.
-    pub fn mirrored(&self, axis: usize) -> Result<Self, ShapeError> {
+    pub fn mirrored(self, axis: usize) -> Result<Self, ShapeError> {
         if axis >= D {
             let rule = format!("the number of an axis, less than {D}");
             return Err(ShapeError::number("axis", rule, axis as f64, Unit::One));
@@ -133,7 +133,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// If a length is negative, or shapes are nested too deeply.
-    pub fn elongated(&self, lengths: [f64; D]) -> Result<Self, ShapeError> {
+    pub fn elongated(self, lengths: [f64; D]) -> Result<Self, ShapeError> {
         for length in lengths {
             not_negative("elongate", length, Unit::Metre)?;
         }
@@ -158,12 +158,13 @@ impl<const D: usize> Shape<D> {
             rounding: child.rounding.plus(&own),
             ..*child
         };
-        self.warped(Elongation { half, symmetric: child.symmetric }, promise)
+        let map = Elongation { half, symmetric: child.symmetric };
+        self.warped(map, promise)
     }
 
-    fn warped(&self, map: impl Warp<D, D>, promise: Promise<D>) -> Result<Self, ShapeError> {
+    fn warped(self, map: impl Warp<D, D>, promise: Promise<D>) -> Result<Self, ShapeError> {
         let depth = self.depth() + 1;
-        Self::from_operator(Warped { map, child: self.clone(), promise }, depth)
+        Self::from_operator(Warped { map, child: self, promise }, depth)
     }
 }
 
@@ -186,7 +187,7 @@ impl Shape<2> {
     /// # Errors
     ///
     /// If the height is not positive, or shapes are nested too deeply.
-    pub fn extruded(&self, height: f64) -> Result<Shape<3>, ShapeError> {
+    pub fn extruded(self, height: f64) -> Result<Shape<3>, ShapeError> {
         let half_height = 0.5 * positive("height", height, Unit::Metre)?;
         let child = self.promise();
         let solid = |p: Vector<f64, 2>, y: f64| Vector([p[0], y, p[1]]);
@@ -217,8 +218,9 @@ impl Shape<2> {
             reach: child.reach,
             rounding: child.rounding.times(2.0).plus(&own),
         };
-        let node = Warped { map: Extrusion { half_height }, child: self.clone(), promise };
-        Shape::from_operator(node, self.depth() + 1)
+        let depth = self.depth() + 1;
+        let node = Warped { map: Extrusion { half_height }, child: self, promise };
+        Shape::from_operator(node, depth)
     }
 
     /// The profile turned about the y axis: its x is the distance from the axis.
@@ -230,7 +232,7 @@ impl Shape<2> {
     /// # Errors
     ///
     /// If shapes are nested too deeply.
-    pub fn revolved(&self) -> Result<Shape<3>, ShapeError> {
+    pub fn revolved(self) -> Result<Shape<3>, ShapeError> {
         let child = self.promise();
         let one_side = child.bounds.is_some_and(|b| b.aabb.min[0] >= 0.0);
         // A profile that is its own mirror image turns into itself.
@@ -267,7 +269,7 @@ impl Shape<2> {
             reach: child.reach,
             rounding: child.rounding.plus(&own),
         };
-        let node = Warped { map: Revolution, child: self.clone(), promise };
-        Shape::from_operator(node, self.depth() + 1)
+        let depth = self.depth() + 1;
+        Shape::from_operator(Warped { map: Revolution, child: self, promise }, depth)
     }
 }

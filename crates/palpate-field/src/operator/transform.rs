@@ -100,21 +100,19 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// If a number is not finite, or shapes are nested too deeply.
-    pub fn placed(&self, world_from_body: &Pose<D>) -> Result<Self, ShapeError> {
+    pub fn placed(self, world_from_body: &Pose<D>) -> Result<Self, ShapeError> {
         for x in world_from_body.translation.0 {
             crate::error::finite("translate", x, Unit::Metre)?;
         }
         if *world_from_body == Pose::identity() {
-            return Ok(self.clone());
+            return Ok(self);
         }
-        if let Some(shape) = self.field().placed(world_from_body) {
-            return Ok(shape);
-        }
-        let promise = self.promise().placed(world_from_body);
-        let depth = self.depth() + 1;
-        let map = Placement::new(*world_from_body);
-        let node = Warped { map, child: self.clone(), promise };
-        Self::from_operator(node, depth)
+        self.taking_motion(world_from_body).or_else(|child| {
+            let promise = child.promise().placed(world_from_body);
+            let depth = child.depth() + 1;
+            let map = Placement::new(*world_from_body);
+            Self::from_operator(Warped { map, child, promise }, depth)
+        })
     }
 
     /// The shape moved by `offset` [m].
@@ -122,7 +120,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// As [`placed`](Self::placed).
-    pub fn translated(&self, offset: Vector<f64, D>) -> Result<Self, ShapeError> {
+    pub fn translated(self, offset: Vector<f64, D>) -> Result<Self, ShapeError> {
         self.placed(&Pose::translation(offset))
     }
 
@@ -131,7 +129,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// As [`placed`](Self::placed).
-    pub fn rotated(&self, rotation: Rotation<D>) -> Result<Self, ShapeError> {
+    pub fn rotated(self, rotation: Rotation<D>) -> Result<Self, ShapeError> {
         self.placed(&Pose::rotation(rotation))
     }
 
@@ -141,24 +139,24 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// If the factor is not positive, or shapes are nested too deeply.
-    pub fn scaled(&self, factor: f64) -> Result<Self, ShapeError> {
+    pub fn scaled(self, factor: f64) -> Result<Self, ShapeError> {
         let factor = check_factor(factor)?;
-        let promise = self.promise();
-        let size = promise.bounds.map_or(0.0, |b| b.radius_about_origin()) * factor;
-        let own = Rounding::of_operations(2.0 * promise.lipschitz.max(1.0), size);
+        let child = self.promise();
+        let size = child.bounds.map_or(0.0, |b| b.radius_about_origin()) * factor;
+        let own = Rounding::of_operations(2.0 * child.lipschitz.max(1.0), size);
         let promise = Promise {
-            bounds: promise.bounds.map(|b| b.scaled([factor; D])),
-            region: promise.region.map(|ball| crate::bounds::BoundingBall {
+            bounds: child.bounds.map(|b| b.scaled([factor; D])),
+            region: child.region.map(|ball| crate::bounds::BoundingBall {
                 centre: ball.centre * factor,
                 radius: ball.radius * factor,
             }),
-            reach: promise.reach * factor,
-            rounding: promise.rounding.at(1.0 / factor, 0.0).times(factor).plus(&own),
-            ..*promise
+            reach: child.reach * factor,
+            rounding: child.rounding.at(1.0 / factor, 0.0).times(factor).plus(&own),
+            ..*child
         };
         let depth = self.depth() + 1;
         let map = UniformScale { factor, inverse: 1.0 / factor };
-        let node = Warped { map, child: self.clone(), promise };
+        let node = Warped { map, child: self, promise };
         Self::from_operator(node, depth)?.in_range(factor)
     }
 
@@ -169,7 +167,7 @@ impl<const D: usize> Shape<D> {
     /// # Errors
     ///
     /// If a factor is not positive, or shapes are nested too deeply.
-    pub fn stretched(&self, factors: [f64; D]) -> Result<Self, ShapeError> {
+    pub fn stretched(self, factors: [f64; D]) -> Result<Self, ShapeError> {
         for factor in factors {
             check_factor(factor)?;
         }
@@ -192,7 +190,7 @@ impl<const D: usize> Shape<D> {
         };
         let depth = self.depth() + 1;
         let map = AxisScale { inverse: factors.map(|f| 1.0 / f), smallest };
-        let node = Warped { map, child: self.clone(), promise };
+        let node = Warped { map, child: self, promise };
         Self::from_operator(node, depth)?.in_range(smallest)
     }
 

@@ -96,6 +96,7 @@ where
                 Some(pose) => {
                     let pose = pose.built().map_err(|problem| problem.under("pose"))?;
                     let shape = shape_in_body
+                        .clone()
                         .placed(&pose)
                         .map_err(|error| Problem::new(error.to_string()))?;
                     (pose, shape)

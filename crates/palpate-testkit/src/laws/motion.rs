@@ -20,7 +20,7 @@ pub fn motion_keeps_distances<const D: usize>(
     pose: &Pose<D>,
     p: Point<D>,
 ) -> Result<(), String> {
-    let moved = shape.placed(pose).map_err(|error| error.to_string())?;
+    let moved = shape.clone().placed(pose).map_err(|error| error.to_string())?;
     let q = pose.transform_point(p);
     let turn = |g| pose.transform_vector(g);
     corresponds("moved", shape, p, (&moved, q, 1.0), turn)
@@ -38,7 +38,7 @@ pub fn scale_scales_distances<const D: usize>(
     factor: f64,
     p: Point<D>,
 ) -> Result<(), String> {
-    match shape.scaled(factor) {
+    match shape.clone().scaled(factor) {
         Ok(scaled) => {
             corresponds("scaled", shape, p, (&scaled, p * factor, factor), |gradient| gradient)
         }
