@@ -129,11 +129,11 @@ impl Scalar for Expression {
     }
 
     /// The fill in fidget's operations: both profiles are powers of `x`.
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let zero = Self::constant(0.0);
-        let x = (Self::constant(1.0) - (self - other).abs().scale(1.0 / reach)).max(zero);
+        let x = (Self::constant(1.0) - (self - other).abs().scale(1.0 / unit)).max(zero);
         let square = x.squared();
         let fill = if B::NAME == "cubic" { square * x } else { square };
-        self.min(other) - fill.scale(B::fill(1.0_f64) * reach)
+        self.min(other) - fill.scale(B::fill(0.0_f64) * unit)
     }
 }

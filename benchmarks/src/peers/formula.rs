@@ -149,13 +149,14 @@ where
         }
         Form::SmoothUnion { of, width, profile } => match profile {
             Some(Profile::Cubic) => {
-                let reach = width * Cubic::REACH_OVER_WIDTH;
-                fold(of, &|a, b| a.smooth_min::<Cubic>(b, reach))
+                let unit = width * Cubic::UNIT_OVER_WIDTH;
+                fold(of, &|a, b| a.smooth_min::<Cubic>(b, unit))
             }
-            _ => {
-                let reach = width * Quadratic::REACH_OVER_WIDTH;
-                fold(of, &|a, b| a.smooth_min::<Quadratic>(b, reach))
+            Some(Profile::Quadratic) | None => {
+                let unit = width * Quadratic::UNIT_OVER_WIDTH;
+                fold(of, &|a, b| a.smooth_min::<Quadratic>(b, unit))
             }
+            Some(_) => Err("a profile that is not recorded".into()),
         },
         Form::Placed { translate, rotation, of } => {
             let pose = Dimensions::pose(translate.as_deref(), rotation.as_ref())?;

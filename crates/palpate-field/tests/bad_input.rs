@@ -208,7 +208,7 @@ fn bad_arguments_of_every_operator_are_refused() -> Outcome {
         assert!(ball()?.shell(x).is_err(), "shell {x}");
         assert!(ball()?.scaled(x).is_err(), "scaled {x}");
         assert!(flat.extruded(x).is_err(), "extruded {x}");
-        for smooth in [Smooth::Quadratic, Smooth::Cubic] {
+        for smooth in [Smooth::Quadratic, Smooth::Root, Smooth::CircularGeometrical] {
             assert!(Shape::smooth_union(pair()?, smooth, x).is_err(), "smooth union {x}");
         }
         for axis in 0..3 {

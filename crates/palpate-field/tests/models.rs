@@ -9,7 +9,9 @@
 //! tolerance but for the rounding of twice the precision.
 
 use arbitrary::{Result, Unstructured};
-use palpate_field::scalar::{Cubic, Model, Quadratic, Scalar};
+use palpate_field::scalar::{
+    Circular, Cubic, Exponential, Model, Quadratic, Quartic, Root, Scalar,
+};
 use palpate_testkit::arbitrary as draw;
 use palpate_testkit::cases;
 use palpate_testkit::double::Double;
@@ -205,6 +207,11 @@ operations! {
     orthant_of_three: three, |x| Scalar::orthant(x);
     smooth_min_quadratic: in_reach, |x| x[0].smooth_min::<Quadratic>(x[1], 0.3);
     smooth_min_cubic: in_reach, |x| x[0].smooth_min::<Cubic>(x[1], 0.3);
+    smooth_min_quartic: in_reach, |x| x[0].smooth_min::<Quartic>(x[1], 0.3);
+    smooth_min_circular: in_reach, |x| x[0].smooth_min::<Circular>(x[1], 0.3);
+    smooth_min_root: in_reach, |x| x[0].smooth_min::<Root>(x[1], 0.1);
+    smooth_min_exponential: in_reach, |x| x[0].smooth_min::<Exponential>(x[1], 0.1);
+    smooth_max_cubic: in_reach, |x| x[0].smooth_max::<Cubic>(x[1], 0.3);
     scale_up: one, |x| x[0].scale(1.0 / 3.0e-5);
     scale_down: one, |x| x[0].scale(-0.1);
     scale_to_nothing: one, |x| x[0].scale(0.0);

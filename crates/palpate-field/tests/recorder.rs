@@ -13,7 +13,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use palpate_field::field::Placement;
 use palpate_field::kernel::{Ball, CappedCone, Cuboid, Kernel, Primitive, RegularStar, Torus};
-use palpate_field::scalar::{Blend, Cubic, Quadratic, Scalar};
+use palpate_field::scalar::{
+    Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar,
+};
 use palpate_field::{Point, Pose, Rotation, ShapeError, Vector};
 use palpate_testkit::kernels::{Dimension, Space, Visit};
 use palpate_testkit::{arbitrary as draw, cases};
@@ -154,8 +156,8 @@ impl Scalar for Recorded {
         Self::new(Operation::Orthant, q)
     }
 
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
-        Self::new(Operation::SmoothMin(B::NAME, reach), [self, other])
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
+        Self::new(Operation::SmoothMin(B::NAME, unit), [self, other])
     }
 }
 
@@ -227,8 +229,8 @@ impl Formula {
             Operation::Cos => call("cos"),
             Operation::Norm => call("norm"),
             Operation::Orthant => call("orthant"),
-            Operation::SmoothMin(profile, reach) => {
-                call(&format!("smooth_min<{profile}, {reach:?}>"))
+            Operation::SmoothMin(profile, unit) => {
+                call(&format!("smooth_min<{profile}, {unit:?}>"))
             }
         }
     }
@@ -264,13 +266,23 @@ impl Formula {
                     [a, b, c] => f64::orthant([a, b, c]),
                     _ => panic!("the orthant of {} numbers", x.len()),
                 },
-                Operation::SmoothMin(Quadratic::NAME, reach) => {
-                    x[0].smooth_min::<Quadratic>(x[1], reach)
-                }
-                Operation::SmoothMin(_, reach) => x[0].smooth_min::<Cubic>(x[1], reach),
+                Operation::SmoothMin(profile, unit) => smooth_min(profile, x[0], x[1], unit),
             });
         }
         values[self.result]
+    }
+}
+
+/// The smooth minimum by the name of its profile.
+fn smooth_min(profile: &str, a: f64, b: f64, unit: f64) -> f64 {
+    match profile {
+        Quadratic::NAME => a.smooth_min::<Quadratic>(b, unit),
+        Cubic::NAME => a.smooth_min::<Cubic>(b, unit),
+        Quartic::NAME => a.smooth_min::<Quartic>(b, unit),
+        Circular::NAME => a.smooth_min::<Circular>(b, unit),
+        Root::NAME => a.smooth_min::<Root>(b, unit),
+        Exponential::NAME => a.smooth_min::<Exponential>(b, unit),
+        _ => panic!("no profile {profile}"),
     }
 }
 

@@ -9,10 +9,11 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
+use palpate_field::operator::Smooth;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
-use crate::tree::{Profile, Solid, Sweep, Tree};
+use crate::tree::{Boolean, Solid, Sweep, Tree};
 
 /// How often arguments are drawn again when they break a rule.
 const ATTEMPTS: usize = 32;
@@ -225,6 +226,19 @@ where
         .collect()
 }
 
+/// A profile of smooth booleans.
+fn profile(u: &mut Unstructured<'_>) -> Result<Smooth> {
+    Ok(*u.choose(&[
+        Smooth::Quadratic,
+        Smooth::Cubic,
+        Smooth::Quartic,
+        Smooth::Circular,
+        Smooth::Root,
+        Smooth::Exponential,
+        Smooth::CircularGeometrical,
+    ])?)
+}
+
 fn operator<const D: usize>(u: &mut Unstructured<'_>, depth: usize) -> Result<Tree<D>>
 where
     Space: Solid<D> + Turn<D>,
@@ -236,8 +250,15 @@ where
         2 => Tree::Intersection(several(u, depth, 3)?),
         3 => Tree::Difference(child(u)?, several(u, depth.min(2), 2)?),
         4 => Tree::SymmetricDifference(several(u, depth, 3)?),
-        5 => Tree::SmoothUnion(several(u, depth, 3)?, Profile::Quadratic, 0.3 * length(u)?),
-        6 => Tree::SmoothUnion(several(u, depth, 3)?, Profile::Cubic, 0.3 * length(u)?),
+        5 => {
+            let shapes = several(u, depth, 3)?;
+            Tree::Smooth(Boolean::Union, shapes, profile(u)?, 0.3 * length(u)?)
+        }
+        6 => {
+            let boolean = *u.choose(&[Boolean::Intersection, Boolean::Difference])?;
+            let shapes = several(u, depth, 3)?;
+            Tree::Smooth(boolean, shapes, profile(u)?, 0.3 * length(u)?)
+        }
         7 => {
             let sign = if u.arbitrary()? { 1.0 } else { -0.2 };
             Tree::Offset(child(u)?, sign * length(u)?)

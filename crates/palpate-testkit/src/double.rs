@@ -183,11 +183,9 @@ impl Scalar for Double {
         Self::norm(q.map(|q| Scalar::max(q, zero))) + Scalar::min(largest, zero)
     }
 
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
-        let k = Self::constant(reach);
-        let zero = Self::default();
-        let x = Scalar::max(Self::constant(1.0) - Scalar::abs(self - other) / k, zero);
-        Scalar::min(self, other) - B::fill(x) * k
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
+        let k = Self::constant(unit);
+        Scalar::min(self, other) - B::fill(Scalar::abs(self - other) / k) * k
     }
 }
 

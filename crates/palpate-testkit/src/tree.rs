@@ -9,7 +9,7 @@
 
 use palpate_field::kernel::{Argument, Primitive};
 use palpate_field::operator::Smooth;
-use palpate_field::scalar::{Cubic, Quadratic, Scalar};
+use palpate_field::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
 use palpate_field::{Pose, Shape, ShapeError, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space, Visit};
@@ -36,8 +36,8 @@ pub enum Tree<const D: usize> {
     Difference(Box<Self>, Vec<Self>),
     /// What is in an odd number.
     SymmetricDifference(Vec<Self>),
-    /// A union with its creases filled over a width [m].
-    SmoothUnion(Vec<Self>, Profile, f64),
+    /// A boolean with its creases filled or cut off by a width [m].
+    Smooth(Boolean, Vec<Self>, Smooth, f64),
     /// Grown by a distance [m].
     Offset(Box<Self>, f64),
     /// A shell of a thickness [m].
@@ -56,13 +56,15 @@ pub enum Tree<const D: usize> {
     Solid(Box<Tree<2>>, Sweep),
 }
 
-/// The profile of a smooth union, as plain data.
+/// Which smooth boolean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Profile {
-    /// [`Quadratic`].
-    Quadratic,
-    /// [`Cubic`].
-    Cubic,
+pub enum Boolean {
+    /// What is in any.
+    Union,
+    /// What is in all.
+    Intersection,
+    /// The first without the others.
+    Difference,
 }
 
 /// How a profile becomes a solid.
@@ -155,12 +157,18 @@ where
             Self::Intersection(trees) => Shape::intersection(all(trees)?),
             Self::Difference(first, others) => first.shape()?.difference(all(others)?),
             Self::SymmetricDifference(trees) => Shape::symmetric_difference(all(trees)?),
-            Self::SmoothUnion(trees, profile, width) => {
-                let profile = match profile {
-                    Profile::Quadratic => Smooth::Quadratic,
-                    Profile::Cubic => Smooth::Cubic,
-                };
-                Shape::smooth_union(all(trees)?, profile, *width)
+            Self::Smooth(boolean, trees, profile, width) => {
+                let mut shapes = all(trees)?;
+                match boolean {
+                    Boolean::Union => Shape::smooth_union(shapes, *profile, *width),
+                    Boolean::Intersection => {
+                        Shape::smooth_intersection(shapes, *profile, *width)
+                    }
+                    Boolean::Difference => {
+                        let first = shapes.remove(0);
+                        first.smooth_difference(shapes, *profile, *width)
+                    }
+                }
             }
             Self::Offset(tree, distance) => tree.shape()?.offset(*distance),
             Self::Shell(tree, thickness) => tree.shape()?.shell(*thickness),
@@ -182,7 +190,7 @@ where
             Self::Union(trees)
             | Self::Intersection(trees)
             | Self::SymmetricDifference(trees)
-            | Self::SmoothUnion(trees, ..) => deepest(trees),
+            | Self::Smooth(_, trees, ..) => deepest(trees),
             Self::Difference(first, others) => first.depth().max(deepest(others)),
             Self::Offset(tree, _)
             | Self::Shell(tree, _)
@@ -215,14 +223,17 @@ where
                 if others.is_empty() { first } else { first.max(-fold(others, p, S::min)) }
             }
             Self::SymmetricDifference(trees) => fold(trees, p, |a, b| a.min(b).max(-a.max(b))),
-            Self::SmoothUnion(trees, profile, width) => {
-                let blend = |a: S, b: S| match profile {
-                    Profile::Quadratic => a.smooth_min::<Quadratic>(b, 4.0 * width),
-                    Profile::Cubic => a.smooth_min::<Cubic>(b, 6.0 * width),
-                };
-                let mut values = trees.iter().map(|tree| tree.guarded(p));
+            Self::Smooth(boolean, trees, profile, width) => {
+                let mut values = trees.iter().map(|tree| match boolean {
+                    Boolean::Union => tree.guarded(p),
+                    Boolean::Intersection | Boolean::Difference => tree.distance(p),
+                });
                 let first = values.next().unwrap_or_else(|| panic!("{self:?} is empty"));
-                values.fold(first, blend)
+                values.fold(first, |a, b| match boolean {
+                    Boolean::Union => smooth_min(*profile, a, b, *width),
+                    Boolean::Intersection => -smooth_min(*profile, -a, -b, *width),
+                    Boolean::Difference => -smooth_min(*profile, -a, b, *width),
+                })
             }
             Self::Offset(tree, distance) => {
                 let child = if *distance > 0.0 { tree.guarded(p) } else { tree.distance(p) };
@@ -269,6 +280,25 @@ where
         }
     }
 }
+
+/// The smooth minimum of a profile by its width.
+fn smooth_min<S: Scalar>(profile: Smooth, a: S, b: S, width: f64) -> S {
+    match profile {
+        Smooth::Quadratic => a.smooth_min::<Quadratic>(b, 4.0 * width),
+        Smooth::Cubic => a.smooth_min::<Cubic>(b, 6.0 * width),
+        Smooth::Quartic => a.smooth_min::<Quartic>(b, 16.0 / 3.0 * width),
+        Smooth::Circular => a.smooth_min::<Circular>(b, CIRCLE * width),
+        Smooth::Root => a.smooth_min::<Root>(b, 2.0 * width),
+        Smooth::Exponential => a.smooth_min::<Exponential>(b, width),
+        Smooth::CircularGeometrical => {
+            let (zero, radius) = (S::constant(0.0), S::constant(CIRCLE * width));
+            radius.max(a.min(b)) - S::norm([(radius - a).max(zero), (radius - b).max(zero)])
+        }
+    }
+}
+
+/// The radius of a fillet over how far it fills the corner of a right angle.
+const CIRCLE: f64 = 2.0 + std::f64::consts::SQRT_2;
 
 fn fold<S: Scalar, const D: usize>(
     trees: &[Tree<D>],

@@ -101,7 +101,10 @@ fn unbounded_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D>
 
 /// A bound outside, exact inside if both are. The value is at least that of
 /// either side, so the bounds of either serve: the smaller.
-fn promise_of_intersection<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+pub(crate) fn promise_of_intersection<const D: usize>(
+    a: &Promise<D>,
+    b: &Promise<D>,
+) -> Promise<D> {
     let radius = |p: &Promise<D>| p.bounds.map_or(f64::INFINITY, |bounds| bounds.ball.radius);
     let tighter = if radius(b) < radius(a) { b } else { a };
     Promise {
@@ -116,7 +119,10 @@ fn promise_of_intersection<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Pr
 }
 
 /// The dual: inside is exact if `a` is exact inside and `b` outside.
-fn promise_of_difference<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
+pub(crate) fn promise_of_difference<const D: usize>(
+    a: &Promise<D>,
+    b: &Promise<D>,
+) -> Promise<D> {
     Promise {
         outside: a.outside.and(b.inside).bounded(),
         inside: a.inside.and(b.outside),

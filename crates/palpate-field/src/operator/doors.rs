@@ -14,11 +14,11 @@ use std::sync::Arc;
 use super::boolean::{InOne, Larger, Without};
 use super::domain::{Elongation, Extrusion, Mirror, Revolution};
 use super::guard::Guard;
-use super::smooth::SmoothMin;
+use super::smooth::{Fillet, Round, SmoothMax, SmoothMin};
 use super::surface::{Offset, Shell};
 use super::transform::{AxisScale, UniformScale};
 use crate::field::{Combined, Field, Placement, Remapped, Union, Warped};
-use crate::scalar::{Cubic, Quadratic};
+use crate::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 
 /// `node` as a field.
 ///
@@ -65,6 +65,18 @@ doors! {
     Combined<InOne, 2>,
     Combined<SmoothMin<Quadratic>, 2>,
     Combined<SmoothMin<Cubic>, 2>,
+    Combined<SmoothMin<Quartic>, 2>,
+    Combined<SmoothMin<Circular>, 2>,
+    Combined<SmoothMin<Root>, 2>,
+    Combined<SmoothMin<Exponential>, 2>,
+    Combined<SmoothMax<Quadratic>, 2>,
+    Combined<SmoothMax<Cubic>, 2>,
+    Combined<SmoothMax<Quartic>, 2>,
+    Combined<SmoothMax<Circular>, 2>,
+    Combined<SmoothMax<Root>, 2>,
+    Combined<SmoothMax<Exponential>, 2>,
+    Combined<Fillet, 2>,
+    Combined<Round, 2>,
     Remapped<Guard<2>, 2>,
     Remapped<Offset, 2>,
     Remapped<Shell, 2>,
@@ -83,6 +95,18 @@ doors! {
     Combined<InOne, 3>,
     Combined<SmoothMin<Quadratic>, 3>,
     Combined<SmoothMin<Cubic>, 3>,
+    Combined<SmoothMin<Quartic>, 3>,
+    Combined<SmoothMin<Circular>, 3>,
+    Combined<SmoothMin<Root>, 3>,
+    Combined<SmoothMin<Exponential>, 3>,
+    Combined<SmoothMax<Quadratic>, 3>,
+    Combined<SmoothMax<Cubic>, 3>,
+    Combined<SmoothMax<Quartic>, 3>,
+    Combined<SmoothMax<Circular>, 3>,
+    Combined<SmoothMax<Root>, 3>,
+    Combined<SmoothMax<Exponential>, 3>,
+    Combined<Fillet, 3>,
+    Combined<Round, 3>,
     Remapped<Guard<3>, 3>,
     Remapped<Offset, 3>,
     Remapped<Shell, 3>,

@@ -223,14 +223,13 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
     }
 
     #[inline(always)]
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
-        let (zero, one) = (T::constant(0.0), T::constant(1.0));
-        let x = (one - (self.value - other.value).abs().scale(1.0 / reach)).max(zero);
-        let larger = B::weight(x);
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
+        let one = T::constant(1.0);
+        let larger = B::weight((self.value - other.value).abs().scale(1.0 / unit));
         let weight = T::select_less(other.value, self.value, larger, one - larger);
         let rest = one - weight;
         Self {
-            value: self.value.smooth_min::<B>(other.value, reach),
+            value: self.value.smooth_min::<B>(other.value, unit),
             gradient: array!(k < D => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),

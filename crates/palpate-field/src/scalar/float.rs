@@ -123,9 +123,9 @@ macro_rules! float {
             }
 
             #[inline(always)]
-            fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
-                let x = Scalar::max(1.0 - (self - other).abs() * (1.0 / reach) as $t, 0.0);
-                Scalar::min(self, other) - B::fill(x) * reach as $t
+            fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
+                let t = (self - other).abs() * (1.0 / unit) as $t;
+                Scalar::min(self, other) - B::fill(t) * unit as $t
             }
         }
     };

@@ -15,13 +15,14 @@
 
 mod blend;
 mod dual;
+mod exponential;
 mod float;
 mod model;
 mod trigonometry;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-pub use blend::{Blend, Cubic, Quadratic};
+pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use float::Float;
 pub use model::Model;
@@ -109,9 +110,16 @@ pub trait Scalar:
     /// Every box, cylinder and extrusion ends in this form.
     fn orthant<const N: usize>(q: [Self; N]) -> Self;
 
-    /// The smaller of the two, the crease between them filled by `B` where they
-    /// differ by less than `reach` [m].
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self;
+    /// The smaller of the two, the crease between them filled by `B`, whose length
+    /// unit is `unit` [m].
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self;
+
+    /// The larger of the two, the crease between them cut off by `B`:
+    /// `−smooth_min(−self, −other)`.
+    #[inline(always)]
+    fn smooth_max<B: Blend>(self, other: Self, unit: f64) -> Self {
+        -(-self).smooth_min::<B>(-other, unit)
+    }
 
     /// `self` limited to `[low, high]`, for `low ≤ high`.
     #[inline(always)]

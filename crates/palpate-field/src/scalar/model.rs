@@ -516,27 +516,29 @@ impl Scalar for Model {
     /// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
     /// second derivative of the fill over the range of `a − b`.
     #[inline(always)]
-    fn smooth_min<B: Blend>(self, other: Self, reach: f64) -> Self {
+    fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let apart = f64::abs(self.value - other.value);
-        let x = (1.0 - apart / reach).max_of(0.0);
-        let larger = B::weight(x);
+        let t = apart / unit;
+        let larger = B::weight(t);
         let weight = choose(other.value < self.value, larger, 1.0 - larger);
         let rest = 1.0 - weight;
         let spread = (self.slope_between(&other)
             + (self.lower + other.upper).max_of(self.upper + other.lower))
             * INFLATE;
-        let widest = Scalar::min(x + spread / reach, 1.0);
-        let curved = 0.5 * B::curvature(widest) / reach * spread * spread * INFLATE;
-        let below = choose(apart - spread > reach, 0.0, curved);
+        let nearest = ((apart - spread) / unit * (1.0 - 4.0 * UNIT)).max_of(0.0);
+        let below = 0.5 * B::curvature(nearest) / unit * spread * spread * INFLATE;
         Self {
-            value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, reach),
+            value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, unit),
             gradient: array!(k < 3 => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),
             lower: weight * self.lower + rest * other.lower + below,
             upper: weight * self.upper + rest * other.upper,
         }
-        // The operands and the fill may cancel in the value.
-        .rounded(8.0, spread + f64::abs(self.value) + f64::abs(other.value) + x * reach)
+        // The operands and the fill, whose argument is rounded, may cancel in the value.
+        .rounded(
+            8.0,
+            spread + f64::abs(self.value) + f64::abs(other.value) + 2.0 * larger * unit,
+        )
     }
 }
