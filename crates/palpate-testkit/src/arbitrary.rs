@@ -244,7 +244,7 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let child = |u: &mut Unstructured<'_>| tree(u, depth).map(Box::new);
-    Ok(match u.int_in_range(0..=14_u8)? {
+    Ok(match u.int_in_range(0..=18_u8)? {
         0 => Tree::Union(several(u, depth, 9)?),
         1 => Tree::Union(several(u, depth, 3)?),
         2 => Tree::Intersection(several(u, depth, 3)?),
@@ -284,6 +284,10 @@ where
             Some(solid) => solid,
             None => Tree::Placed(child(u)?, pose(u)?),
         },
+        14 => Tree::Bent(child(u)?, within(u, -3.0, 3.0)?),
+        15 => Tree::Twisted(child(u)?, within(u, -3.0, 3.0)?),
+        16 => Tree::Displaced(child(u)?, child(u)?, 0.3 * length(u)?),
+        17 => Tree::Morphed(child(u)?, child(u)?, unit(u)?),
         _ => Tree::Placed(child(u)?, pose(u)?),
     })
 }

@@ -46,6 +46,14 @@ pub enum Tree<const D: usize> {
     Elongated(Box<Self>, [f64; D]),
     /// Mirrored along an axis.
     Mirrored(Box<Self>, usize),
+    /// Bent by a rate [rad/m].
+    Bent(Box<Self>, f64),
+    /// In space: twisted by a rate [rad/m].
+    Twisted(Box<Self>, f64),
+    /// Displaced by another field, by at most a height [m].
+    Displaced(Box<Self>, Box<Self>, f64),
+    /// Part of the way to another shape.
+    Morphed(Box<Self>, Box<Self>, f64),
     /// Moved.
     Placed(Box<Self>, Pose<D>),
     /// Scaled by one factor.
@@ -85,6 +93,13 @@ pub trait Solid<const D: usize>: Dimension<D> {
     /// As the operator.
     fn solid(profile: &Tree<2>, sweep: Sweep) -> Result<Shape<D>, ShapeError>;
 
+    /// Twists a shape.
+    ///
+    /// # Errors
+    ///
+    /// As the operator.
+    fn twisted(shape: Shape<D>, rate: f64) -> Result<Shape<D>, ShapeError>;
+
     /// The formula of a solid.
     fn solid_distance<S: Scalar>(profile: &Tree<2>, sweep: Sweep, p: Vector<S, D>) -> S;
 }
@@ -92,6 +107,10 @@ pub trait Solid<const D: usize>: Dimension<D> {
 impl Solid<2> for Space {
     fn solid(_: &Tree<2>, _: Sweep) -> Result<Shape<2>, ShapeError> {
         Err(ShapeError::Unsuitable { operator: "solid", needs: "space".into() })
+    }
+
+    fn twisted(_: Shape<2>, _: f64) -> Result<Shape<2>, ShapeError> {
+        Err(ShapeError::Unsuitable { operator: "twist", needs: "space".into() })
     }
 
     fn solid_distance<S: Scalar>(_: &Tree<2>, _: Sweep, _: Vector<S, 2>) -> S {
@@ -106,6 +125,10 @@ impl Solid<3> for Space {
             Sweep::Extruded(height) => profile.extruded(height),
             Sweep::Revolved => profile.revolved(),
         }
+    }
+
+    fn twisted(shape: Shape<3>, rate: f64) -> Result<Shape<3>, ShapeError> {
+        shape.twisted(rate)
     }
 
     fn solid_distance<S: Scalar>(profile: &Tree<2>, sweep: Sweep, p: Vector<S, 3>) -> S {
@@ -174,6 +197,12 @@ where
             Self::Shell(tree, thickness) => tree.shape()?.shell(*thickness),
             Self::Elongated(tree, lengths) => tree.shape()?.elongated(*lengths),
             Self::Mirrored(tree, axis) => tree.shape()?.mirrored(*axis),
+            Self::Bent(tree, rate) => tree.shape()?.bent(*rate),
+            Self::Twisted(tree, rate) => Space::twisted(tree.shape()?, *rate),
+            Self::Displaced(tree, by, height) => tree.shape()?.displaced(by.shape()?, *height),
+            Self::Morphed(tree, into, progress) => {
+                tree.shape()?.morphed(into.shape()?, *progress)
+            }
             Self::Placed(tree, pose) => tree.shape()?.placed(pose),
             Self::Scaled(tree, factor) => tree.shape()?.scaled(*factor),
             Self::Stretched(tree, factors) => tree.shape()?.stretched(*factors),
@@ -196,9 +225,12 @@ where
             | Self::Shell(tree, _)
             | Self::Elongated(tree, _)
             | Self::Mirrored(tree, _)
+            | Self::Bent(tree, _)
+            | Self::Twisted(tree, _)
             | Self::Placed(tree, _)
             | Self::Scaled(tree, _)
             | Self::Stretched(tree, _) => tree.depth(),
+            Self::Displaced(a, b, _) | Self::Morphed(a, b, _) => a.depth().max(b.depth()),
             Self::Solid(profile, _) => profile.depth(),
         }
     }
@@ -247,6 +279,14 @@ where
                 let mut q = p;
                 q[*axis] = q[*axis].abs();
                 tree.distance(q)
+            }
+            Self::Bent(tree, rate) => turned(tree, *rate, [0, 1], 0, p),
+            Self::Twisted(tree, rate) => turned(tree, *rate, [2, 0], 1, p),
+            Self::Displaced(tree, by, height) => {
+                tree.guarded(p) - by.distance(p).clamp(-height, *height)
+            }
+            Self::Morphed(tree, into, progress) => {
+                tree.distance(p).scale(1.0 - progress) + into.distance(p).scale(*progress)
             }
             Self::Placed(tree, pose) => placed(tree, pose, p),
             Self::Scaled(tree, factor) => {
@@ -310,6 +350,34 @@ where
 {
     let values = trees.iter().map(|tree| tree.distance(p));
     values.reduce(operation).unwrap_or_else(|| panic!("an operator over nothing"))
+}
+
+/// The field turned in a plane by a rate along an axis: asked in the box that it
+/// sweeps, with the distance to the box added.
+fn turned<S: Scalar, const D: usize>(
+    tree: &Tree<D>,
+    rate: f64,
+    [u, v]: [usize; 2],
+    along: usize,
+    p: Vector<S, D>,
+) -> S
+where
+    Space: Solid<D>,
+{
+    let shape = tree.shape().unwrap_or_else(|error| panic!("{tree:?}: {error}"));
+    let mut room = shape.promise().bounds.unwrap_or_else(|| panic!("no bounds")).aabb;
+    let farthest = |i: usize| f64::max(room.min[i].abs(), room.max[i].abs());
+    let radius = farthest(u).hypot(farthest(v)) * (1.0 + 4.0 * f64::EPSILON);
+    for i in [u, v] {
+        (room.min[i], room.max[i]) = (-radius, radius);
+    }
+    let inside = Vector(std::array::from_fn(|i| p.0[i].clamp(room.min[i], room.max[i])));
+    let outside = S::norm(std::array::from_fn::<S, D, _>(|i| p.0[i] - inside.0[i]));
+    let angle = inside.0[along].scale(-rate);
+    let mut q = inside;
+    q.0[u] = angle.cos() * inside.0[u] - angle.sin() * inside.0[v];
+    q.0[v] = angle.sin() * inside.0[u] + angle.cos() * inside.0[v];
+    tree.distance(q) + outside
 }
 
 /// `f(Rᵀ(p − t))`; motions of a moved leaf are one motion, composed in doubles.

@@ -12,8 +12,10 @@ use std::any::Any;
 use std::sync::Arc;
 
 use super::boolean::{InOne, Larger, Without};
+use super::distortion::{Bend, Twist};
 use super::domain::{Elongation, Extrusion, Mirror, Revolution};
 use super::guard::Guard;
+use super::mixture::{Displacement, Morph};
 use super::smooth::{Fillet, Round, SmoothMax, SmoothMin};
 use super::surface::{Offset, Shell};
 use super::transform::{AxisScale, UniformScale};
@@ -77,6 +79,8 @@ doors! {
     Combined<SmoothMax<Exponential>, 2>,
     Combined<Fillet, 2>,
     Combined<Round, 2>,
+    Combined<Displacement, 2>,
+    Combined<Morph, 2>,
     Remapped<Guard<2>, 2>,
     Remapped<Offset, 2>,
     Remapped<Shell, 2>,
@@ -84,6 +88,7 @@ doors! {
     Warped<UniformScale, 2, 2>,
     Warped<AxisScale<2>, 2, 2>,
     Warped<Mirror, 2, 2>,
+    Warped<Bend<2>, 2, 2>,
     Warped<Elongation<2>, 2, 2>,
 }
 
@@ -107,6 +112,8 @@ doors! {
     Combined<SmoothMax<Exponential>, 3>,
     Combined<Fillet, 3>,
     Combined<Round, 3>,
+    Combined<Displacement, 3>,
+    Combined<Morph, 3>,
     Remapped<Guard<3>, 3>,
     Remapped<Offset, 3>,
     Remapped<Shell, 3>,
@@ -114,7 +121,9 @@ doors! {
     Warped<UniformScale, 3, 3>,
     Warped<AxisScale<3>, 3, 3>,
     Warped<Mirror, 3, 3>,
+    Warped<Bend<3>, 3, 3>,
     Warped<Elongation<3>, 3, 3>,
+    Warped<Twist, 3, 3>,
     Warped<Extrusion, 3, 2>,
     Warped<Revolution, 3, 2>,
 }

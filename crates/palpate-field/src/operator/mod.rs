@@ -8,9 +8,11 @@
 //! [`Shape`](crate::Shape) that build it.
 
 pub(crate) mod boolean;
+mod distortion;
 mod domain;
 pub(crate) mod doors;
 mod guard;
+mod mixture;
 mod smooth;
 mod surface;
 mod transform;

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Twist and bend: rotations by an angle that grows along an axis.
+//!
+//! # Derivation
+//!
+//! A point is turned in a plane by the angle `k·t`, where `t` is its place along an
+//! axis and `k` the rate [rad/m]. But for the rotation, which keeps lengths, the
+//! derivative is `I + k·p⊥·eᵀ`: the point, turned by a right angle, times the axis. At
+//! a distance `r` from the axis of the rotation `k·p⊥` is `kr` long. For a twist it is
+//! at right angles to `e`, a shear, and lengths grow by at most its largest singular
+//! value, `½(kr + √(k²r² + 4))`; for a bend, by at most `1 + kr`. That grows without end, so a distorted shape is
+//! asked in its own box alone, the room: elsewhere at the nearest point of the room,
+//! with the distance to the room added. Both parts vary in directions at right
+//! angles to each other, so the sum is as steep as `√(L² + 1)`.
+
+use crate::bounds::{Aabb, Bounds};
+use crate::error::{ShapeError, Unit};
+use crate::field::{Warp, Warped};
+use crate::promise::{Promise, Quality, Rounding};
+use crate::scalar::Scalar;
+use crate::shape::Shape;
+use crate::vector::{Vector, array};
+
+/// The largest angle of a distortion [rad]: sines of larger angles lose digits.
+const MOST_TURN: f64 = 1e4;
+
+/// A box outside which a field is not asked.
+#[derive(Clone, Copy, Debug)]
+struct Room<const D: usize> {
+    centre: [f64; D],
+    half_extents: [f64; D],
+}
+
+impl<const D: usize> Room<D> {
+    fn new(aabb: &Aabb<D>) -> Self {
+        Self { centre: aabb.centre().0, half_extents: aabb.half_extents().0 }
+    }
+
+    /// The point of the room nearest to `p`.
+    #[inline(always)]
+    fn nearest<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        Vector(array!(i < D => {
+            p.0[i].clamp(
+                self.centre[i] - self.half_extents[i],
+                self.centre[i] + self.half_extents[i],
+            )
+        }))
+    }
+
+    /// How far `p` is from the room; zero inside.
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        S::norm(array!(i < D => {
+            let beyond = (p.0[i] - S::constant(self.centre[i])).abs()
+                - S::constant(self.half_extents[i]);
+            // Zero at a tie: on a wall the nearest point still moves with `p`.
+            S::constant(0.0).max(beyond)
+        }))
+    }
+}
+
+/// `(u, v)` turned by `angle` from u towards v.
+#[inline(always)]
+fn turned<S: Scalar>(u: S, v: S, angle: S) -> [S; 2] {
+    let (sin, cos) = (angle.sin(), angle.cos());
+    [cos * u - sin * v, sin * u + cos * v]
+}
+
+/// Turned about y by an angle that grows with y.
+#[derive(Debug)]
+pub(crate) struct Twist {
+    rate: f64,
+    room: Room<3>,
+}
+
+impl Warp<3, 3> for Twist {
+    #[inline(always)]
+    fn point<S: Scalar>(&self, p: Vector<S, 3>) -> Vector<S, 3> {
+        let Vector([x, y, z]) = self.room.nearest(p);
+        let [z, x] = turned(z, x, y.scale(-self.rate));
+        Vector([x, y, z])
+    }
+
+    #[inline(always)]
+    fn value<S: Scalar>(&self, p: Vector<S, 3>, child: S) -> S {
+        child + self.room.distance(p)
+    }
+}
+
+/// Turned in the plane of x and y by an angle that grows with x.
+#[derive(Debug)]
+pub(crate) struct Bend<const D: usize> {
+    rate: f64,
+    room: Room<D>,
+}
+
+impl<const D: usize> Warp<D, D> for Bend<D> {
+    #[inline(always)]
+    fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        let mut q = self.room.nearest(p);
+        let [x, y] = turned(q.0[0], q.0[1], q.0[0].scale(-self.rate));
+        (q.0[0], q.0[1]) = (x, y);
+        q
+    }
+
+    #[inline(always)]
+    fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S {
+        child + self.room.distance(p)
+    }
+}
+
+/// The box around what `aabb` sweeps when it is turned in the plane of two axes, and
+/// how far its corners are from the axis of the rotation.
+fn swept<const D: usize>(aabb: &Aabb<D>, [u, v]: [usize; 2]) -> (Aabb<D>, f64) {
+    let farthest = |i: usize| aabb.min[i].abs().max(aabb.max[i].abs());
+    let radius = farthest(u).hypot(farthest(v)) * (1.0 + 4.0 * f64::EPSILON);
+    let mut swept = *aabb;
+    for i in [u, v] {
+        (swept.min[i], swept.max[i]) = (-radius, radius);
+    }
+    (swept, radius * std::f64::consts::SQRT_2 * (1.0 + f64::EPSILON))
+}
+
+/// What a shape promises whose points were turned by up to `turn` [rad], and the
+/// distances between them stretched by up to `stretch`.
+fn distorted<const D: usize>(
+    child: &Promise<D>,
+    room: &Aabb<D>,
+    stretch: f64,
+    turn: f64,
+) -> Promise<D> {
+    let bounds = Bounds::of_box(*room);
+    let size = bounds.radius_about_origin();
+    // A relative error of the angle moves a point in proportion to the angle.
+    let operations = (12.0 + 2.0 * turn) * stretch * child.lipschitz.max(1.0);
+    let moved = Rounding::of_operations(operations, size);
+    Promise {
+        outside: Quality::Lipschitz,
+        inside: Quality::Lipschitz,
+        lipschitz: (child.lipschitz * stretch).hypot(1.0) * (1.0 + 8.0 * f64::EPSILON),
+        bounds: Some(bounds),
+        above_bounds: true,
+        convex: false,
+        symmetric: [false; D],
+        rounding: child.rounding.at(1.0, size).plus(&moved),
+        ..*child
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The room and the promise of the shape turned in a plane by `rate` [rad/m] along
+    /// an axis, which stretches lengths by `stretch` of the rate times the radius.
+    fn distortion(
+        &self,
+        operator: &'static str,
+        rate: f64,
+        plane: [usize; 2],
+        along: usize,
+        stretch: impl Fn(f64) -> f64,
+    ) -> Result<(Room<D>, Promise<D>), ShapeError> {
+        let child = self.promise();
+        let needs =
+            |needs: &'static str| ShapeError::Unsuitable { operator, needs: needs.into() };
+        let bounds = child.bounds.ok_or_else(|| needs("a shape with bounds"))?;
+        if child.region.is_some() {
+            return Err(needs("a shape whose steepness is known everywhere"));
+        }
+        let (room, radius) = swept(&bounds.aabb, plane);
+        let turn = rate.abs() * room.min[along].abs().max(room.max[along].abs());
+        // NaN is beyond every limit too.
+        if !(turn <= MOST_TURN) {
+            let rule = format!("such that the shape turns by at most {MOST_TURN} rad");
+            return Err(ShapeError::number(operator, rule, rate, Unit::One));
+        }
+        Ok((Room::new(&room), distorted(child, &room, stretch(rate.abs() * radius), turn)))
+    }
+
+    /// The shape bent: turned in the plane of x and y by `rate` · x [rad/m].
+    ///
+    /// Distances are no bounds, but no steeper than the promise says; see the
+    /// derivation in the source. Only a shape with bounds can be bent.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.02]))?);
+    /// let bow = bar.bent(2.0)?;
+    /// assert_eq!(bow.distance(Vector([0.0, 0.0])), -0.01);
+    /// // At x = 0.1 the bar has turned by 0.2 rad.
+    /// let on_bow = Vector([0.1, 0.1 * 0.2_f64.tan()]);
+    /// assert!((bow.distance(on_bow) + 0.01).abs() < 1e-15);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the rate turns the shape by more than 10⁴ rad, the shape has no bounds or a
+    /// steepness that is known in part of space alone, or shapes are nested too deeply.
+    pub fn bent(self, rate: f64) -> Result<Self, ShapeError> {
+        let (room, promise) = self.distortion("bend", rate, [0, 1], 0, |kr| 1.0 + kr)?;
+        let depth = self.depth() + 1;
+        Self::from_operator(Warped { map: Bend { rate, room }, child: self, promise }, depth)
+    }
+}
+
+impl Shape<3> {
+    /// The shape twisted: turned about y by `rate` · y [rad/m], from z towards x.
+    ///
+    /// Promises and errors as of [`bent`](Self::bent).
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.02, 0.4, 0.1]))?);
+    /// let quarter_turn = std::f64::consts::FRAC_PI_2 / 0.1;
+    /// let screw = bar.twisted(quarter_turn)?;
+    /// assert!((screw.distance(Vector([0.0, 0.0, 0.05]))).abs() < 1e-15);
+    /// // 0.1 m up, the long side has turned from z to x.
+    /// assert!((screw.distance(Vector([0.05, 0.1, 0.0]))).abs() < 1e-15);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`bent`](Self::bent).
+    pub fn twisted(self, rate: f64) -> Result<Self, ShapeError> {
+        let (room, promise) =
+            self.distortion("twist", rate, [2, 0], 1, |kr| 0.5 * (kr + kr.hypot(2.0)))?;
+        let depth = self.depth() + 1;
+        Self::from_operator(Warped { map: Twist { rate, room }, child: self, promise }, depth)
+    }
+}
