@@ -128,6 +128,11 @@ impl Scalar for Expression {
         Self::norm(q.map(|q| q.max(zero))) + largest.min(zero)
     }
 
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+        let count = self.scale(1.0 / spacing).clamp(low, high);
+        count.map(|tree| tree.round()).scale(spacing)
+    }
+
     /// The fill in fidget's operations: both profiles are powers of `x`.
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let zero = Self::constant(0.0);

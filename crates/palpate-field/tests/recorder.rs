@@ -42,8 +42,10 @@ enum Operation {
     Cos,
     Norm,
     Orthant,
-    /// By the name of the profile, with the reach.
+    /// By the name of the profile, with its unit.
     SmoothMin(&'static str, f64),
+    /// With the spacing and the limits.
+    NearestMultiple(f64, f64, f64),
 }
 
 /// An operation and its arguments, earlier nodes of the same formula.
@@ -156,6 +158,10 @@ impl Scalar for Recorded {
         Self::new(Operation::Orthant, q)
     }
 
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+        Self::new(Operation::NearestMultiple(spacing, low, high), [self])
+    }
+
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         Self::new(Operation::SmoothMin(B::NAME, unit), [self, other])
     }
@@ -229,6 +235,9 @@ impl Formula {
             Operation::Cos => call("cos"),
             Operation::Norm => call("norm"),
             Operation::Orthant => call("orthant"),
+            Operation::NearestMultiple(spacing, low, high) => {
+                call(&format!("nearest_multiple<{spacing:?}, {low:?}, {high:?}>"))
+            }
             Operation::SmoothMin(profile, unit) => {
                 call(&format!("smooth_min<{profile}, {unit:?}>"))
             }
@@ -266,6 +275,9 @@ impl Formula {
                     [a, b, c] => f64::orthant([a, b, c]),
                     _ => panic!("the orthant of {} numbers", x.len()),
                 },
+                Operation::NearestMultiple(spacing, low, high) => {
+                    x[0].nearest_multiple(spacing, low, high)
+                }
                 Operation::SmoothMin(profile, unit) => smooth_min(profile, x[0], x[1], unit),
             });
         }

@@ -9,7 +9,7 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::{Copies, Smooth};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
@@ -226,6 +226,19 @@ where
         .collect()
 }
 
+/// A row of copies of a shape of about `width` [m], few or without end.
+fn copies(u: &mut Unstructured<'_>, width: f64) -> Result<Copies> {
+    let spacing = width * within(u, 0.3, 2.0)?;
+    Ok(match u.int_in_range(0..=3_u8)? {
+        0 | 1 => Copies::One,
+        2 => {
+            let first = u.int_in_range(-3..=1_i32)?;
+            Copies::Between { spacing, first, last: first + u.int_in_range(0..=4)? }
+        }
+        _ => Copies::Endless { spacing },
+    })
+}
+
 /// A profile of smooth booleans.
 fn profile(u: &mut Unstructured<'_>) -> Result<Smooth> {
     Ok(*u.choose(&[
@@ -244,7 +257,7 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let child = |u: &mut Unstructured<'_>| tree(u, depth).map(Box::new);
-    Ok(match u.int_in_range(0..=18_u8)? {
+    Ok(match u.int_in_range(0..=19_u8)? {
         0 => Tree::Union(several(u, depth, 9)?),
         1 => Tree::Union(several(u, depth, 3)?),
         2 => Tree::Intersection(several(u, depth, 3)?),
@@ -288,6 +301,15 @@ where
         15 => Tree::Twisted(child(u)?, within(u, -3.0, 3.0)?),
         16 => Tree::Displaced(child(u)?, child(u)?, 0.3 * length(u)?),
         17 => Tree::Morphed(child(u)?, child(u)?, unit(u)?),
+        18 => {
+            let tree = child(u)?;
+            let width = tree.shape().ok().map_or(1.0, |shape| 2.0 * size(&shape));
+            let mut rows = [Copies::One; D];
+            for row in &mut rows {
+                *row = copies(u, width)?;
+            }
+            Tree::Repeated(tree, rows)
+        }
         _ => Tree::Placed(child(u)?, pose(u)?),
     })
 }

@@ -183,6 +183,11 @@ impl Scalar for Double {
         Self::norm(q.map(|q| Scalar::max(q, zero))) + Scalar::min(largest, zero)
     }
 
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+        let count = self.high.nearest_multiple(spacing, low, high) / spacing;
+        Self::constant(count.round()) * Self::constant(spacing)
+    }
+
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let k = Self::constant(unit);
         Scalar::min(self, other) - B::fill(Scalar::abs(self - other) / k) * k

@@ -8,7 +8,7 @@
 //! `palpate-field` must agree with.
 
 use palpate_field::kernel::{Argument, Primitive};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::{Copies, Smooth};
 use palpate_field::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
 use palpate_field::{Pose, Shape, ShapeError, Vector};
 
@@ -46,6 +46,8 @@ pub enum Tree<const D: usize> {
     Elongated(Box<Self>, [f64; D]),
     /// Mirrored along an axis.
     Mirrored(Box<Self>, usize),
+    /// Repeated along the axes.
+    Repeated(Box<Self>, [Copies; D]),
     /// Bent by a rate [rad/m].
     Bent(Box<Self>, f64),
     /// In space: twisted by a rate [rad/m].
@@ -197,6 +199,7 @@ where
             Self::Shell(tree, thickness) => tree.shape()?.shell(*thickness),
             Self::Elongated(tree, lengths) => tree.shape()?.elongated(*lengths),
             Self::Mirrored(tree, axis) => tree.shape()?.mirrored(*axis),
+            Self::Repeated(tree, copies) => tree.shape()?.repeated(*copies),
             Self::Bent(tree, rate) => tree.shape()?.bent(*rate),
             Self::Twisted(tree, rate) => Space::twisted(tree.shape()?, *rate),
             Self::Displaced(tree, by, height) => tree.shape()?.displaced(by.shape()?, *height),
@@ -225,6 +228,7 @@ where
             | Self::Shell(tree, _)
             | Self::Elongated(tree, _)
             | Self::Mirrored(tree, _)
+            | Self::Repeated(tree, _)
             | Self::Bent(tree, _)
             | Self::Twisted(tree, _)
             | Self::Placed(tree, _)
@@ -280,6 +284,7 @@ where
                 q[*axis] = q[*axis].abs();
                 tree.distance(q)
             }
+            Self::Repeated(tree, copies) => repeated(tree, copies, p),
             Self::Bent(tree, rate) => turned(tree, *rate, [0, 1], 0, p),
             Self::Twisted(tree, rate) => turned(tree, *rate, [2, 0], 1, p),
             Self::Displaced(tree, by, height) => {
@@ -350,6 +355,76 @@ where
 {
     let values = trees.iter().map(|tree| tree.distance(p));
     values.reduce(operation).unwrap_or_else(|| panic!("an operator over nothing"))
+}
+
+/// The nearest of copies: of the point's tile, and of those beside it along axes in which
+/// the child is not symmetric or wider than its tile. Then the distance to the boxes of
+/// the others is an upper limit.
+fn repeated<S: Scalar, const D: usize>(
+    tree: &Tree<D>,
+    copies: &[Copies; D],
+    p: Vector<S, D>,
+) -> S
+where
+    Space: Solid<D>,
+{
+    let shape = tree.shape().unwrap_or_else(|error| panic!("{tree:?}: {error}"));
+    let promise = shape.promise();
+    let aabb = promise.bounds.unwrap_or_else(|| panic!("no bounds")).aabb;
+    let rows: [(f64, f64, f64); D] = copies.map(|copies| match copies {
+        Copies::One => (1.0, 0.0, 0.0),
+        Copies::Between { spacing, first, last } => (spacing, first.into(), last.into()),
+        Copies::Endless { spacing } => (spacing, -1e6, 1e6),
+    });
+    let middle = |i: usize| 0.5 * (aabb.min[i] + aabb.max[i]);
+    let centre: [f64; D] =
+        std::array::from_fn(|i| if promise.symmetric[i] { 0.0 } else { middle(i) });
+    let wide: [bool; D] = std::array::from_fn(|i| {
+        let (spacing, first, last) = rows[i];
+        first < last && !(promise.symmetric[i] && aabb.max[i] <= 0.5 * spacing)
+    });
+    let place: [S; D] = std::array::from_fn(|i| {
+        let (spacing, first, last) = rows[i];
+        (p.0[i] - S::constant(centre[i])).nearest_multiple(spacing, first, last)
+    });
+    let any_wide = wide.contains(&true);
+    let mut nearest: Option<S> = None;
+    for code in 0..3_usize.pow(D as u32) {
+        let step = |i: usize| [0.0, -1.0, 1.0][code / 3_usize.pow(i as u32) % 3];
+        if (0..D).any(|i| !wide[i] && step(i) != 0.0) {
+            continue;
+        }
+        let q = Vector(std::array::from_fn(|i| {
+            let (spacing, first, last) = rows[i];
+            let copy = place[i] + S::constant(step(i) * spacing);
+            p.0[i] - copy.clamp(first * spacing, last * spacing)
+        }));
+        let value = if any_wide { tree.guarded(q) } else { tree.distance(q) };
+        nearest = Some(nearest.map_or(value, |least| least.min(value)));
+    }
+    let mut result = nearest.unwrap_or_else(|| panic!("no copies"));
+    let far = S::constant(1e15);
+    for i in (0..D).filter(|i| wide[*i]) {
+        let gaps: [S; D] = std::array::from_fn(|k| {
+            let (spacing, first, last) = rows[k];
+            if k == i {
+                let half = 0.5 * (aabb.max[k] - aabb.min[k]);
+                let inside = p.0[k] - place[k] - S::constant(centre[k]);
+                let gap = S::constant(2.0 * spacing - half);
+                let lowest = S::constant((first + 1.5) * spacing);
+                let highest = S::constant((last - 1.5) * spacing);
+                let above = S::select_less(place[k], highest, gap - inside, far);
+                let below = S::select_less(lowest, place[k], gap + inside, far);
+                above.min(below).max(S::constant(0.0))
+            } else {
+                let (low, high) = (aabb.min[k] + first * spacing, aabb.max[k] + last * spacing);
+                let outside = (p.0[k] - S::constant(0.5 * (low + high))).abs();
+                (outside - S::constant(0.5 * (high - low))).max(S::constant(0.0))
+            }
+        });
+        result = result.min(S::norm(gaps));
+    }
+    result
 }
 
 /// The field turned in a plane by a rate along an axis: asked in the box that it

@@ -52,12 +52,9 @@ impl<const D: usize> Room<D> {
     /// How far `p` is from the room; zero inside.
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
-        S::norm(array!(i < D => {
-            let beyond = (p.0[i] - S::constant(self.centre[i])).abs()
-                - S::constant(self.half_extents[i]);
-            // Zero at a tie: on a wall the nearest point still moves with `p`.
-            S::constant(0.0).max(beyond)
-        }))
+        // From the nearest point itself: on a wall, either it moves with `p` or the
+        // distance does, whatever is rounded.
+        S::norm((p - self.nearest(p)).0)
     }
 }
 

@@ -11,11 +11,12 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use super::boolean::{InOne, Larger, Without};
+use super::boolean::{InOne, Larger, Smaller, Without};
 use super::distortion::{Bend, Twist};
 use super::domain::{Elongation, Extrusion, Mirror, Revolution};
 use super::guard::Guard;
 use super::mixture::{Displacement, Morph};
+use super::repetition::{Clearance, Tile};
 use super::smooth::{Fillet, Round, SmoothMax, SmoothMin};
 use super::surface::{Offset, Shell};
 use super::transform::{AxisScale, UniformScale};
@@ -62,6 +63,7 @@ macro_rules! doors {
 doors! {
     planar, 2,
     Union<2>,
+    Combined<Smaller, 2>,
     Combined<Larger, 2>,
     Combined<Without, 2>,
     Combined<InOne, 2>,
@@ -88,6 +90,8 @@ doors! {
     Warped<UniformScale, 2, 2>,
     Warped<AxisScale<2>, 2, 2>,
     Warped<Mirror, 2, 2>,
+    Warped<Tile<2>, 2, 2>,
+    Remapped<Clearance<2>, 2>,
     Warped<Bend<2>, 2, 2>,
     Warped<Elongation<2>, 2, 2>,
 }
@@ -95,6 +99,7 @@ doors! {
 doors! {
     spatial, 3,
     Union<3>,
+    Combined<Smaller, 3>,
     Combined<Larger, 3>,
     Combined<Without, 3>,
     Combined<InOne, 3>,
@@ -121,6 +126,8 @@ doors! {
     Warped<UniformScale, 3, 3>,
     Warped<AxisScale<3>, 3, 3>,
     Warped<Mirror, 3, 3>,
+    Warped<Tile<3>, 3, 3>,
+    Remapped<Clearance<3>, 3>,
     Warped<Bend<3>, 3, 3>,
     Warped<Elongation<3>, 3, 3>,
     Warped<Twist, 3, 3>,

@@ -13,8 +13,10 @@ mod domain;
 pub(crate) mod doors;
 mod guard;
 mod mixture;
+mod repetition;
 mod smooth;
 mod surface;
 mod transform;
 
+pub use repetition::Copies;
 pub use smooth::Smooth;

@@ -223,6 +223,12 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
     }
 
     #[inline(always)]
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+        let value = self.value.nearest_multiple(spacing, low, high);
+        Self { value, gradient: [T::constant(0.0); D] }
+    }
+
+    #[inline(always)]
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let one = T::constant(1.0);
         let larger = B::weight((self.value - other.value).abs().scale(1.0 / unit));

@@ -127,6 +127,16 @@ macro_rules! float {
                 let t = (self - other).abs() * (1.0 / unit) as $t;
                 Scalar::min(self, other) - B::fill(t) * unit as $t
             }
+
+            #[inline(always)]
+            fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+                // Adding this rounds to the nearest integer without a call into a
+                // library, which would stop vectorisation.
+                let round: $t = 1.5 / $t::EPSILON;
+                let count = self * (1.0 / spacing) as $t;
+                let limited = Scalar::clamp(count, low, high);
+                ((limited + round) - round) * spacing as $t
+            }
         }
     };
 }

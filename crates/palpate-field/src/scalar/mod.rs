@@ -121,6 +121,17 @@ pub trait Scalar:
         -(-self).smooth_min::<B>(-other, unit)
     }
 
+    /// The multiple of `spacing` that is nearest, of those from `low · spacing` to
+    /// `high · spacing`: constant between its steps.
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self;
+
+    /// `self`, which may be wrong by `by` elsewhere in the cell: what a [`Model`] adds
+    /// to its remainders; nothing for a point.
+    #[inline(always)]
+    fn give_or_take(self, _by: Self) -> Self {
+        self
+    }
+
     /// `self` limited to `[low, high]`, for `low ≤ high`.
     #[inline(always)]
     fn clamp(self, low: f64, high: f64) -> Self {

@@ -513,6 +513,19 @@ impl Scalar for Model {
         }
     }
 
+    /// That of the value, for the whole cell: who crosses a step says by how much that
+    /// may be wrong, with [`give_or_take`](Scalar::give_or_take).
+    #[inline(always)]
+    fn nearest_multiple(self, spacing: f64, low: f64, high: f64) -> Self {
+        Self::constant(Scalar::nearest_multiple(self.value, spacing, low, high))
+    }
+
+    #[inline(always)]
+    fn give_or_take(self, by: Self) -> Self {
+        let by = by.maximum().max_of(0.0) * INFLATE;
+        Self { lower: self.lower + by, upper: self.upper + by, ..self }
+    }
+
     /// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
     /// second derivative of the fill over the range of `a − b`.
     #[inline(always)]
