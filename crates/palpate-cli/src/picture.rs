@@ -15,27 +15,17 @@ const MARGIN: f64 = 0.15;
 
 /// A dimension whose shapes can be drawn.
 pub(crate) trait Drawable<const D: usize> {
-    /// The plane on which a shape is drawn unless another is asked for.
-    fn plane(bounds: &Aabb<D>) -> Result<Slice, PlotError>;
-
     /// The window that shows `bounds` on `plane`.
     fn view(plane: &Slice, bounds: &Aabb<D>) -> Result<View, PlotError>;
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
-
-    /// The plane coordinates of a point of space.
-    fn project(plane: &Slice, p: Vector<f64, D>) -> [f64; 2];
 }
 
 /// Marks the dimension of a shape.
 pub(crate) struct Dimensions;
 
 impl Drawable<2> for Dimensions {
-    fn plane(_: &Aabb<2>) -> Result<Slice, PlotError> {
-        Ok(Slice::planar())
-    }
-
     fn view(_: &Slice, bounds: &Aabb<2>) -> Result<View, PlotError> {
         View::from_bounds(bounds.min.0, bounds.max.0, MARGIN)
     }
@@ -43,27 +33,15 @@ impl Drawable<2> for Dimensions {
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
         Vector(st)
     }
-
-    fn project(_: &Slice, p: Vector<f64, 2>) -> [f64; 2] {
-        p.0
-    }
 }
 
 impl Drawable<3> for Dimensions {
-    fn plane(bounds: &Aabb<3>) -> Result<Slice, PlotError> {
-        Slice::xy(bounds.centre()[2])
-    }
-
     fn view(plane: &Slice, bounds: &Aabb<3>) -> Result<View, PlotError> {
         View::of_box(plane, bounds.min.0, bounds.max.0, MARGIN)
     }
 
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {
         Vector(plane.point(st))
-    }
-
-    fn project(plane: &Slice, p: Vector<f64, 3>) -> [f64; 2] {
-        plane.project(p.0)
     }
 }
 

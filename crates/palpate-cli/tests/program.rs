@@ -215,6 +215,50 @@ fn feel_reports_traces_and_draws() {
     }
 }
 
+/// The last body of the gallery has a bore that is narrower at its top, where a proxy may stay
+/// behind.
+#[test]
+fn no_proxy_is_left_behind_in_the_gallery() {
+    for duration in ["10", "11"] {
+        let report = json(&["feel", "--fast", "--duration", duration, "--json"]);
+        let depth = report["largest_depth"].as_f64().unwrap();
+        // Pressed to 3/4 of a probe of 3 mm; at edges a little more.
+        assert!(depth < 0.003, "{depth} m deep in {duration} s");
+    }
+}
+
+/// The words of a picture.
+fn words(svg: &str) -> Vec<&str> {
+    svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn a_scene_in_space_is_drawn_on_two_slices_and_says_so() {
+    let folder = Folder::new();
+    let plot = folder.name("cup.svg");
+    json(&["feel", "scenes/cup.json", "--fast", "--json", "--plot", &plot]);
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    let has = |start: &str| words.iter().any(|word| word.starts_with(start));
+    assert!(has("From above: slice at y = 0.0"), "{words:?}");
+    assert!(has("From the front: slice at z = ") || has("From the side: slice at x = "));
+    assert!(has("bound outside, exact inside. Bold: within 5 mm of the slice; thin: in front"));
+    for once in ["inside", "behind the slice", "in front of the slice", "proxy", "hand"] {
+        assert_eq!(words.iter().filter(|word| **word == once).count(), 1, "{once}");
+    }
+}
+
+#[test]
+fn a_scene_in_the_plane_is_drawn_once() {
+    let folder = Folder::new();
+    let plot = folder.name("star.svg");
+    json(&["feel", "scenes/memoir_star.json", "--fast", "--json", "--plot", &plot]);
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    assert!(words.contains(&"bound outside, bound inside") && words.contains(&"proxy"));
+    assert!(!words.iter().any(|word| word.contains("slice")), "{words:?}");
+}
+
 #[test]
 fn feel_follows_a_hand_of_several_points() {
     let folder = Folder::new();

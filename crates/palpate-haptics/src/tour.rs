@@ -46,6 +46,11 @@ const STEEPEST: f64 = 4.0;
 /// deeper than the probe is wide would leave its proxy behind there.
 const SHARPEST: f64 = 0.9;
 
+/// The cosine of the turn of the surface within one step that is a lip. Fields that are bounds
+/// have it as sharp as the shape, however wide the probe; a hand pressed over it would leave its
+/// proxy behind below the lip, to slide away from it.
+const LIP: f64 = 0.0;
+
 /// The hand's detail is this many times its depth or the probe's radius: shorter notches are
 /// flown over, longer ones entered.
 const DETAIL: f64 = 5.0;
@@ -169,7 +174,8 @@ impl<const D: usize> Tour<D> {
 
     /// The path over `shape`: smooth, with continuous velocity, the same for the same input.
     ///
-    /// The hand winds about the box from pole to pole and back. From each point of this orbit a
+    /// The hand winds about the box from its foot up to the pole and back, or once up in fewer
+    /// turns if the time is short. From each point of this orbit a
     /// ray towards the core of the box (the box shrunk by its shortest half edge, so that long
     /// and flat scenes are touched all over) finds the surface that is seen from there. The hand
     /// presses into it for some time, rises, flies and lands again, and rises as well where what
@@ -303,7 +309,7 @@ impl<const D: usize> Tour<D> {
     }
 
     /// 1 for each point that is deeper than it may be, or halfway to its neighbour is, or is
-    /// further from it than the surface is steep; 0 for the others.
+    /// further from it than the surface is steep, or over a lip from it; 0 for the others.
     fn too_deep(&self, shape: &Shape<D>, positions: &[Point<D>]) -> Vec<f64> {
         let deepest = DEEPEST * self.depth() + RAY_TOLERANCE * self.size;
         let lowest = self.probe_radius - deepest;
@@ -312,9 +318,24 @@ impl<const D: usize> Tour<D> {
                 let (here, next) = (positions[i], positions[(i + 1).min(positions.len() - 1)]);
                 let halfway = (here + next) * 0.5;
                 let is_deep = shape.distance(here) < lowest || shape.distance(halfway) < lowest;
-                f64::from(u8::from(is_deep || (next - here).norm() > 0.5 * self.detail()))
+                let is_far = (next - here).norm() > 0.5 * self.detail();
+                f64::from(u8::from(is_deep || is_far || self.crosses_lip(shape, here, next)))
             })
             .collect()
+    }
+
+    /// `true` if the hand touches at both points, or nearly, and the surface turns away by [`LIP`]
+    /// between them. Nearly, as a lip may be touched for less than a step.
+    fn crosses_lip(&self, shape: &Shape<D>, here: Point<D>, next: Point<D>) -> bool {
+        let near = self.probe_radius + 2.0 * STEP * self.detail();
+        let normal = |point: Point<D>| {
+            let (value, gradient) = shape.distance_gradient(point);
+            if value < near { gradient.normalized() } else { None }
+        };
+        match (normal(here), normal(next)) {
+            (Some(a), Some(b)) => a.dot(b) < LIP && (b - a).dot(next - here) > 0.0,
+            _ => false,
+        }
     }
 
     /// What is seen from a point of the orbit.

@@ -154,6 +154,24 @@ fn a_tour_is_made_the_same_twice() {
 }
 
 #[test]
+fn a_short_tour_comes_to_sides_and_top() {
+    for (shape, top) in [(cuboid([0.08, 0.1, 0.06]), 0.05), (row_of_bodies(), 0.05)] {
+        let bounds = shape.promise().bounds.unwrap().aabb;
+        for duration in [5.0, 10.0, 30.0] {
+            let path = Tour::new(bounds, duration).unwrap().over(&shape).unwrap();
+            let touching: Vec<_> =
+                path.positions().iter().filter(|p| shape.distance(**p) < 0.002).collect();
+            assert!(touching.iter().any(|p| p[1] > top - 0.001), "no top in {duration} s");
+            assert!(touching.iter().any(|p| p[1] < 0.0), "no foot in {duration} s");
+            for z in [-1.0, 1.0] {
+                let is_side = |p: &&Vector<f64, 3>| z * p[2] > 0.02 && p[1] < 0.03;
+                assert!(touching.iter().copied().any(|p| is_side(&p)), "{duration} s: {z}");
+            }
+        }
+    }
+}
+
+#[test]
 fn nothing_to_touch_is_an_error() {
     let far = Aabb::centred(Vector([0.1; 3]));
     let shape = ball::<3>(0.05).translated(Vector([10.0, 0.0, 0.0])).unwrap();

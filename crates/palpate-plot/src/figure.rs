@@ -9,6 +9,7 @@ use crate::error::PlotError;
 use crate::geometry::Rect;
 use crate::isolines::Isolines;
 use crate::text::{Anchor, CAP_HEIGHT, LINE_HEIGHT, wrap};
+use crate::views::Views;
 use crate::{png, svg};
 
 /// Width of every figure [px]. Text and lines are sized for it.
@@ -42,6 +43,7 @@ pub struct Figure {
 #[derive(Debug, Clone)]
 enum Part {
     Isolines(Box<Isolines>),
+    Views(Views),
     Chart(Chart),
 }
 
@@ -62,6 +64,17 @@ impl Figure {
     #[must_use]
     pub fn with_isolines(mut self, isolines: Isolines) -> Self {
         self.parts.push(Part::Isolines(Box::new(isolines)));
+        self
+    }
+
+    /// With several views of one scene, such as slices along different planes: drawn at one
+    /// scale, side by side if that is not much smaller than one below the other, with one legend.
+    ///
+    /// The legend names what is called the same once. Give the views one
+    /// [step](Isolines::with_step) and their arrows one [length](crate::Arrows::with_full_length).
+    #[must_use]
+    pub fn with_views(mut self, views: impl IntoIterator<Item = Isolines>) -> Self {
+        self.parts.push(Part::Views(Views::new(views.into_iter().collect())));
         self
     }
 
@@ -99,6 +112,7 @@ impl Figure {
         let room = WIDTH - 2.0 * MARGIN;
         let gutters = self.parts.iter().map(|part| match part {
             Part::Isolines(isolines) => isolines.gutter(room),
+            Part::Views(views) => views.gutter(room),
             Part::Chart(chart) => chart.gutter(),
         });
         // Parts share their left edge; absurdly wide labels may not push them out.
@@ -110,6 +124,7 @@ impl Figure {
             let area = Rect::new(MARGIN, y, room, 0.0);
             y += match part {
                 Part::Isolines(isolines) => isolines.draw(&mut drawing, &area, gutter),
+                Part::Views(views) => views.draw(&mut drawing, &area, gutter),
                 Part::Chart(chart) => chart.draw(&mut drawing, &area, gutter),
             };
         }
@@ -227,6 +242,22 @@ mod tests {
     }
 
     #[test]
+    fn views_are_drawn() {
+        check(&Figure::new("None").with_views([]));
+        for scale in [1e-9, 1.0, 1e8] {
+            let view = View::new([0.0, 0.0], scale, 1.5 * scale).unwrap();
+            let sample = |points: &[[f64; 2]], values: &mut [f64]| {
+                points.iter().zip(values).for_each(|(p, v)| *v = p[0] - 0.3 * p[1]);
+            };
+            let isolines =
+                Isolines::sample(&Slice::planar(), &view, Sampling::default(), sample).unwrap();
+            for count in 1..5 {
+                check(&Figure::new("Views").with_views(vec![isolines.clone(); count]));
+            }
+        }
+    }
+
+    #[test]
     fn slivers_are_drawn() {
         for (width, height) in [(1.0, 0.05), (0.05, 1.0)] {
             let view = View::new([0.0, 0.0], width, height).unwrap();
@@ -235,6 +266,8 @@ mod tests {
             };
             let slice = Slice::xz(0.0).unwrap();
             let isolines = Isolines::sample(&slice, &view, Sampling::default(), field).unwrap();
+            let other = isolines.clone().with_title("twice");
+            check(&Figure::new("Slivers").with_views([isolines.clone(), other]));
             check(&Figure::new("Sliver").with_isolines(isolines));
         }
     }

@@ -22,9 +22,12 @@ use crate::text::{Anchor, CAP_HEIGHT};
 use crate::view::View;
 
 /// Highest plot [px]; taller windows are drawn narrower.
-const MOST_HEIGHT: f64 = 720.0;
+pub(crate) const MOST_HEIGHT: f64 = 720.0;
+/// Between a picture and its legend [px].
+pub(crate) const ABOVE_LEGEND: f64 = 10.0;
 /// Distance of ticks aimed at, across and up [px].
 const TICK_SPACING: [f64; 2] = [80.0, 70.0];
+
 /// Bands and isolines of a field in a window of a plane, with overlays.
 ///
 /// Blue bands are inside (negative values), orange ones outside, lighter with the value; the
@@ -151,9 +154,27 @@ impl Isolines {
         self.axis(1, height).gutter()
     }
 
+    /// Width and height of the window [m].
+    pub(crate) fn extent(&self) -> [f64; 2] {
+        [self.view.width(), self.view.height()]
+    }
+
     /// Draws the part into `area` from its top; its plot starts `gutter` right of its left
     /// edge. Returns the height used. All [px].
     pub(crate) fn draw(&self, drawing: &mut Drawing, area: &Rect, gutter: f64) -> f64 {
+        let (height, entries) = self.draw_plot(drawing, area, gutter);
+        let origin = [area.min[0] + gutter, area.min[1] + height + ABOVE_LEGEND];
+        origin[1] + legend::draw(drawing, &entries, origin, area.max[0] - origin[0])
+            - area.min[1]
+    }
+
+    /// Draws all but the legend; returns the height used [px] and the legend.
+    pub(crate) fn draw_plot(
+        &self,
+        drawing: &mut Drawing,
+        area: &Rect,
+        gutter: f64,
+    ) -> (f64, Vec<Entry>) {
         let mut top = area.min[1];
         if !self.title.is_empty() {
             let style = TextStyle::SUBTITLE;
@@ -178,10 +199,7 @@ impl Isolines {
         self.axis(1, plot.height()).draw_left(drawing, &plot, plot.min[0] - gutter);
         let mut bottom = plot.max[1] + BELOW;
         bottom += picture.draw_scale_bar(drawing, bottom);
-        let origin = [area.min[0] + gutter, bottom + 10.0];
-        let entries = [self.legend(), overlays.entries].concat();
-        let height = legend::draw(drawing, &entries, origin, area.max[0] - origin[0]);
-        origin[1] + height - area.min[1]
+        (bottom - area.min[1], [self.legend(), overlays.entries].concat())
     }
 
     /// The largest rectangle of the window's shape, centred.

@@ -5,7 +5,8 @@
 //!
 //! A picture is made in three steps. A [`Slice`] is a plane in space and a [`View`] a window of
 //! it. [`Isolines::sample`] asks a field for its values there, through a closure, a row of
-//! points at a time. A [`Figure`] stacks isolines and [`Chart`]s and writes them with
+//! points at a time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene
+//! and [`Chart`]s and writes them with
 //! [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
 //!
 //! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
@@ -63,6 +64,7 @@ mod slice;
 mod svg;
 mod text;
 mod view;
+mod views;
 
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;

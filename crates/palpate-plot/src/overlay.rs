@@ -3,7 +3,7 @@
 
 //! What a figure shows over the isolines: paths, arrows and points.
 
-use crate::error::{PlotError, finite_points};
+use crate::error::{LARGEST, PlotError, finite_points};
 use crate::palette::Color;
 
 /// How a line is broken, so that it can be told apart without colour.
@@ -52,9 +52,10 @@ impl Dash {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
     pub(crate) name: String,
-    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) pieces: Vec<Vec<[f64; 2]>>,
     pub(crate) color: Option<Color>,
     pub(crate) dash: Option<Dash>,
+    pub(crate) is_faint: bool,
 }
 
 impl Polyline {
@@ -67,9 +68,37 @@ impl Polyline {
         name: impl Into<String>,
         points: impl IntoIterator<Item = [f64; 2]>,
     ) -> Result<Self, PlotError> {
-        let (name, points) = (name.into(), Vec::from_iter(points));
-        finite_points(&name, &points)?;
-        Ok(Self { name, points, color: None, dash: None })
+        Self::of_pieces(name, [Vec::from_iter(points)])
+    }
+
+    /// The path that is seen in `pieces` \[m\] only, such as those near a slice.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Point`], with the index counted through all pieces.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::Polyline;
+    ///
+    /// let pieces = [vec![[0.0, 0.0], [0.1, 0.0]], vec![[0.2, 0.0], [0.3, 0.1]]];
+    /// let behind = Polyline::of_pieces("behind the slice", pieces)?.faint();
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn of_pieces(
+        name: impl Into<String>,
+        pieces: impl IntoIterator<Item = Vec<[f64; 2]>>,
+    ) -> Result<Self, PlotError> {
+        let (name, pieces) = (name.into(), Vec::from_iter(pieces));
+        finite_points(&name, &pieces.concat())?;
+        Ok(Self { name, pieces, color: None, dash: None, is_faint: false })
+    }
+
+    /// Thin and grey, for what matters less; unbroken unless asked otherwise.
+    #[must_use]
+    pub fn faint(self) -> Self {
+        Self { is_faint: true, ..self }
     }
 
     /// With a colour of its own instead of the next in the series.
@@ -114,6 +143,8 @@ pub struct Arrows {
     pub(crate) unit: Option<String>,
     pub(crate) arrows: Vec<Arrow>,
     pub(crate) color: Option<Color>,
+    /// The vector drawn at full length, in its unit; the longest if none is said.
+    pub(crate) full: Option<f64>,
 }
 
 impl Arrows {
@@ -143,7 +174,7 @@ impl Arrows {
         let points = |part: fn(&Arrow) -> [f64; 2]| Vec::from_iter(arrows.iter().map(part));
         finite_points(&name, &points(|arrow| arrow.tail))?;
         finite_points(&name, &points(|arrow| arrow.vector))?;
-        Ok(Self { name, unit: None, arrows, color: None })
+        Ok(Self { name, unit: None, arrows, color: None, full: None })
     }
 
     /// With a colour of its own instead of the next in the series.
@@ -152,12 +183,18 @@ impl Arrows {
         Self { color: Some(color), ..self }
     }
 
-    /// The largest length among the vectors, in their unit.
+    /// With the length \[unit\] that is drawn longest, instead of the largest here: for several
+    /// pictures of one scale. Ignored unless positive.
+    #[must_use]
+    pub fn with_full_length(self, length: f64) -> Self {
+        let full = (length > 0.0 && length <= LARGEST).then_some(length);
+        Self { full, ..self }
+    }
+
+    /// The length of the vector drawn longest, in its unit.
     pub(crate) fn longest(&self) -> f64 {
-        self.arrows
-            .iter()
-            .map(|arrow| arrow.vector[0].hypot(arrow.vector[1]))
-            .fold(0.0, f64::max)
+        let lengths = self.arrows.iter().map(|arrow| arrow.vector[0].hypot(arrow.vector[1]));
+        self.full.unwrap_or_else(|| lengths.fold(0.0, f64::max))
     }
 }
 

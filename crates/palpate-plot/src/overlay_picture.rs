@@ -19,6 +19,8 @@ const LONGEST_ARROW: f64 = 78.0;
 const DIRECTION: f64 = 34.0;
 /// Width of lines [px].
 const LINE: f64 = 2.4;
+/// Width of faint lines [px], and how much of what is below they hide.
+const FAINT: (f64, f64) = (1.1, 0.8);
 
 /// The overlays of a picture, with the colour, dash and symbol of each settled.
 #[derive(Debug)]
@@ -40,11 +42,25 @@ impl<'a> Overlays<'a> {
             markers: Vec::new(),
             entries: Vec::new(),
         };
-        for (index, overlay) in overlays.iter().enumerate() {
+        // Faint lines take no colour and no dash from the others.
+        let (mut index, mut bold) = (0, 0);
+        for overlay in overlays {
             let next = Color::of_series(index);
+            index += 1;
             match overlay {
+                Overlay::Polyline(line) if line.is_faint => {
+                    index -= 1;
+                    let (width, opacity) = FAINT;
+                    let dash = line.dash.unwrap_or(Dash::Solid).lengths(width);
+                    let stroke = Stroke::new(line.color.unwrap_or(Color::MUTED), width)
+                        .with_opacity(opacity)
+                        .with_dash(dash);
+                    all.entries.push(Entry::new(Key::Line(stroke.clone()), &*line.name));
+                    all.lines.push((line, stroke));
+                }
                 Overlay::Polyline(line) => {
-                    let dash = line.dash.unwrap_or(Dash::of_series(all.lines.len()));
+                    let dash = line.dash.unwrap_or(Dash::of_series(bold));
+                    bold += 1;
                     let stroke = Stroke::new(line.color.unwrap_or(next), LINE)
                         .with_dash(dash.lengths(LINE));
                     all.entries.push(Entry::new(Key::Line(stroke.clone()), &*line.name));
@@ -68,7 +84,7 @@ impl<'a> Overlays<'a> {
 
     /// Marks what the overlays cover as taken.
     pub(crate) fn occupy(&self, occupied: &mut Occupied) {
-        for (line, _) in &self.lines {
+        for (line, _) in self.lines.iter().filter(|(line, _)| !line.is_faint) {
             self.pieces(line).into_iter().for_each(|piece| occupied.add_line(piece));
         }
         for (arrows, _) in &self.arrows {
@@ -99,6 +115,10 @@ impl<'a> Overlays<'a> {
         for (line, stroke) in &self.lines {
             let mut path = Path::default();
             self.pieces(line).iter().for_each(|piece| path.add_line(piece));
+            if line.is_faint {
+                drawing.stroke(path, stroke.clone());
+                continue;
+            }
             let rim = Stroke::new(Color::WHITE, LINE + 2.4).with_opacity(0.8);
             drawing.stroke(path.clone(), rim);
             paths.push((path, stroke));
@@ -123,15 +143,17 @@ impl<'a> Overlays<'a> {
 
     /// The parts of a line in the window [px].
     fn pieces(&self, line: &Polyline) -> Vec<Vec<Point>> {
-        let mut thinned: Vec<Point> = Vec::new();
-        for p in self.frame.pixels(&line.points) {
-            // Thousands of samples in one place are one point of a picture.
-            if thinned.last().is_none_or(|&last| distance(last, p) > 5.0 * TOLERANCE) {
-                thinned.push(p);
+        let seen = line.pieces.iter().flat_map(|piece| {
+            let mut thinned: Vec<Point> = Vec::new();
+            for p in self.frame.pixels(piece) {
+                // Thousands of samples in one place are one point of a picture.
+                if thinned.last().is_none_or(|&last| distance(last, p) > 5.0 * TOLERANCE) {
+                    thinned.push(p);
+                }
             }
-        }
-        let pieces = clip_line(&thinned, &self.frame.plot);
-        pieces.iter().map(|piece| simplify(piece, TOLERANCE)).collect()
+            clip_line(&thinned, &self.frame.plot)
+        });
+        seen.map(|piece| simplify(&piece, TOLERANCE)).collect()
     }
 
     /// Tail and tip of each arrow that starts in the window, cut at its border [px].

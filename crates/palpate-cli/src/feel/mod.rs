@@ -4,7 +4,9 @@
 //! `palpate feel`: a servo, a simulated hand, and a report.
 
 mod figure;
+mod nearness;
 mod report;
+mod slices;
 
 use std::io::{IsTerminal, Write};
 use std::time::Duration;

@@ -7,9 +7,20 @@ use std::f64::consts::TAU;
 
 use palpate_field::{Aabb, Point, Vector};
 
-/// Turns about the axis for each pass from end to end: enough that neighbouring turns are a
-/// twelfth of the shape apart. Not a whole number, so that passes interleave.
-const TURNS_A_PASS: f64 = 6.18;
+/// Turns about the axis for each pass from end to end, at most: enough that neighbouring turns
+/// are a twelfth of the shape apart. Not a whole number, so that passes interleave.
+const MOST_TURNS: f64 = 6.18;
+
+/// Turns for each pass at least, however short the way is: with fewer the hand would climb one
+/// side and see no other.
+const FEWEST_TURNS: f64 = 0.62;
+
+/// Points at which the length of a pass is measured: 40 a turn or more, so that it comes out too
+/// short by less than a hundredth.
+const PASS_POINTS: u32 = 256;
+
+/// How often the turns of a pass are halved in upon: to a thousandth of a turn.
+const HALVINGS: u32 = 12;
 
 /// How much of the way from the box's middle to its pole an orbit goes.
 const HIGHEST_LATITUDE: f64 = 0.97;
@@ -21,6 +32,9 @@ const LOWEST_LATITUDE: f64 = 0.39;
 /// Points `step` apart [m] on a box `height` [m] around everything. In space they wind from the
 /// foot of the box to its upper pole and back, and none is below the box: there is the table. In
 /// the plane they go round.
+///
+/// A way too short for a pass of [`MOST_TURNS`] is one pass of fewer: the hand comes to the sides
+/// and the top of the shape, however little time it has.
 pub(super) fn orbit<const D: usize>(
     bounds: &Aabb<D>,
     height: f64,
@@ -33,34 +47,61 @@ pub(super) fn orbit<const D: usize>(
         centre.0[1] += 0.5 * height;
         half.0[1] -= 0.5 * height;
     }
+    let turns = turns_a_pass(centre, half, step * count as f64);
     // The angle is advanced by what the last advance travelled.
     let mut angle = 0.0;
     let mut rate = step / half.norm();
-    let mut here = on_box(direction(angle), centre, half);
+    let mut here = on_box(direction(angle, turns), centre, half);
     (0..=count).map(move |_| {
         let result = here;
-        let ahead = on_box(direction(angle + rate), centre, half);
+        let ahead = on_box(direction(angle + rate, turns), centre, half);
         let travelled = (ahead - here).norm();
         rate *= (step / travelled.max(0.1 * step)).clamp(0.5, 2.0);
         angle += rate;
-        here = on_box(direction(angle), centre, half);
+        here = on_box(direction(angle, turns), centre, half);
         result
     })
 }
 
-/// The unit vector of the orbit at `angle` [rad] of its turns.
-fn direction<const D: usize>(angle: f64) -> Vector<f64, D> {
+/// The turns for which a pass is `way` long [m].
+fn turns_a_pass<const D: usize>(centre: Point<D>, half: Vector<f64, D>, way: f64) -> f64 {
+    if D < 3 {
+        return MOST_TURNS; // it goes round, without passes
+    }
+    let length = |turns: f64| -> f64 {
+        let at = |i: u32| {
+            let part = f64::from(i) / f64::from(PASS_POINTS);
+            on_box(direction(TAU * turns * part, turns), centre, half)
+        };
+        (0..PASS_POINTS).map(|i| (at(i + 1) - at(i)).norm()).sum()
+    };
+    let (mut low, mut high) = (FEWEST_TURNS, MOST_TURNS);
+    if length(high) <= way {
+        return high;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if length(middle) <= way {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// The unit vector of the orbit at `angle` [rad] of its turns, so many of which are a pass.
+fn direction<const D: usize>(angle: f64, turns: f64) -> Vector<f64, D> {
     let (sin, cos) = libm::sincos(angle);
     let mut direction = [0.0; D];
     match &mut direction[..] {
         [x, y] => (*x, *y) = (sin, cos),
         [x, y, z] => {
-            // From the middle up to the pole, down to the foot and back.
-            let pass = angle / (TAU * TURNS_A_PASS);
-            let triangle = 4.0 * (0.5 - ((0.5 * pass + 0.75).fract() - 0.5).abs()) - 1.0;
-            let end = if triangle > 0.0 { HIGHEST_LATITUDE } else { LOWEST_LATITUDE };
-            let latitude = 0.25 * TAU * end * triangle;
-            let (height, radius) = libm::sincos(latitude);
+            // From the foot up to the pole and back.
+            let pass = angle / (TAU * turns);
+            let risen = 1.0 - 2.0 * ((0.5 * pass).fract() - 0.5).abs();
+            let part = risen * (HIGHEST_LATITUDE + LOWEST_LATITUDE) - LOWEST_LATITUDE;
+            let (height, radius) = libm::sincos(0.25 * TAU * part);
             (*x, *y, *z) = (radius * sin, height, radius * cos);
         }
         _ => {}
@@ -76,4 +117,37 @@ fn on_box<const D: usize>(
 ) -> Point<D> {
     let largest = direction.0.into_iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     centre + Vector(std::array::from_fn(|i| half.0[i] * direction.0[i] / largest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lowest and the highest point of an orbit `way` long [m].
+    fn heights(way: f64) -> (f64, f64) {
+        let bounds = Aabb { min: Vector([-0.3, 0.0, -0.05]), max: Vector([0.3, 0.1, 0.05]) };
+        let points = orbit(&bounds, 0.1, 0.001, (way / 0.001) as usize).map(|p| p[1]);
+        points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)))
+    }
+
+    #[test]
+    fn an_orbit_comes_from_the_foot_to_the_top_however_short_it_is() {
+        for way in [2.0, 3.0, 5.0, 9.0, 20.0, 40.0] {
+            let (lowest, highest) = heights(way);
+            assert!((0.0..0.03).contains(&lowest), "{way} m: {lowest}");
+            assert!((highest - 0.2).abs() < 1e-9, "{way} m: {highest}");
+        }
+    }
+
+    #[test]
+    fn a_pass_has_as_many_turns_as_its_way_is_long_for() {
+        let half = Vector([0.1, 0.2, 0.3]);
+        let turns = |way: f64| turns_a_pass(Vector([1.0, 2.0, 3.0]), half, way);
+        assert_eq!(
+            (turns(0.1).to_bits(), turns(100.0).to_bits()),
+            (FEWEST_TURNS.to_bits(), MOST_TURNS.to_bits())
+        );
+        let (few, more) = (turns(2.0), turns(4.0));
+        assert!(FEWEST_TURNS < few && 1.5 * few < more && more < MOST_TURNS, "{few} {more}");
+    }
 }
