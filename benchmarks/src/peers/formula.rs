@@ -13,7 +13,7 @@ use palpate::field::kernel::{
 };
 use palpate::field::scalar::{Blend, Cubic, Quadratic, Scalar};
 use palpate::field::{Pose, Rotation, Vector};
-use palpate::scene::{Form, Node, Profile, Scene, WrittenRotation};
+use palpate::scene::{Boolean, Form, Node, Profile, Scene, WrittenRotation};
 
 use super::expression::Expression;
 use crate::scenes::pose;
@@ -147,7 +147,7 @@ where
             let without = fold(rest, &|a, b| a.min(b))?;
             Ok(distance(scene, first, p)?.max(-without))
         }
-        Form::SmoothUnion { of, width, profile } => match profile {
+        Form::Smooth { boolean: Boolean::Union, of, width, profile } => match profile {
             Some(Profile::Cubic) => {
                 let unit = width * Cubic::UNIT_OVER_WIDTH;
                 fold(of, &|a, b| a.smooth_min::<Cubic>(b, unit))

@@ -56,7 +56,7 @@ pub use build::{BuiltBody, BuiltScene, World};
 pub use error::SceneError;
 pub use material::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 pub use motion::{Motion, Repeat};
-pub use node::{Axis, Factor, Form, Node, Primitive, Profile};
+pub use node::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Row, Rows};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Body, Dimension, Scene};
 pub use schema::{schema, schema_text};

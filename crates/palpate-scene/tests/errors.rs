@@ -210,7 +210,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "smooth_union": [{ "ball": { "radius": 1 } }] }"#,
-                "shapes.a, line 4: missing key `width`: how far to fill [m]",
+                "shapes.a, line 4: missing key `width`: how far the surface moves where two distances are equal [m]",
                 Refuses,
             ),
             (

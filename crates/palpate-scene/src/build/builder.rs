@@ -11,7 +11,7 @@ use palpate_field::kernel::Entry;
 use super::shape_error;
 use super::size::{Allowance, Size, check_depth};
 use crate::node::Node;
-use crate::node::operators::{EXTRUDE, OF, REVOLVE};
+use crate::node::operators::{EXTRUDE, OF, REVOLVE, TWIST_DEGREES};
 use crate::pose::{Turning, Turns};
 use crate::problem::{Problem, shortened, unknown};
 use crate::scene::{Dimension, Scene};
@@ -55,6 +55,9 @@ pub(super) trait Space<'a, const D: usize> {
         height: Option<f64>,
         level: usize,
     ) -> Result<Built<D>, Problem>;
+
+    /// A shape twisted by `rate` [rad/m].
+    fn twisted(shape: Shape<D>, rate: f64) -> Result<Shape<D>, Problem>;
 }
 
 impl<'a> Builder<'a> {
@@ -192,6 +195,11 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         let message = format!("`{operator}` makes a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension())
     }
+
+    fn twisted(_shape: Shape<2>, _rate: f64) -> Result<Shape<2>, Problem> {
+        let message = format!("`{TWIST_DEGREES}` twists a 3D shape, this place is 2D");
+        Err(Problem::new(message).of_dimension())
+    }
 }
 
 impl<'a> Space<'a, 3> for Builder<'a> {
@@ -223,5 +231,10 @@ impl<'a> Space<'a, 3> for Builder<'a> {
         };
         let shape = shape.map_err(|error| shape_error::of_operator(key, &error))?;
         Ok(Built { shape, size })
+    }
+
+    fn twisted(shape: Shape<3>, rate: f64) -> Result<Shape<3>, Problem> {
+        let twisted = shape.twisted(rate);
+        twisted.map_err(|error| shape_error::of_operator(TWIST_DEGREES, &error))
     }
 }

@@ -5,14 +5,14 @@
 
 use palpate_field::Shape;
 use palpate_field::kernel::Argument;
-use palpate_field::operator::Smooth;
+use palpate_field::operator::{Copies, Smooth};
 
 use super::builder::{Builder, Built, Space};
 use super::shape_error;
 use super::size::Size;
 use crate::catalogue::{self, file_key};
 use crate::node::operators as keys;
-use crate::node::{Axis, Factor, Form, Primitive, Profile};
+use crate::node::{Axis, Boolean, Factor, Form, Primitive, Profile, Row, Rows};
 use crate::pose::{self, Turning, Turns};
 use crate::problem::{Problem, unknown};
 
@@ -34,7 +34,9 @@ impl<'a> Builder<'a> {
             | Form::Intersection(_)
             | Form::Difference(_)
             | Form::SymmetricDifference(_)
-            | Form::SmoothUnion { .. } => self.list(form, level),
+            | Form::Smooth { .. }
+            | Form::Displaced { .. }
+            | Form::Morphed { .. } => self.list(form, level),
             Form::Extruded { height, of } => self.solid(of, Some(*height), level),
             Form::Revolved { of } => self.solid(of, None, level),
             _ => self.unary(form, level),
@@ -116,16 +118,38 @@ impl<'a> Builder<'a> {
             Form::Union(_) => Shape::union(shapes),
             Form::Intersection(_) => Shape::intersection(shapes),
             Form::SymmetricDifference(_) => Shape::symmetric_difference(shapes),
-            Form::SmoothUnion { width, profile, .. } => {
-                let profile = profile.unwrap_or(Profile::Quadratic);
-                Shape::smooth_union(shapes, Smooth::from(profile), *width)
+            Form::Smooth { boolean, width, profile, .. } => {
+                let profile = Smooth::from(profile.unwrap_or(Profile::Quadratic));
+                match boolean {
+                    Boolean::Union => Shape::smooth_union(shapes, profile, *width),
+                    Boolean::Intersection => {
+                        Shape::smooth_intersection(shapes, profile, *width)
+                    }
+                    Boolean::Difference => {
+                        let first = shapes.remove(0);
+                        first.smooth_difference(shapes, profile, *width)
+                    }
+                }
+            }
+            Form::Displaced { height, .. } => {
+                let [what, by] = two(shapes, key)?;
+                what.displaced(by, *height)
+            }
+            Form::Morphed { progress, .. } => {
+                let [from, into] = two(shapes, key)?;
+                from.morphed(into, *progress)
             }
             _ => {
                 let first = shapes.remove(0);
                 first.difference(shapes)
             }
         };
-        let shape = shape.map_err(|error| shape_error::of_operator(keys::WIDTH, &error))?;
+        let number = match form {
+            Form::Displaced { .. } => keys::HEIGHT,
+            Form::Morphed { .. } => keys::PROGRESS,
+            _ => keys::WIDTH,
+        };
+        let shape = shape.map_err(|error| shape_error::of_operator(number, &error))?;
         Ok(Built { shape, size })
     }
 
@@ -145,7 +169,10 @@ impl<'a> Builder<'a> {
         };
         let child: Built<D> =
             self.node(of, level).map_err(|problem| problem.under(keys::OF))?;
-        let size = Size::over(&[child.size]);
+        let size = match form {
+            Form::Repeated { .. } => Size::over(&[child.size.repeated(D as u32)]),
+            _ => Size::over(&[child.size]),
+        };
         self.allowance.take(size, level)?;
         let child = child.shape;
         let (key, result) = match form {
@@ -179,11 +206,55 @@ impl<'a> Builder<'a> {
                 return Err(Problem::new(message).of_dimension().under(keys::MIRROR));
             }
             Form::Mirrored { axis, .. } => (keys::MIRROR, child.mirrored(*axis as usize)),
+            Form::Repeated { rows, .. } => (keys::REPEAT, child.repeated(copies(rows)?)),
+            Form::Twisted { degrees_per_metre, .. } => {
+                let shape = Self::twisted(child, degrees_per_metre.to_radians())?;
+                return Ok(Built { shape, size });
+            }
+            Form::Bent { degrees_per_metre, .. } => {
+                (keys::BEND_DEGREES, child.bent(degrees_per_metre.to_radians()))
+            }
             _ => return Err(Problem::new("an operator on one shape")),
         };
         let shape = result.map_err(|error| shape_error::of_operator(key, &error))?;
         Ok(Built { shape, size })
     }
+}
+
+/// The two shapes of a list.
+fn two<const D: usize>(shapes: Vec<Shape<D>>, key: &str) -> Result<[Shape<D>; 2], Problem> {
+    let count = shapes.len();
+    shapes
+        .try_into()
+        .map_err(|_| Problem::new(format!("{key} must have 2 shapes, got {count}")).under(key))
+}
+
+/// The copies along each axis.
+fn copies<const D: usize>(rows: &Rows) -> Result<[Copies; D], Problem> {
+    let axes = [("x", rows.x), ("y", rows.y), ("z", rows.z)];
+    if D == 2 && rows.z.is_some() {
+        let problem = Problem::new("there is no z in 2D: repeat along x or y");
+        return Err(problem.of_dimension().under("z").under(keys::REPEAT));
+    }
+    if axes.iter().all(|(_, row)| row.is_none()) {
+        let problem = Problem::new("repeat must have a row along at least one axis");
+        return Err(problem.under(keys::REPEAT));
+    }
+    let mut copies = [Copies::One; D];
+    for (copies, (axis, row)) in copies.iter_mut().zip(axes) {
+        *copies = match row {
+            None => Copies::One,
+            Some(Row { spacing, first: None, last: None }) => Copies::Endless { spacing },
+            Some(Row { spacing, first: Some(first), last: Some(last) }) => {
+                Copies::Between { spacing, first, last }
+            }
+            Some(_) => {
+                let problem = Problem::new("first and last go together");
+                return Err(problem.under(axis).under(keys::REPEAT));
+            }
+        };
+    }
+    Ok(copies)
 }
 
 /// Checks that every position has as many numbers as there are dimensions.

@@ -35,6 +35,15 @@ impl Size {
     }
 }
 
+impl Size {
+    /// The size of a repetition, which may ask its shape for the copies to both sides
+    /// along each axis.
+    pub(super) fn repeated(self, dimensions: u32) -> Self {
+        let copies = 3_usize.pow(dimensions);
+        Self { nodes: self.nodes.saturating_mul(copies), depth: self.depth + 2 }
+    }
+}
+
 /// What may still be built.
 #[derive(Debug)]
 pub(super) struct Allowance {

@@ -4,7 +4,7 @@
 //! From the keys of an object to the one shape that they describe.
 
 use super::operators::{self as keys, OF};
-use super::{Axis, Factor, Form, Node, Primitive, Profile};
+use super::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Rows};
 use crate::pose::{self, Turn};
 
 /// The values of a node's keys.
@@ -15,6 +15,8 @@ pub(super) struct Parts {
     pub(super) shape: Option<String>,
     pub(super) width: Option<f64>,
     pub(super) profile: Option<Profile>,
+    pub(super) height: Option<f64>,
+    pub(super) progress: Option<f64>,
     pub(super) translate: Option<Vec<f64>>,
     pub(super) rotate_degrees: Option<Turn>,
     pub(super) rotation: Option<[f64; 4]>,
@@ -23,6 +25,9 @@ pub(super) struct Parts {
     pub(super) shell: Option<f64>,
     pub(super) elongate: Option<Vec<f64>>,
     pub(super) mirror: Option<Axis>,
+    pub(super) repeat: Option<Rows>,
+    pub(super) bend_degrees: Option<f64>,
+    pub(super) twist_degrees: Option<f64>,
     pub(super) extrude: Option<f64>,
     pub(super) revolve: Option<About>,
     pub(super) lists: Vec<(&'static str, Vec<Node>)>,
@@ -58,13 +63,19 @@ impl Parts {
                 format!("key `{OF}` does not go with `{head}`")
             });
         }
-        if head != keys::SMOOTH_UNION {
-            for (key, is_there) in
-                [(keys::WIDTH, self.width.is_some()), (keys::PROFILE, self.profile.is_some())]
-            {
-                if is_there {
-                    return Err(format!("key `{key}` does not go with `{head}`"));
-                }
+        for (key, is_needed, lists, about) in keys::WITH_LISTS {
+            let is_there = match key {
+                keys::WIDTH => self.width.is_some(),
+                keys::PROFILE => self.profile.is_some(),
+                keys::HEIGHT => self.height.is_some(),
+                _ => self.progress.is_some(),
+            };
+            let goes = lists.contains(&head);
+            if is_there && !goes {
+                return Err(format!("key `{key}` does not go with `{head}`"));
+            }
+            if goes && is_needed && !is_there {
+                return Err(format!("missing key `{key}`: {about}"));
             }
         }
         let description = self.description.take();
@@ -91,6 +102,9 @@ impl Parts {
             (self.shell.is_some(), keys::SHELL),
             (self.elongate.is_some(), keys::ELONGATE),
             (self.mirror.is_some(), keys::MIRROR),
+            (self.repeat.is_some(), keys::REPEAT),
+            (self.bend_degrees.is_some(), keys::BEND_DEGREES),
+            (self.twist_degrees.is_some(), keys::TWIST_DEGREES),
             (self.extrude.is_some(), keys::EXTRUDE),
             (self.revolve.is_some(), keys::REVOLVE),
         ];
@@ -107,15 +121,21 @@ impl Parts {
             return Ok(Form::Primitive(primitive));
         }
         if let Some((list, of)) = self.lists.into_iter().next() {
+            // What a list needs was checked.
+            let (width, profile) = (self.width.unwrap_or_default(), self.profile);
+            let smooth = |boolean, of| Form::Smooth { boolean, of, width, profile };
             return Ok(match list {
                 keys::UNION => Form::Union(of),
                 keys::INTERSECTION => Form::Intersection(of),
                 keys::DIFFERENCE => Form::Difference(of),
                 keys::SYMMETRIC_DIFFERENCE => Form::SymmetricDifference(of),
-                _ => {
-                    let width = self.width.ok_or("missing key `width`: how far to fill [m]")?;
-                    Form::SmoothUnion { of, width, profile: self.profile }
+                keys::SMOOTH_UNION => smooth(Boolean::Union, of),
+                keys::SMOOTH_INTERSECTION => smooth(Boolean::Intersection, of),
+                keys::SMOOTH_DIFFERENCE => smooth(Boolean::Difference, of),
+                keys::DISPLACE => {
+                    Form::Displaced { of, height: self.height.unwrap_or_default() }
                 }
+                _ => Form::Morphed { of, progress: self.progress.unwrap_or_default() },
             });
         }
         let Some(of) = self.of.map(Box::new) else {
@@ -131,6 +151,12 @@ impl Parts {
             Ok(Form::Elongated { lengths, of })
         } else if let Some(axis) = self.mirror {
             Ok(Form::Mirrored { axis, of })
+        } else if let Some(rows) = self.repeat {
+            Ok(Form::Repeated { rows, of })
+        } else if let Some(degrees_per_metre) = self.bend_degrees {
+            Ok(Form::Bent { degrees_per_metre, of })
+        } else if let Some(degrees_per_metre) = self.twist_degrees {
+            Ok(Form::Twisted { degrees_per_metre, of })
         } else if let Some(height) = self.extrude {
             Ok(Form::Extruded { height, of })
         } else if let Some(About::Y) = self.revolve {

@@ -56,14 +56,30 @@ pub enum Form {
     Difference(Vec<Node>),
     /// What is in an odd number of the shapes.
     SymmetricDifference(Vec<Node>),
-    /// The union with its creases filled.
-    SmoothUnion {
+    /// A boolean with its creases filled, or its edges rounded off.
+    Smooth {
+        /// Which.
+        boolean: Boolean,
         /// The shapes, blended in their order.
         of: Vec<Node>,
-        /// The fill where two distances are equal [m].
+        /// How far the surface moves where two distances are equal [m].
         width: f64,
-        /// The profile of the fill; quadratic if left out.
+        /// The profile of the crease; quadratic if left out.
         profile: Option<Profile>,
+    },
+    /// The first shape with its surface moved by the second field.
+    Displaced {
+        /// The shape, and the field.
+        of: Vec<Node>,
+        /// How far the surface moves at most [m].
+        height: f64,
+    },
+    /// A shape on the way from the first to the second.
+    Morphed {
+        /// Both.
+        of: Vec<Node>,
+        /// How far on the way, from 0 to 1.
+        progress: f64,
     },
     /// The shape turned, then moved.
     Placed {
@@ -109,6 +125,27 @@ pub enum Form {
         /// The shape.
         of: Box<Node>,
     },
+    /// Copies of the shape along axes.
+    Repeated {
+        /// The rows of copies.
+        rows: Rows,
+        /// The shape.
+        of: Box<Node>,
+    },
+    /// The shape turned in the plane of x and y, more and more along x.
+    Bent {
+        /// By how much for each metre [°/m].
+        degrees_per_metre: f64,
+        /// The shape.
+        of: Box<Node>,
+    },
+    /// The shape turned about y, more and more along y; in space alone.
+    Twisted {
+        /// By how much for each metre [°/m].
+        degrees_per_metre: f64,
+        /// The shape.
+        of: Box<Node>,
+    },
     /// A flat shape, drawn in x and z, given a height along y.
     Extruded {
         /// The height [m].
@@ -144,7 +181,58 @@ pub enum Axis {
     Z,
 }
 
-/// The profile of the fill of a smooth union.
+/// A boolean that can be smooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Boolean {
+    /// What is in any of the shapes.
+    Union,
+    /// What is in all of the shapes.
+    Intersection,
+    /// What is in the first shape and none of the others.
+    Difference,
+}
+
+/// Rows of copies, along the axes that have one.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    serde::Serialize,
+    serde::Deserialize,
+    schemars::JsonSchema,
+)]
+#[serde(deny_unknown_fields)]
+pub struct Rows {
+    /// Along x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<Row>,
+    /// Along y.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y: Option<Row>,
+    /// Along z, in space alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub z: Option<Row>,
+}
+
+/// A row of copies: between two numbers, or without end.
+#[derive(
+    Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// From one copy to the next [m].
+    pub spacing: f64,
+    /// The lowest number of a copy, the shape itself being number 0; goes with `last`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first: Option<i32>,
+    /// The highest number of a copy; goes with `first`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<i32>,
+}
+
+/// The profile of the crease of a smooth boolean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Profile {
@@ -152,6 +240,29 @@ pub enum Profile {
     Quadratic,
     /// Reaches 6 times its width, rounder at its ends.
     Cubic,
+    /// Reaches 16/3 times its width, round at its ends and in the middle.
+    Quartic,
+    /// Reaches 3.41 times its width, a quarter circle.
+    Circular,
+    /// A hyperbola, without end.
+    Root,
+    /// Without end; the order of the shapes makes no difference.
+    Exponential,
+    /// A fillet where two shapes meet at right angles; √2 times as steep.
+    CircularGeometrical,
+}
+
+impl Profile {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Quadratic,
+        Self::Cubic,
+        Self::Quartic,
+        Self::Circular,
+        Self::Root,
+        Self::Exponential,
+        Self::CircularGeometrical,
+    ];
 }
 
 impl From<Profile> for Smooth {
@@ -159,6 +270,11 @@ impl From<Profile> for Smooth {
         match profile {
             Profile::Quadratic => Self::Quadratic,
             Profile::Cubic => Self::Cubic,
+            Profile::Quartic => Self::Quartic,
+            Profile::Circular => Self::Circular,
+            Profile::Root => Self::Root,
+            Profile::Exponential => Self::Exponential,
+            Profile::CircularGeometrical => Self::CircularGeometrical,
         }
     }
 }
@@ -190,6 +306,17 @@ impl Node {
     }
 }
 
+impl Boolean {
+    /// The key of the smooth boolean.
+    fn key(self) -> &'static str {
+        match self {
+            Self::Union => operators::SMOOTH_UNION,
+            Self::Intersection => operators::SMOOTH_INTERSECTION,
+            Self::Difference => operators::SMOOTH_DIFFERENCE,
+        }
+    }
+}
+
 impl Form {
     /// The key that carries the operands, and the operands.
     pub(crate) fn operands(&self) -> (&'static str, &[Node]) {
@@ -199,13 +326,18 @@ impl Form {
             Self::Intersection(nodes) => (operators::INTERSECTION, nodes),
             Self::Difference(nodes) => (operators::DIFFERENCE, nodes),
             Self::SymmetricDifference(nodes) => (operators::SYMMETRIC_DIFFERENCE, nodes),
-            Self::SmoothUnion { of, .. } => (operators::SMOOTH_UNION, of),
+            Self::Smooth { boolean, of, .. } => (boolean.key(), of),
+            Self::Displaced { of, .. } => (operators::DISPLACE, of),
+            Self::Morphed { of, .. } => (operators::MORPH, of),
             Self::Placed { of, .. }
             | Self::Scaled { of, .. }
             | Self::Offset { of, .. }
             | Self::Shell { of, .. }
             | Self::Elongated { of, .. }
             | Self::Mirrored { of, .. }
+            | Self::Repeated { of, .. }
+            | Self::Bent { of, .. }
+            | Self::Twisted { of, .. }
             | Self::Extruded { of, .. }
             | Self::Revolved { of } => (operators::OF, std::slice::from_ref(of)),
         }

@@ -14,10 +14,22 @@ pub(crate) const DIFFERENCE: &str = "difference";
 pub(crate) const SYMMETRIC_DIFFERENCE: &str = "symmetric_difference";
 /// `{ "smooth_union": [..], "width": w, "profile": .. }`.
 pub(crate) const SMOOTH_UNION: &str = "smooth_union";
-/// The width of a smooth union.
+/// `{ "smooth_intersection": [..], "width": w, "profile": .. }`.
+pub(crate) const SMOOTH_INTERSECTION: &str = "smooth_intersection";
+/// `{ "smooth_difference": [first, minus, ..], "width": w, "profile": .. }`.
+pub(crate) const SMOOTH_DIFFERENCE: &str = "smooth_difference";
+/// The width of a smooth boolean.
 pub(crate) const WIDTH: &str = "width";
-/// The profile of a smooth union.
+/// The profile of a smooth boolean.
 pub(crate) const PROFILE: &str = "profile";
+/// `{ "displace": [what, by], "height": h }`.
+pub(crate) const DISPLACE: &str = "displace";
+/// The height of a displacement.
+pub(crate) const HEIGHT: &str = "height";
+/// `{ "morph": [from, into], "progress": t }`.
+pub(crate) const MORPH: &str = "morph";
+/// The progress of a morph.
+pub(crate) const PROGRESS: &str = "progress";
 /// `{ "translate": [..], "of": .. }`.
 pub(crate) const TRANSLATE: &str = "translate";
 /// `{ "rotate_degrees": .., "of": .. }`.
@@ -34,6 +46,12 @@ pub(crate) const SHELL: &str = "shell";
 pub(crate) const ELONGATE: &str = "elongate";
 /// `{ "mirror": "x", "of": .. }`.
 pub(crate) const MIRROR: &str = "mirror";
+/// `{ "repeat": { "x": { "spacing": .. }, .. }, "of": .. }`.
+pub(crate) const REPEAT: &str = "repeat";
+/// `{ "bend_degrees": .., "of": .. }`.
+pub(crate) const BEND_DEGREES: &str = "bend_degrees";
+/// `{ "twist_degrees": .., "of": .. }`.
+pub(crate) const TWIST_DEGREES: &str = "twist_degrees";
 /// `{ "extrude": .., "of": .. }`.
 pub(crate) const EXTRUDE: &str = "extrude";
 /// `{ "revolve": "y", "of": .. }`.
@@ -46,16 +64,26 @@ pub(crate) const SHAPE: &str = "shape";
 pub(crate) const DESCRIPTION: &str = "description";
 
 /// The operators whose key holds the list of their operands.
-pub(crate) const LISTS: [(&str, &str); 5] = [
+pub(crate) const LISTS: [(&str, &str); 9] = [
     (UNION, "What is in any of the shapes."),
     (INTERSECTION, "What is in all of the shapes."),
     (DIFFERENCE, "What is in the first shape and in none of the others."),
     (SYMMETRIC_DIFFERENCE, "What is in an odd number of the shapes."),
     (SMOOTH_UNION, "The union of the shapes, its creases filled."),
+    (SMOOTH_INTERSECTION, "The intersection of the shapes, its edges rounded off."),
+    (
+        SMOOTH_DIFFERENCE,
+        "The first shape without the others, the edges of the cuts rounded off.",
+    ),
+    (
+        DISPLACE,
+        "The first shape, its surface moved outwards where the second field is positive.",
+    ),
+    (MORPH, "A shape on the way from the first to the second."),
 ];
 
 /// The operators with one operand, under [`OF`]; the first three go together.
-pub(crate) const UNARY: [(&str, &str); 10] = [
+pub(crate) const UNARY: [(&str, &str); 13] = [
     (TRANSLATE, "Moves the shape [m]; after the rotation, if there is one."),
     (ROTATE_DEGREES, "Turns the shape: degrees in 2D, axis and angle in 3D."),
     (ROTATION, "Turns the shape in 3D: a quaternion [x, y, z, w]."),
@@ -64,12 +92,30 @@ pub(crate) const UNARY: [(&str, &str); 10] = [
     (SHELL, "Makes a wall of this thickness on the surface of the shape [m]."),
     (ELONGATE, "Pulls the shape apart at the coordinate planes [m]."),
     (MIRROR, "Adds the mirror image of the part at positive coordinates of an axis."),
+    (REPEAT, "Repeats the shape along axes: spacing [m], first and last number of the copies."),
+    (
+        BEND_DEGREES,
+        "Bends the shape: turns it in the plane of x and y by so much for each metre of x.",
+    ),
+    (TWIST_DEGREES, "Twists the shape: turns it about y by so much for each metre of y."),
     (EXTRUDE, "Gives a 2D shape, drawn in x and z, a height along y [m]."),
     (REVOLVE, "Turns a 2D shape about y, its x the distance from the axis."),
 ];
 
 /// The rest of the keys.
-const OTHERS: [&str; 5] = [WIDTH, PROFILE, OF, SHAPE, DESCRIPTION];
+const OTHERS: [&str; 7] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, SHAPE, DESCRIPTION];
+
+/// The smooth booleans.
+pub(crate) const SMOOTH: [&str; 3] = [SMOOTH_UNION, SMOOTH_INTERSECTION, SMOOTH_DIFFERENCE];
+
+/// The keys of numbers that go with lists: which, whether the lists need them, and what
+/// they are.
+pub(crate) const WITH_LISTS: [(&str, bool, &[&str], &str); 4] = [
+    (WIDTH, true, &SMOOTH, "how far the surface moves where two distances are equal [m]"),
+    (PROFILE, false, &SMOOTH, "the profile of the crease; quadratic if left out"),
+    (HEIGHT, true, &[DISPLACE], "how far the surface moves at most [m]"),
+    (PROGRESS, true, &[MORPH], "how far on the way, from 0 to 1"),
+];
 
 /// Every key that a node may have, the primitives' names included.
 pub(crate) fn all_keys() -> Vec<&'static str> {

@@ -45,7 +45,16 @@ impl Serialize for Node {
             Form::Mirrored { axis, .. } => map.serialize_entry(keys::MIRROR, axis)?,
             Form::Extruded { height, .. } => map.serialize_entry(keys::EXTRUDE, height)?,
             Form::Revolved { .. } => map.serialize_entry(keys::REVOLVE, "y")?,
-            Form::SmoothUnion { width, profile, .. } => {
+            Form::Repeated { rows, .. } => map.serialize_entry(keys::REPEAT, rows)?,
+            Form::Bent { degrees_per_metre, .. } => {
+                map.serialize_entry(keys::BEND_DEGREES, degrees_per_metre)?;
+            }
+            Form::Twisted { degrees_per_metre, .. } => {
+                map.serialize_entry(keys::TWIST_DEGREES, degrees_per_metre)?;
+            }
+            Form::Displaced { height, .. } => map.serialize_entry(keys::HEIGHT, height)?,
+            Form::Morphed { progress, .. } => map.serialize_entry(keys::PROGRESS, progress)?,
+            Form::Smooth { width, profile, .. } => {
                 map.serialize_entry(keys::WIDTH, width)?;
                 if let Some(profile) = profile {
                     map.serialize_entry(keys::PROFILE, profile)?;

@@ -190,7 +190,7 @@ impl JsonSchema for Profile {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "enum": [Self::Quadratic, Self::Cubic] })
+        json_schema!({ "enum": Self::ALL })
     }
 }
 

@@ -53,21 +53,10 @@ pub(super) fn schema(dimension: Dimension) -> Value {
     makers.push(requires(keys::SHAPE));
 
     let rest = [
-        (
-            keys::WIDTH,
-            json!({
-                "description": "How far a smooth union fills where two distances are equal [m].",
-                "type": "number",
-                "exclusiveMinimum": 0,
-            }),
-        ),
-        (
-            keys::PROFILE,
-            json!({
-                "description": "The profile of the fill of a smooth union; quadratic if left out.",
-                "enum": [Profile::Quadratic, Profile::Cubic],
-            }),
-        ),
+        (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
+        (keys::PROFILE, json!({ "enum": Profile::ALL })),
+        (keys::HEIGHT, json!({ "type": "number", "exclusiveMinimum": 0 })),
+        (keys::PROGRESS, json!({ "type": "number", "minimum": 0, "maximum": 1 })),
         (OF, operand(dimension)),
         (
             keys::SHAPE,
@@ -84,12 +73,16 @@ pub(super) fn schema(dimension: Dimension) -> Value {
     for key in &with_of {
         together.insert((*key).to_owned(), json!([OF]));
     }
-    for (key, other) in [
-        (keys::SMOOTH_UNION, keys::WIDTH),
-        (keys::WIDTH, keys::SMOOTH_UNION),
-        (keys::PROFILE, keys::SMOOTH_UNION),
-    ] {
-        together.insert(key.to_owned(), json!([other]));
+    // `of` needs one of the operators that take it, numbers one of their lists.
+    let any_of = |keys: &[&str]| json!({ "anyOf": keys.iter().map(|key| requires(key)).collect::<Vec<_>>() });
+    let mut needs = Map::new();
+    needs.insert(OF.to_owned(), any_of(&with_of));
+    for (key, is_needed, lists, about) in keys::WITH_LISTS {
+        properties[key]["description"] = format!("{}.", capitalised(about)).into();
+        needs.insert(key.to_owned(), any_of(lists));
+        if is_needed {
+            together.extend(lists.iter().map(|list| ((*list).to_owned(), json!([key]))));
+        }
     }
     let mut node = json!({
         "description": "A shape: an object that makes it, or the name of another shape.",
@@ -99,10 +92,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         "dependentRequired": together,
         "if": { "type": "object" },
         "then": { "oneOf": makers },
-        // `of` needs one of the operators that take it.
-        "dependentSchemas": {
-            OF: { "anyOf": with_of.iter().map(|key| requires(key)).collect::<Vec<_>>() },
-        },
+        "dependentSchemas": needs,
     });
     if dimension == Dimension::Three {
         node["not"] = json!({
@@ -155,6 +145,32 @@ fn flat_operands(node: &mut Value) {
     }]);
 }
 
+/// Rows of copies along the axes of the dimension.
+fn rows(dimension: Dimension) -> Value {
+    let number = json!({ "type": "integer" });
+    let row = json!({
+        "type": "object",
+        "properties": {
+            "spacing": { "type": "number", "exclusiveMinimum": 0 },
+            "first": number,
+            "last": number,
+        },
+        "required": ["spacing"],
+        "dependentRequired": { "first": ["last"], "last": ["first"] },
+        "additionalProperties": false,
+    });
+    let mut axes = Map::new();
+    for axis in ["x", "y", "z"].into_iter().take(dimension.count()) {
+        axes.insert(axis.to_owned(), row.clone());
+    }
+    json!({
+        "type": "object",
+        "properties": axes,
+        "minProperties": 1,
+        "additionalProperties": false,
+    })
+}
+
 /// The value of an operator with one operand; `None` if the dimension lacks it.
 fn operator(key: &str, dimension: Dimension) -> Option<Value> {
     let is_solid = dimension == Dimension::Three;
@@ -171,6 +187,9 @@ fn operator(key: &str, dimension: Dimension) -> Option<Value> {
         keys::ELONGATE => factors(&json!({ "type": "number", "minimum": 0 }), dimension),
         keys::MIRROR if is_solid => json!({ "enum": [Axis::X, Axis::Y, Axis::Z] }),
         keys::MIRROR => json!({ "enum": [Axis::X, Axis::Y] }),
+        keys::REPEAT => rows(dimension),
+        keys::BEND_DEGREES => json!({ "type": "number" }),
+        keys::TWIST_DEGREES if is_solid => json!({ "type": "number" }),
         keys::EXTRUDE if is_solid => factor,
         keys::REVOLVE if is_solid => json!({ "enum": [Axis::Y] }),
         _ => return None,

@@ -6,9 +6,9 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
 use palpate_scene::{
-    Axis, AxisAngle, Body, Coupling, Dimension, Factor, Form, FreePlane, Impact, Layer, Magnet,
-    Material, Motion, Node, PopThrough, Profile, Repeat, Scene, Texture, TextureKind, Tool,
-    View, ViewPlane, Workspace, WrittenPose, WrittenRotation,
+    Axis, AxisAngle, Body, Boolean, Coupling, Dimension, Factor, Form, FreePlane, Impact,
+    Layer, Magnet, Material, Motion, Node, PopThrough, Profile, Repeat, Row, Rows, Scene,
+    Texture, TextureKind, Tool, View, ViewPlane, Workspace, WrittenPose, WrittenRotation,
 };
 
 /// A primitive of the catalogue with the keys of its parameters in files.
@@ -146,16 +146,29 @@ impl Generator {
             (0..count).map(|_| self.node(u, d, depth - 1, shapes)).collect()
         };
         let of = |u: Random| self.node(u, d, depth - 1, shapes).map(Box::new);
-        Ok(match u.int_in_range(0..=if d == 3 { 12 } else { 10 })? {
+        let two = |u: Random| -> Result<Vec<Node>> {
+            (0..2).map(|_| self.node(u, d, depth - 1, shapes)).collect()
+        };
+        Ok(match u.int_in_range(0..=if d == 3 { 17 } else { 14 })? {
             0 => Form::Union(many(u)?),
             1 => Form::Intersection(many(u)?),
             2 => Form::Difference(many(u)?),
             3 => Form::SymmetricDifference(many(u)?),
-            4 => Form::SmoothUnion {
+            4 => Form::Smooth {
+                boolean: *u.choose(&[
+                    Boolean::Union,
+                    Boolean::Intersection,
+                    Boolean::Difference,
+                ])?,
                 of: many(u)?,
                 width: length(u)?,
-                profile: maybe(u, |u| Ok(*u.choose(&[Profile::Quadratic, Profile::Cubic])?))?,
+                profile: maybe(u, |u| Ok(*u.choose(&Profile::ALL)?))?,
             },
+            11 => Form::Displaced { of: two(u)?, height: length(u)? },
+            12 => Form::Morphed { of: two(u)?, progress: u.int_in_range(0..=8)? as f64 / 8.0 },
+            13 => Form::Bent { degrees_per_metre: number(u)?, of: of(u)? },
+            14 => Form::Repeated { rows: rows(u, d)?, of: of(u)? },
+            15 => Form::Twisted { degrees_per_metre: number(u)?, of: of(u)? },
             5 => Form::Placed {
                 translate: Some(numbers(u, d)?),
                 rotation: maybe(u, |u| rotation(u, d))?,
@@ -176,7 +189,7 @@ impl Generator {
                 of: of(u)?,
             },
             10 => Form::Mirrored { axis: *u.choose(&[Axis::X, Axis::Y])?, of: of(u)? },
-            11 => Form::Extruded {
+            16 => Form::Extruded {
                 height: length(u)?,
                 of: Box::new(self.node(u, 2, depth - 1, 0)?),
             },
@@ -364,5 +377,25 @@ fn view(u: Random, d: usize, i: usize) -> Result<View> {
         width: maybe(u, length)?,
         height: maybe(u, length)?,
         spacing: maybe(u, length)?,
+    })
+}
+
+/// Rows of copies along at least one axis.
+fn rows(u: Random, d: usize) -> Result<Rows> {
+    let row = |u: Random| -> Result<Row> {
+        let ends = maybe(u, |u| {
+            let first = u.int_in_range(-3..=1_i32)?;
+            Ok((first, first + u.int_in_range(0..=3_i32)?))
+        })?;
+        Ok(Row {
+            spacing: length(u)?,
+            first: ends.map(|(first, _)| first),
+            last: ends.map(|(_, last)| last),
+        })
+    };
+    Ok(Rows {
+        x: Some(row(u)?),
+        y: maybe(u, row)?,
+        z: if d == 3 { maybe(u, row)? } else { None },
     })
 }
