@@ -224,6 +224,56 @@ fn bad_shapes_are_refused_with_their_place() {
                 Refuses,
             ),
             (
+                r#"{ "smooth_difference": ["cup"], "width": 1, "height": 1 }"#,
+                "shapes.a, line 4: key `height` does not go with `smooth_difference`",
+                Refuses,
+            ),
+            (
+                r#"{ "displace": ["cup", "cup"], "height": 0 }"#,
+                "shapes.a.height, line 4: height must be positive, got 0 m",
+                Refuses,
+            ),
+            (
+                r#"{ "displace": ["cup"], "height": 1 }"#,
+                "shapes.a.displace, line 4: displace must have 2 shapes, got 1",
+                Refuses,
+            ),
+            (
+                r#"{ "morph": ["cup", "cup"], "progress": 2 }"#,
+                "shapes.a.progress, line 4: morph must be from 0 to 1, got 2",
+                Refuses,
+            ),
+            (
+                r#"{ "repeat": { "x": { "spacing": 0.5 } }, "of": "cup" }"#,
+                "shapes.a.repeat, line 4: spacing must be at least half the width of the shape, 2 m, got 0.5 m",
+                Accepts,
+            ),
+            (
+                r#"{ "repeat": { "x": { "spacing": 9, "first": 1 } }, "of": "cup" }"#,
+                "shapes.a.repeat.x, line 4: first and last go together",
+                Refuses,
+            ),
+            (
+                r#"{ "repeat": { "x": { "spacing": 9, "first": 2, "last": 1 } }, "of": "cup" }"#,
+                "shapes.a.repeat, line 4: first must be at most the last, 1, got 2",
+                Accepts,
+            ),
+            (
+                r#"{ "repeat": {}, "of": "cup" }"#,
+                "shapes.a.repeat, line 4: repeat must have a row along at least one axis",
+                Refuses,
+            ),
+            (
+                r#"{ "twist_degrees": 1e9, "of": "cup" }"#,
+                "shapes.a.twist_degrees, line 4: twist must be such that the shape turns by at most 10000 rad, got 17453292.519943297",
+                Accepts,
+            ),
+            (
+                r#"{ "bend_degrees": 9, "of": { "half_space": { "normal": [0, 1, 0], "offset": 0 } } }"#,
+                "shapes.a, line 4: bend needs a shape with bounds",
+                Accepts,
+            ),
+            (
                 r#"{ "union": [{ "ball": { "radius": 1 } }], "width": 1 }"#,
                 "shapes.a, line 4: key `width` does not go with `union`",
                 Refuses,

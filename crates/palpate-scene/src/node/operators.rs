@@ -108,6 +108,9 @@ const OTHERS: [&str; 7] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, SHAPE, DESCRIPT
 /// The smooth booleans.
 pub(crate) const SMOOTH: [&str; 3] = [SMOOTH_UNION, SMOOTH_INTERSECTION, SMOOTH_DIFFERENCE];
 
+/// The lists of two.
+pub(crate) const PAIRS: [&str; 2] = [DISPLACE, MORPH];
+
 /// The keys of numbers that go with lists: which, whether the lists need them, and what
 /// they are.
 pub(crate) const WITH_LISTS: [(&str, bool, &[&str], &str); 4] = [

@@ -25,15 +25,16 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         makers.push(requires(signature.name));
     }
     for (key, about) in LISTS {
-        properties.insert(
-            key.to_owned(),
-            json!({
-                "description": about,
-                "type": "array",
-                "items": { "$ref": "#/$defs/Node" },
-                "minItems": 1,
-            }),
-        );
+        let mut list = json!({
+            "description": about,
+            "type": "array",
+            "items": { "$ref": "#/$defs/Node" },
+            "minItems": 1,
+        });
+        if keys::PAIRS.contains(&key) {
+            (list["minItems"], list["maxItems"]) = (2.into(), 2.into());
+        }
+        properties.insert(key.to_owned(), list);
         makers.push(requires(key));
     }
     let mut with_of = Vec::new();
