@@ -97,6 +97,10 @@ pub trait Field<const D: usize>:
     /// cost; else the node back.
     ///
     /// A node that nobody else holds may change where it is.
+    ///
+    /// # Errors
+    ///
+    /// The node, if it takes no motion into itself.
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D>;
 
     /// How many changes of coordinates an evaluation would have more if a motion

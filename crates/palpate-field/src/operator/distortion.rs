@@ -146,34 +146,48 @@ fn distorted<const D: usize>(
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The room and the promise of the shape turned in a plane by `rate` [rad/m] along
-    /// an axis, which stretches lengths by `stretch` of the rate times the radius.
-    fn distortion(
+/// A rotation in the plane of two axes, by an angle that grows along an axis.
+struct Turning {
+    operator: &'static str,
+    plane: [usize; 2],
+    along: usize,
+}
+
+impl Turning {
+    const BEND: Self = Self { operator: "bend", plane: [0, 1], along: 0 };
+    const TWIST: Self = Self { operator: "twist", plane: [2, 0], along: 1 };
+
+    /// How much longer lengths become at most, for the rate times the radius.
+    fn stretch(&self, kr: f64) -> f64 {
+        if self.plane.contains(&self.along) { 1.0 + kr } else { 0.5 * (kr + kr.hypot(2.0)) }
+    }
+
+    /// The room and the promise of a shape turned by `rate` [rad/m].
+    fn of<const D: usize>(
         &self,
-        operator: &'static str,
+        child: &Promise<D>,
         rate: f64,
-        plane: [usize; 2],
-        along: usize,
-        stretch: impl Fn(f64) -> f64,
     ) -> Result<(Room<D>, Promise<D>), ShapeError> {
-        let child = self.promise();
+        let operator = self.operator;
         let needs =
             |needs: &'static str| ShapeError::Unsuitable { operator, needs: needs.into() };
         let bounds = child.bounds.ok_or_else(|| needs("a shape with bounds"))?;
         if child.region.is_some() {
             return Err(needs("a shape whose steepness is known everywhere"));
         }
-        let (room, radius) = swept(&bounds.aabb, plane);
-        let turn = rate.abs() * room.min[along].abs().max(room.max[along].abs());
-        // NaN is beyond every limit too.
-        if !(turn <= MOST_TURN) {
+        let (room, radius) = swept(&bounds.aabb, self.plane);
+        let along = room.min[self.along].abs().max(room.max[self.along].abs());
+        let turn = rate.abs() * along;
+        if turn.is_nan() || turn > MOST_TURN {
             let rule = format!("such that the shape turns by at most {MOST_TURN} rad");
             return Err(ShapeError::number(operator, rule, rate, Unit::One));
         }
-        Ok((Room::new(&room), distorted(child, &room, stretch(rate.abs() * radius), turn)))
+        let stretch = self.stretch(rate.abs() * radius);
+        Ok((Room::new(&room), distorted(child, &room, stretch, turn)))
     }
+}
 
+impl<const D: usize> Shape<D> {
     /// The shape bent: turned in the plane of x and y by `rate` · x [rad/m].
     ///
     /// Distances are no bounds, but no steeper than the promise says; see the
@@ -198,7 +212,7 @@ impl<const D: usize> Shape<D> {
     /// If the rate turns the shape by more than 10⁴ rad, the shape has no bounds or a
     /// steepness that is known in part of space alone, or shapes are nested too deeply.
     pub fn bent(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) = self.distortion("bend", rate, [0, 1], 0, |kr| 1.0 + kr)?;
+        let (room, promise) = Turning::BEND.of(self.promise(), rate)?;
         let depth = self.depth() + 1;
         Self::from_operator(Warped { map: Bend { rate, room }, child: self, promise }, depth)
     }
@@ -227,8 +241,7 @@ impl Shape<3> {
     ///
     /// As [`bent`](Self::bent).
     pub fn twisted(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) =
-            self.distortion("twist", rate, [2, 0], 1, |kr| 0.5 * (kr + kr.hypot(2.0)))?;
+        let (room, promise) = Turning::TWIST.of(self.promise(), rate)?;
         let depth = self.depth() + 1;
         Self::from_operator(Warped { map: Twist { rate, room }, child: self, promise }, depth)
     }
