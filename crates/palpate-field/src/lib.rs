@@ -9,6 +9,7 @@ mod error;
 pub mod field;
 pub mod kernel;
 mod machine;
+mod mass;
 pub mod operator;
 mod pose;
 mod promise;
@@ -23,6 +24,7 @@ pub use kernel::Kernel;
 pub use machine::{
     BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, SHORT,
 };
+pub use mass::{Mass, MassLimits};
 pub use pose::{Pose, Rotation};
 pub use promise::{Promise, Quality, Rounding};
 pub use shape::{MAX_DEPTH, Shape};

@@ -98,8 +98,9 @@ pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
     S::select_less(outside, S::constant(4.0 * S::EPSILON * size), face, outside)
 }
 
-/// Bounds a convex exact kernel over a cell by its tangent plane; `operations`
-/// and `size` as for [`Rounding::of_operations`](crate::Rounding::of_operations).
+/// Bounds a convex exact kernel over a cell by its tangent plane, and by its values at
+/// the corners of the cell; `operations` and `size` as for
+/// [`Rounding::of_operations`](crate::Rounding::of_operations).
 #[inline(always)]
 pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     kernel: &K,
@@ -110,7 +111,8 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     let centre = Vector(array!(i < D => cell.0[i].value));
     let (distance, normal) = kernel.distance_gradient(centre);
     let rounding = operations * f64::EPSILON * (size + centre.norm());
-    Model::tangent(distance, normal.0, &cell.0, rounding)
+    let distance_at = |corner: [f64; D]| kernel.distance(Vector(corner));
+    Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
 // Statics, and not constants, so that the code of all primitives is in this crate

@@ -103,39 +103,53 @@ impl Model {
         sum.sqrt() * INFLATE
     }
 
-    /// Bounds a convex field that is exact on both sides by its tangent plane.
+    /// Bounds a convex field that is exact on both sides.
     ///
     /// `value` and the unit `normal` are the field's at the centre of `cell`,
-    /// `rounding` the absolute error of either over the cell. Below, the plane
-    /// is a bound, since the field is convex. Above, at distance `f` outside,
-    /// the distance to the one nearest point grows by at most
-    /// `|h|²/2(f − |h|)` beyond the plane; closer or inside, by `2|h|`.
+    /// `distance_at` its value anywhere, `rounding` the absolute error of these over the
+    /// cell. Below, the tangent plane is a bound, since the field is convex. Above, the
+    /// field less the plane is convex too, so it is largest at a corner.
     #[inline(always)]
     pub fn tangent<const D: usize>(
         value: f64,
         normal: [f64; D],
+        distance_at: impl Fn([f64; D]) -> f64,
         cell: &[Self; D],
         rounding: f64,
     ) -> Self {
-        let radius = Self::radius(cell);
         let mut gradient = [0.0; 3];
-        let (mut lower, mut upper) = (0.0, 0.0);
+        let (mut lower, mut upper, mut remainders) = (0.0, 0.0, 0.0);
         unrolled!(i < D => {
             let positive = normal[i] > 0.0;
             let size = f64::abs(normal[i]);
             lower += size * choose(positive, cell[i].lower, cell[i].upper);
             upper += size * choose(positive, cell[i].upper, cell[i].lower);
+            let remainder = cell[i].lower.max_of(cell[i].upper);
+            remainders += remainder * remainder;
             unrolled!(k < 3 => gradient[k] += normal[i] * cell[i].gradient[k]);
         });
-        let far = value > 1.25 * radius;
-        let room = choose(far, value - radius, 1.0);
-        let curved = choose(far, 0.5 * radius * radius / room, 2.0 * radius);
+        let mut above = 0.0;
+        for corner in 0..8 {
+            let side: [f64; 3] =
+                array!(k < 3 => if (corner >> k) & 1 == 0 { -1.0 } else { 1.0 });
+            let mut plane = value;
+            let mut point = array!(i < D => cell[i].value);
+            unrolled!(k < 3 => {
+                plane += gradient[k] * side[k];
+                unrolled!(i < D => point[i] += cell[i].gradient[k] * side[k]);
+            });
+            above = (distance_at(point) - plane).max_of(above);
+        }
+        let radius = Self::radius(cell);
         let error = rounding + 8.0 * UNIT * (f64::abs(value) + radius);
+        // Off the corners by the remainders of the coordinates, the field changes by at
+        // most their norm.
+        let apart = remainders.sqrt();
         Self {
             value,
             gradient,
             lower: lower + error,
-            upper: (upper + curved) * INFLATE + error,
+            upper: (upper + above + apart) * INFLATE + 2.0 * error,
         }
     }
 

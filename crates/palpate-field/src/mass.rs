@@ -1,0 +1,454 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Mass, centroid and inertia, with bounds on their errors.
+//!
+//! # Derivation
+//!
+//! The box of the shape is cut into cells. Over a cell a [`Model`] says between which
+//! two planes the surface runs: all of the cell below the lower plane is inside, all
+//! above the upper one outside. Volume and moments of a box below a plane have a closed
+//! form: that of the simplex cut off at its lowest corner, less those at the corners
+//! next to it, and so on by inclusion and exclusion. What is between the planes is
+//! counted half, and its whole half is the error; it shrinks with the square of the
+//! cell where the surface is smooth. Cells that contribute most are cut again.
+
+use crate::bounds::Aabb;
+use crate::error::{ShapeError, Unit, positive};
+use crate::field::{EvaluateBlock, Field};
+use crate::machine::{BLOCK, Block, Column};
+use crate::scalar::Model;
+use crate::shape::Shape;
+use crate::vector::{Point, Vector};
+
+/// What the gradient of a model is raised to, in parts of its largest component, so
+/// that no division is by zero; the planes are moved apart by as much.
+const FLATTEST: f64 = 1e-4;
+
+/// Rounding of the closed form, in parts of the volume of the cell: its terms are up to
+/// [`FLATTEST`]⁻² times as large as their sum.
+const CANCELLATION: f64 = 1e-7;
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassLimits {
+    /// The error of the volume, in parts of it, at which to stop.
+    pub tolerance: f64,
+    /// The most cells that are looked at.
+    pub cells: usize,
+}
+
+impl Default for MassLimits {
+    /// A tolerance of 1e-3, three million cells, which take half a gigabyte.
+    fn default() -> Self {
+        Self { tolerance: 1e-3, cells: 3_000_000 }
+    }
+}
+
+/// Mass, centroid and second moments of a body of one density.
+///
+/// In the plane a body is one metre thick: mass is in kg for each metre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass<const D: usize> {
+    /// The volume [m³], or area [m²].
+    pub volume: f64,
+    /// The largest error of the volume.
+    pub volume_error: f64,
+    /// The density [kg/m³].
+    pub density: f64,
+    /// The centre of mass [m].
+    pub centroid: Point<D>,
+    /// The largest error of each of its coordinates [m]; infinite if the volume may be
+    /// zero.
+    pub centroid_error: f64,
+    /// `∫ ρ (p − c)(p − c)ᵀ` about the centroid `c` [kg·m²].
+    pub second_moments: [[f64; D]; D],
+    /// The largest error of each second moment [kg·m²].
+    pub second_moments_error: f64,
+    /// The cells that were looked at.
+    pub cells: usize,
+}
+
+impl<const D: usize> Mass<D> {
+    /// The mass [kg].
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.density * self.volume
+    }
+
+    /// The largest error of the mass [kg].
+    #[must_use]
+    pub fn mass_error(&self) -> f64 {
+        self.density * self.volume_error
+    }
+
+    /// The trace of the second moments [kg·m²]: in the plane, the moment of inertia
+    /// about the centroid.
+    #[must_use]
+    pub fn polar_inertia(&self) -> f64 {
+        (0..D).map(|i| self.second_moments[i][i]).sum()
+    }
+}
+
+impl Mass<3> {
+    /// The inertia tensor about the centroid [kg·m²]: the trace of the second moments
+    /// times the identity, less the second moments.
+    #[must_use]
+    pub fn inertia(&self) -> [[f64; 3]; 3] {
+        let trace = self.polar_inertia();
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                (if i == k { trace } else { 0.0 }) - self.second_moments[i][k]
+            })
+        })
+    }
+}
+
+/// Volume, first and second moments of a set of points.
+#[derive(Clone, Copy, Debug)]
+struct Moments<const D: usize> {
+    volume: f64,
+    first: [f64; D],
+    second: [[f64; D]; D],
+}
+
+impl<const D: usize> Moments<D> {
+    const ZERO: Self = Self { volume: 0.0, first: [0.0; D], second: [[0.0; D]; D] };
+
+    /// Adds `weight` times `other`.
+    fn add(&mut self, other: &Self, weight: f64) {
+        self.volume += weight * other.volume;
+        for i in 0..D {
+            self.first[i] += weight * other.first[i];
+            for k in 0..D {
+                self.second[i][k] += weight * other.second[i][k];
+            }
+        }
+    }
+
+    /// Those of the cube `[−1, 1]ᴰ`.
+    fn of_cube() -> Self {
+        let volume = 2.0_f64.powi(D as i32);
+        let mut second = [[0.0; D]; D];
+        for (i, row) in second.iter_mut().enumerate() {
+            row[i] = volume / 3.0;
+        }
+        Self { volume, first: [0.0; D], second }
+    }
+
+    /// Those of the corner that a plane cuts off: the simplex of `corner` and the
+    /// points `edges[i]` from it along the axes.
+    fn of_simplex(corner: &[f64; D], edges: &[f64; D]) -> Self {
+        let mut volume = 1.0;
+        for (i, edge) in edges.iter().enumerate() {
+            volume *= edge / (i + 1) as f64;
+        }
+        // Of the corners: D + 1 points, of which one differs from `corner` in axis i.
+        let count = (D + 1) as f64;
+        let sum: [f64; D] = std::array::from_fn(|i| count * corner[i] + edges[i]);
+        let products = |i: usize, k: usize| {
+            let same = if i == k { edges[i] * edges[i] } else { 0.0 };
+            count * corner[i] * corner[k] + corner[i] * edges[k] + edges[i] * corner[k] + same
+        };
+        Self {
+            volume,
+            first: std::array::from_fn(|i| volume * sum[i] / count),
+            second: std::array::from_fn(|i| {
+                std::array::from_fn(|k| {
+                    volume * (products(i, k) + sum[i] * sum[k]) / (count * (count + 1.0))
+                })
+            }),
+        }
+    }
+
+    /// Those of the part of the cube `[−1, 1]ᴰ` with `slopes·x ≤ limit`.
+    ///
+    /// No slope may be zero.
+    fn of_cube_below(slopes: &[f64; D], limit: f64) -> Self {
+        let reach: f64 = slopes.iter().map(|slope| slope.abs()).sum();
+        if limit <= -reach {
+            return Self::ZERO;
+        }
+        if limit >= reach {
+            return Self::of_cube();
+        }
+        let mut below = Self::ZERO;
+        for code in 0..1_usize << D {
+            // From the lowest corner, along the axes whose bits are set.
+            let corner: [f64; D] = std::array::from_fn(|i| {
+                if (code >> i) & 1 == 1 { slopes[i].signum() } else { -slopes[i].signum() }
+            });
+            let room = limit - (0..D).map(|i| slopes[i] * corner[i]).sum::<f64>();
+            if room > 0.0 {
+                let edges = std::array::from_fn(|i| room / slopes[i]);
+                let sign = if code.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
+                // The volume to the left of a corner is positive too.
+                let turned: f64 = slopes.iter().map(|slope| slope.signum()).product();
+                below.add(&Self::of_simplex(&corner, &edges), sign * turned);
+            }
+        }
+        below
+    }
+
+    /// These, of points scaled by `half` and moved to `centre`.
+    fn placed(&self, centre: &[f64; D], half: &[f64; D]) -> Self {
+        let scale: f64 = half.iter().product();
+        let volume = scale * self.volume;
+        let first: [f64; D] = std::array::from_fn(|i| scale * half[i] * self.first[i]);
+        let second = |i: usize, k: usize| scale * half[i] * half[k] * self.second[i][k];
+        Self {
+            volume,
+            first: std::array::from_fn(|i| first[i] + centre[i] * volume),
+            second: std::array::from_fn(|i| {
+                std::array::from_fn(|k| {
+                    second(i, k)
+                        + centre[i] * first[k]
+                        + first[i] * centre[k]
+                        + centre[i] * centre[k] * volume
+                })
+            }),
+        }
+    }
+}
+
+/// Part of the box of a shape, in coordinates from the middle of the box.
+#[derive(Clone, Copy, Debug)]
+struct Cell<const D: usize> {
+    centre: [f64; D],
+    half: [f64; D],
+}
+
+impl<const D: usize> Cell<D> {
+    fn volume(&self) -> f64 {
+        self.half.iter().map(|half| 2.0 * half).product()
+    }
+
+    /// The largest distance of a point of the cell from the middle of the box.
+    fn farthest(&self) -> f64 {
+        let squares = (0..D).map(|i| (self.centre[i].abs() + self.half[i]).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// Cut in two along every axis.
+    fn parts(&self) -> impl Iterator<Item = Self> {
+        let whole = *self;
+        (0..1_usize << D).map(move |code| {
+            let half = whole.half.map(|half| 0.5 * half);
+            let side = |i: usize| if (code >> i) & 1 == 1 { half[i] } else { -half[i] };
+            Self { centre: std::array::from_fn(|i| whole.centre[i] + side(i)), half }
+        })
+    }
+}
+
+/// What is inside of a cell.
+#[derive(Clone, Copy, Debug)]
+struct Filling<const D: usize> {
+    cell: Cell<D>,
+    /// With half of what may be inside.
+    moments: Moments<D>,
+    /// The volume of what may be inside.
+    unsure: f64,
+}
+
+impl<const D: usize> Filling<D> {
+    fn new(cell: Cell<D>, model: &Model) -> Self {
+        let largest = (0..D).fold(0.0_f64, |most, i| most.max(model.gradient[i].abs()));
+        let flattest = (FLATTEST * largest).max(f64::MIN_POSITIVE);
+        let mut moved = 0.0;
+        let slopes = std::array::from_fn(|i| {
+            let slope = model.gradient[i];
+            if slope.abs() >= flattest {
+                return slope;
+            }
+            moved += flattest + slope.abs();
+            flattest
+        });
+        // Rounding of the limits: a few units of the numbers in them.
+        let rounded = 8.0 * f64::EPSILON * (model.value.abs() + D as f64 * largest) + moved;
+        let sure = Moments::of_cube_below(&slopes, -model.value - model.upper - rounded);
+        let possible = Moments::of_cube_below(&slopes, -model.value + model.lower + rounded);
+        let mut moments = Moments::ZERO;
+        moments.add(&sure, 0.5);
+        moments.add(&possible, 0.5);
+        let whole = Moments::<D>::of_cube().volume;
+        let is_cut = possible.volume > 0.0 && sure.volume < whole;
+        let cancelled = if is_cut { CANCELLATION } else { 0.0 };
+        let share = (possible.volume - sure.volume).max(0.0) / whole;
+        Self {
+            cell,
+            moments: moments.placed(&cell.centre, &cell.half),
+            unsure: (share + cancelled) * cell.volume(),
+        }
+    }
+}
+
+/// Fills cells, in blocks of models.
+fn fill<const D: usize>(
+    shape: &Shape<D>,
+    middle: &[f64; D],
+    cells: &[Cell<D>],
+    fillings: &mut Vec<Filling<D>>,
+) where
+    dyn Field<D>: EvaluateBlock<Model, D, BLOCK>,
+{
+    let mut block = Block::<Model, D, BLOCK>::zero();
+    let mut values = Column::<Model, BLOCK>::zero();
+    for cells in cells.chunks(BLOCK) {
+        for (i, cell) in cells.iter().enumerate() {
+            let centre = std::array::from_fn(|k| middle[k] + cell.centre[k]);
+            block.set(i, Vector(Model::cell(centre, cell.half)));
+        }
+        shape.block_distances(&block, cells.len(), &mut values);
+        fillings.extend(
+            cells.iter().enumerate().map(|(i, cell)| Filling::new(*cell, &values.get(i))),
+        );
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// The mass of the shape at a `density` [kg/m³], its centroid and moments, with
+    /// bounds on their errors.
+    ///
+    /// Cells are cut until the error of the volume is below the tolerance or the limit
+    /// of cells is reached: then the errors are larger, and say so.
+    ///
+    /// ```
+    /// use palpate_field::{MassLimits, Shape, Vector, kernel::Ball};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let ball = Shape::from_kernel(Ball::new(0.5)?).translated(Vector([1.0, 0.0, 0.0]))?;
+    /// let mass = ball.mass(1000.0, MassLimits::default())?;
+    /// let volume = std::f64::consts::PI / 6.0;
+    /// assert!((mass.volume - volume).abs() <= mass.volume_error);
+    /// assert!(mass.volume_error <= 1e-3 * volume);
+    /// assert!((mass.centroid[0] - 1.0).abs() <= mass.centroid_error);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the shape has no bounds, or the density or the tolerance is not positive.
+    pub fn mass(&self, density: f64, limits: MassLimits) -> Result<Mass<D>, ShapeError> {
+        let density = positive("density", density, Unit::One)?;
+        let tolerance = positive("tolerance", limits.tolerance, Unit::One)?;
+        let Some(bounds) = self.promise().bounds else {
+            let needs = "a shape with bounds".into();
+            return Err(ShapeError::Unsuitable { operator: "mass", needs });
+        };
+        let middle = bounds.aabb.centre().0;
+        let mut total = Total::new(&bounds.aabb);
+        let mut cells = vec![Cell { centre: [0.0; D], half: bounds.aabb.half_extents().0 }];
+        loop {
+            let mut fillings = Vec::with_capacity(cells.len());
+            fill(self, &middle, &cells, &mut fillings);
+            total.cells += cells.len();
+            let unsure: f64 = fillings.iter().map(|filling| filling.unsure).sum();
+            let volume: f64 = fillings.iter().map(|filling| filling.moments.volume).sum();
+            let goal = tolerance * (total.moments.volume + volume);
+            let left = 2.0 * goal - total.unsure;
+            let most = limits.cells.saturating_sub(total.cells) >> D;
+            let least = worth_cutting(&fillings, 0.5 * left, most);
+            let is_done = unsure <= left || least.is_infinite();
+            cells.clear();
+            for filling in &fillings {
+                if is_done || filling.unsure < least {
+                    total.take(filling);
+                } else {
+                    cells.extend(filling.cell.parts());
+                }
+            }
+            if is_done {
+                return Ok(total.mass(density, &middle));
+            }
+        }
+    }
+}
+
+/// Which cells to cut so that what is unsure of the others is at most `left`: those with
+/// at least so much; `most` of them at most, infinity if none.
+fn worth_cutting<const D: usize>(fillings: &[Filling<D>], left: f64, most: usize) -> f64 {
+    let mut unsure: Vec<f64> =
+        fillings.iter().map(|filling| filling.unsure).filter(|unsure| *unsure > 0.0).collect();
+    unsure.sort_by(f64::total_cmp);
+    let mut kept = 0.0;
+    let is_kept = |unsure: &&f64| {
+        kept += **unsure;
+        kept <= left
+    };
+    let small = unsure.iter().take_while(is_kept).count();
+    // Cells that are equally unsure are cut together, or not at all if they are too many.
+    let first = small.max(unsure.len().saturating_sub(most));
+    let Some(least) = unsure.get(first).copied() else { return f64::INFINITY };
+    if unsure.len() - unsure.partition_point(|unsure| *unsure < least) <= most {
+        return least;
+    }
+    let larger = unsure.partition_point(|unsure| *unsure <= least);
+    unsure.get(larger).copied().unwrap_or(f64::INFINITY)
+}
+
+/// What was summed so far.
+struct Total<const D: usize> {
+    moments: Moments<D>,
+    unsure: f64,
+    /// `∫ |p|` and `∫ |p|²` over what is unsure, at most.
+    unsure_first: f64,
+    unsure_second: f64,
+    /// The largest distance from the middle of the box.
+    reach: f64,
+    cells: usize,
+}
+
+impl<const D: usize> Total<D> {
+    fn new(aabb: &Aabb<D>) -> Self {
+        Self {
+            moments: Moments::ZERO,
+            unsure: 0.0,
+            unsure_first: 0.0,
+            unsure_second: 0.0,
+            reach: aabb.half_extents().norm(),
+            cells: 0,
+        }
+    }
+
+    fn take(&mut self, filling: &Filling<D>) {
+        self.moments.add(&filling.moments, 1.0);
+        let farthest = filling.cell.farthest();
+        self.unsure += filling.unsure;
+        self.unsure_first += filling.unsure * farthest;
+        self.unsure_second += filling.unsure * farthest * farthest;
+    }
+
+    /// The result, with the error of sums of so many terms.
+    fn mass(&self, density: f64, middle: &[f64; D]) -> Mass<D> {
+        let Moments { volume, first, second } = self.moments;
+        let summed = self.cells as f64 * f64::EPSILON * volume.abs();
+        let volume_error = 0.5 * self.unsure + summed;
+        let first_error = 0.5 * self.unsure_first + summed * self.reach;
+        let second_error = 0.5 * self.unsure_second + summed * self.reach * self.reach;
+        let least = volume - volume_error;
+        let about: [f64; D] =
+            first.map(|first| if volume > 0.0 { first / volume } else { 0.0 });
+        let offset = Vector(about).norm();
+        let centroid_error = if least > 0.0 {
+            (first_error + offset * volume_error) / least
+        } else {
+            f64::INFINITY
+        };
+        // S − V c cᵀ: the errors of S, of V and of both factors c.
+        let shift = volume_error * offset * offset
+            + volume * centroid_error * (2.0 * offset + centroid_error);
+        Mass {
+            volume,
+            volume_error,
+            density,
+            centroid: Vector(std::array::from_fn(|i| middle[i] + about[i])),
+            centroid_error,
+            second_moments: std::array::from_fn(|i| {
+                std::array::from_fn(|k| density * (second[i][k] - volume * about[i] * about[k]))
+            }),
+            second_moments_error: density * (second_error + shift),
+            cells: self.cells,
+        }
+    }
+}

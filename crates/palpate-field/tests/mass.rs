@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Mass properties against closed forms: the truth is within the errors, and the errors
+//! are within the tolerance.
+
+use std::f64::consts::PI;
+
+use palpate_field::kernel::{
+    Ball, Cone, Cuboid, Cylinder, Ellipsoid, HalfSpace, Polygon, Segment, Simplex, Torus,
+};
+use palpate_field::operator::Smooth;
+use palpate_field::{Mass, MassLimits, Point, Pose, Rotation, Shape, ShapeError, Vector};
+
+const TOLERANCE: f64 = 2e-3;
+
+fn mass<const D: usize>(shape: &Shape<D>, density: f64) -> Mass<D> {
+    let limits = MassLimits { tolerance: TOLERANCE, ..MassLimits::default() };
+    shape.mass(density, limits).expect("a mass")
+}
+
+/// Checks volume, centroid and the trace of the second moments, at a density of 2.
+fn check<const D: usize>(name: &str, shape: &Shape<D>, volume: f64, at: Point<D>, trace: f64) {
+    let mass = mass(shape, 2.0);
+    assert!((mass.volume - volume).abs() <= mass.volume_error, "{name}: {mass:?}, {volume}");
+    assert!(mass.volume_error <= TOLERANCE * volume, "{name}: {mass:?}");
+    for i in 0..D {
+        let error = (mass.centroid[i] - at[i]).abs();
+        assert!(error <= mass.centroid_error, "{name}: {mass:?}, {at:?}");
+    }
+    let size = shape.promise().bounds.expect("bounds").ball.radius;
+    assert!(mass.centroid_error <= 4.0 * TOLERANCE * size, "{name}: {mass:?}");
+    let error = (mass.polar_inertia() - 2.0 * trace).abs();
+    assert!(error <= D as f64 * mass.second_moments_error, "{name}: {mass:?}, {trace}");
+    assert!(
+        mass.second_moments_error <= 20.0 * TOLERANCE * 2.0 * volume * size * size,
+        "{name}: {mass:?}"
+    );
+    assert_eq!(mass.mass(), 2.0 * mass.volume);
+}
+
+#[test]
+fn solids() -> Result<(), ShapeError> {
+    let zero = Vector::ZERO;
+    let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
+    let volume = PI / 6.0;
+    // ∫ r² = 3/5 r² V.
+    check("ball", &ball, volume, zero, 0.15 * volume);
+
+    let size = Vector([0.2, 0.4, 0.6]);
+    let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, 3.0]), 0.7)?;
+    let at = Vector([3.0, -1.0, 0.5]);
+    let cuboid = Shape::from_kernel(Cuboid::new(size)?).placed(&Pose::new(turn, at))?;
+    check("cuboid", &cuboid, 0.048, at, 0.048 * size.dot(size) / 12.0);
+
+    let (r, h) = (0.3, 0.8);
+    let cylinder = Shape::from_kernel(Cylinder::new(r, h)?);
+    let volume = PI * r * r * h;
+    check("cylinder", &cylinder, volume, zero, volume * (0.5 * r * r + h * h / 12.0));
+
+    // Its centroid is a quarter of the height above the base, its base at −h/2.
+    let cone = Shape::from_kernel(Cone::new(r, h)?);
+    let volume = PI * r * r * h / 3.0;
+    let trace = volume * (0.3 * r * r + 3.0 / 80.0 * h * h);
+    check("cone", &cone, volume, Vector([0.0, -0.25 * h, 0.0]), trace);
+
+    let (ring, tube) = (0.4, 0.1);
+    let torus = Shape::from_kernel(Torus::new(ring, tube)?);
+    let volume = 2.0 * PI * PI * ring * tube * tube;
+    let trace = volume * (ring * ring + 0.75 * tube * tube + 0.25 * tube * tube);
+    check("torus", &torus, volume, zero, trace);
+
+    let radii = Vector([0.2, 0.3, 0.5]);
+    let ellipsoid = Shape::from_kernel(Ellipsoid::new(radii)?);
+    let volume = 4.0 / 3.0 * PI * 0.03;
+    check("ellipsoid", &ellipsoid, volume, zero, volume * radii.dot(radii) / 5.0);
+
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let tetrahedron = Shape::from_kernel(Simplex::<3>::new(corners.map(Vector).to_vec())?);
+    // ∫ x² = 1/60 for each axis, about the corner.
+    let trace = 3.0 * (1.0 / 60.0 - 1.0 / 6.0 / 16.0);
+    check("tetrahedron", &tetrahedron, 1.0 / 6.0, Vector([0.25; 3]), trace);
+    Ok(())
+}
+
+#[test]
+fn plates() -> Result<(), ShapeError> {
+    let disc = Shape::<2>::from_kernel(Ball::new(0.5)?).translated(Vector([10.0, 0.0]))?;
+    let area = PI * 0.25;
+    check("disc", &disc, area, Vector([10.0, 0.0]), area * 0.125);
+
+    let square = |half: f64| {
+        [[-half, -half], [half, -half], [half, half], [-half, half]].map(Vector).to_vec()
+    };
+    let frame = Shape::from_kernel(Polygon::new(vec![square(0.5), square(0.3)])?);
+    let trace = (1.0 - 0.6_f64.powi(4)) / 6.0;
+    check("frame", &frame, 1.0 - 0.36, Vector::ZERO, trace);
+    Ok(())
+}
+
+#[test]
+fn booleans() -> Result<(), ShapeError> {
+    let block = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?);
+    let hole = Shape::from_kernel(Cylinder::new(0.3, 2.0)?);
+    let drilled = block.difference([hole])?;
+    let (cube, bore) = (1.0, PI * 0.09);
+    let trace = 0.25 * cube - bore * (0.5 * 0.09 + 1.0 / 12.0);
+    check("drilled block", &drilled, cube - bore, Vector::ZERO, trace);
+
+    let halves = [0.5, -0.5].map(|x| {
+        Shape::<3>::from_kernel(Ball::new(0.3).unwrap()).translated(Vector([x, 0.0, 0.0]))
+    });
+    let [left, right] = halves;
+    let pair = Shape::union([left?, right?])?;
+    let volume = 8.0 / 3.0 * PI * 0.027;
+    check("pair", &pair, volume, Vector::ZERO, volume * (0.25 + 0.6 * 0.09));
+    Ok(())
+}
+
+/// What is not exact is enclosed too: here between the balls that it lies between.
+#[test]
+fn bounds_are_enough() -> Result<(), ShapeError> {
+    let balls = [-0.1, 0.1].map(|x| {
+        Shape::<3>::from_kernel(Ball::new(0.3).unwrap()).translated(Vector([x, 0.0, 0.0]))
+    });
+    let [a, b] = balls;
+    let (a, b) = (a?, b?);
+    let sharp = mass(&Shape::union([a.clone(), b.clone()])?, 1.0);
+    let smooth = mass(&Shape::smooth_union([a, b], Smooth::Cubic, 0.02)?, 1.0);
+    assert!(smooth.volume - smooth.volume_error > sharp.volume + sharp.volume_error);
+    assert!(smooth.volume < 4.0 / 3.0 * PI * 0.45_f64.powi(3));
+    Ok(())
+}
+
+#[test]
+fn a_curve_weighs_nothing() -> Result<(), ShapeError> {
+    let curve = Segment::<2>::new(Vector([0.0, 0.0]), Vector([1.0, 0.5]), 0.0)?;
+    let limits = MassLimits { tolerance: 1e-3, cells: 20_000 };
+    let mass = Shape::from_kernel(curve).mass(1.0, limits)?;
+    assert!(mass.volume <= mass.volume_error && mass.volume_error < 0.01, "{mass:?}");
+    assert!(mass.centroid_error.is_infinite());
+    assert!(mass.cells <= limits.cells);
+    Ok(())
+}
+
+#[test]
+fn what_has_no_bounds_has_no_mass() -> Result<(), ShapeError> {
+    let half_space = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+    let error = half_space.mass(1.0, MassLimits::default()).unwrap_err();
+    assert_eq!(error.to_string(), "mass needs a shape with bounds");
+    let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
+    assert!(ball.mass(-1.0, MassLimits::default()).is_err());
+    let limits = MassLimits { tolerance: f64::NAN, cells: 10 };
+    assert!(ball.mass(1.0, limits).is_err());
+    Ok(())
+}
+
+#[test]
+fn the_inertia_of_a_ball_is_two_fifths() -> Result<(), ShapeError> {
+    let ball = mass(&Shape::<3>::from_kernel(Ball::new(0.5)?), 1000.0);
+    let expected = 0.4 * ball.mass() * 0.25;
+    let inertia = ball.inertia();
+    for (i, row) in inertia.iter().enumerate() {
+        for (k, value) in row.iter().enumerate() {
+            let expected = if i == k { expected } else { 0.0 };
+            assert!((value - expected).abs() <= 3.0 * ball.second_moments_error);
+        }
+    }
+    Ok(())
+}
