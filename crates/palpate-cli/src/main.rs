@@ -9,6 +9,7 @@ mod eval;
 mod feel;
 mod hand_csv;
 mod input;
+mod mass;
 mod outcome;
 mod picture;
 mod plot;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Command::Eval(options) => eval::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Mass(options) => mass::run(&options),
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(&options),
     };

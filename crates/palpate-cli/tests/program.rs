@@ -147,6 +147,28 @@ fn check_answers_yes_or_no() {
 }
 
 #[test]
+fn mass_is_that_of_a_ball() {
+    let folder = Folder::new();
+    let ball = folder.write("ball.json", BALL);
+    let answer = json(&["mass", &ball, "--density", "2000", "--tolerance", "0.01", "--json"]);
+    let body = &answer["bodies"][0];
+    let [volume, error, mass] =
+        ["volume", "volume_error", "mass"].map(|key| body[key].as_f64().unwrap());
+    let expected = if body["centroid_m"].as_array().unwrap().len() == 2 {
+        std::f64::consts::PI * 0.25
+    } else {
+        std::f64::consts::PI / 6.0
+    };
+    assert!((volume - expected).abs() <= error && error <= 0.01 * expected, "{body}");
+    assert_eq!(mass, 2000.0 * volume);
+    // What cannot be reached is said, and the answer is no.
+    let output = palpate(&["mass", &ball, "--tolerance", "1e-9", "--cells", "1000"]);
+    assert_eq!(status(&output), 1);
+    assert!(text(&output).contains("±"), "{}", text(&output));
+    assert_eq!(status(&palpate(&["mass", &ball, "--density", "-1"])), 2);
+}
+
+#[test]
 fn the_schema_is_the_committed_one() {
     let committed = include_str!("../../palpate-scene/schema/scene.schema.json");
     assert_eq!(text(&palpate(&["schema"])), committed);

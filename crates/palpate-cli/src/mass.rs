@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate mass`: what the bodies of a scene weigh.
+
+use std::io::Write;
+
+use palpate::field::{Mass, MassLimits};
+use palpate::scene::{BuiltScene, World};
+use serde_json::{Value, json};
+
+use crate::arguments::MassOptions;
+use crate::input;
+use crate::outcome::{Failure, Outcome};
+
+/// Computes the mass of each body; the answer is no if an error is above the tolerance.
+pub(crate) fn run(options: &MassOptions) -> Result<Outcome, Failure> {
+    let named = input::scene(Some(&options.scene))?;
+    match &named.world {
+        World::Planar(scene) => report(options, scene, ["m²", "kg/m", "kg·m"]),
+        World::Spatial(scene) => report(options, scene, ["m³", "kg", "kg·m²"]),
+    }
+}
+
+fn report<const D: usize>(
+    options: &MassOptions,
+    scene: &BuiltScene<D>,
+    [volume_unit, mass_unit, moment_unit]: [&str; 3],
+) -> Result<Outcome, Failure> {
+    let limits = MassLimits { tolerance: options.tolerance, cells: options.cells };
+    let mut out = std::io::stdout().lock();
+    let mut bodies = Vec::new();
+    let mut outcome = Outcome::Yes;
+    for body in &scene.bodies {
+        let name = &body.name;
+        let mass = body
+            .shape
+            .mass(options.density, limits)
+            .map_err(|error| Failure::input(format!("body {name:?}: {error}")))?;
+        if mass.volume_error > options.tolerance * mass.volume {
+            outcome = Outcome::No;
+        }
+        if options.json {
+            bodies.push(described(name, &mass));
+            continue;
+        }
+        writeln!(out, "{name}, at {} kg/m³ ({} cells)", options.density, mass.cells)?;
+        let line = |what: &str, value: f64, error: f64, unit: &str| {
+            format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
+        };
+        writeln!(out, "{}", line("volume", mass.volume, mass.volume_error, volume_unit))?;
+        writeln!(out, "{}", line("mass", mass.mass(), mass.mass_error(), mass_unit))?;
+        writeln!(
+            out,
+            "  centroid       {:.6?} ± {:.1e} m",
+            mass.centroid.0, mass.centroid_error
+        )?;
+        for (i, row) in mass.second_moments.iter().enumerate() {
+            let what = if i == 0 { "second moments" } else { "" };
+            let error = mass.second_moments_error;
+            let row: Vec<_> = row.iter().map(|moment| format!("{moment:.6e}")).collect();
+            let row = row.join(", ");
+            writeln!(out, "  {what:<15}[{row}] ± {error:.1e} {moment_unit}")?;
+        }
+    }
+    if options.json {
+        writeln!(
+            out,
+            "{:#}",
+            json!({ "density_kg_per_m3": options.density, "bodies": bodies })
+        )?;
+    }
+    Ok(outcome)
+}
+
+/// Infinite errors are null.
+fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
+    let rows: Vec<_> = mass.second_moments.iter().map(|row| row.to_vec()).collect();
+    json!({
+        "name": name,
+        "volume": mass.volume,
+        "volume_error": mass.volume_error,
+        "mass": mass.mass(),
+        "mass_error": mass.mass_error(),
+        "centroid_m": mass.centroid.0.to_vec(),
+        "centroid_error_m": mass.centroid_error,
+        "second_moments": rows,
+        "second_moments_error": mass.second_moments_error,
+        "cells": mass.cells,
+    })
+}
