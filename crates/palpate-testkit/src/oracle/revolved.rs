@@ -14,6 +14,9 @@ use super::{Definition, Patch, number, vector};
 
 const AXES: [Point<2>; 2] = [Vector([1.0, 0.0]), Vector([0.0, 1.0])];
 
+/// How often the surface of a cone without a base is halved towards its tip.
+const PIECES: i32 = 12;
+
 /// Halvings of the range in which a convex function has its least value.
 const STEPS: usize = 200;
 
@@ -37,10 +40,18 @@ fn turned(
     Definition::new(boundary, move |p| contains(p[0].hypot(p[2]), p[1]))
 }
 
+/// In pieces, each twice as far out as the one before, so that samples near the tip are
+/// dense.
 fn infinite_cone(angle: f64) -> Definition<3> {
     let half = 0.5 * angle;
-    let far = [FAR * half.sin(), -FAR * half.cos()];
-    turned(vec![line([0.0; 2], far)], far[0], move |rho, y| rho.atan2(-y) < half)
+    let at = |along: f64| [along * half.sin(), -along * half.cos()];
+    let piece = |k: i32| {
+        let far = FAR * 0.5_f64.powi(k);
+        let near = if k < PIECES { 0.5 * far } else { 0.0 };
+        line(at(near), at(far)).turned(far * half.sin())
+    };
+    let boundary = (0..=PIECES).map(piece).collect();
+    Definition::new(boundary, move |p: Point<3>| p[0].hypot(p[2]).atan2(-p[1]) < half)
 }
 
 fn solid_angle(radius: f64, angle: f64) -> Definition<3> {

@@ -60,7 +60,10 @@ impl Curve {
         let [sin, cos] = self.end;
         let past_end = S::weighted_sum(p, &[cos, -sin]);
         let end = Vector(self.end) * self.radius;
-        let to_arc = (S::norm(p) - S::constant(self.radius)).abs();
+        // In this order, since at the centre the first decides the gradient, and the
+        // arc is sure to be there.
+        let from_centre = S::norm([p[1], p[0]]);
+        let to_arc = (from_centre - S::constant(self.radius)).abs();
         let to_end = S::norm(array!(i < 2 => p[i] - S::constant(end.0[i])));
         S::select_less(S::constant(0.0), past_end, to_end, to_arc)
     }

@@ -12,11 +12,10 @@ use crate::scalar::Scalar;
 ///
 /// # Derivation
 ///
-/// Inside, the nearest point outside is outside the disc or in the bite: the nearer
-/// of both circles counts. Outside, a point beyond the disc has its nearest point on
-/// the disc's circle, if that is not bitten off; one in the bite has it on the bite's
-/// circle, if that is in the disc. Else the nearest point is the corner where both
-/// circles cross. Which part of a circle is kept shows in the angle about its centre.
+/// The boundary is an arc of either circle, between the corner where both cross and the
+/// y axis. An arc is as far away as its circle, where the angle about its centre is on
+/// the arc's side of the corner, else as the corner. Inside, what is outside is beyond
+/// the disc or in the bite: there the nearer of both circles counts, arc or not.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct Moon {
     radius: f64,
@@ -54,8 +53,9 @@ impl Moon {
             S::weighted_sum(from_bite, &[below / self.cut_radius, -x / self.cut_radius]);
         let corner = S::norm([p[0] - S::constant(x), p[1] - S::constant(y)]);
         let corner = face_if_on_it(corner, inside, self.radius);
-        let in_bite = S::select_less(within.min(bite), zero, corner, bite);
-        let outside = S::select_less(kept.min(disc), zero, in_bite, disc);
+        let of_disc = S::select_less(kept, zero, corner, disc.abs());
+        let of_bite = S::select_less(within, zero, corner, bite.abs());
+        let outside = of_disc.min(of_bite);
         S::select_less(inside, zero, inside, outside)
     }
 

@@ -11,7 +11,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 16.0;
+const OPERATIONS: f64 = 10.0;
 
 /// The same of a cone without a base.
 const INFINITE_OPERATIONS: f64 = 6.0;

@@ -76,11 +76,10 @@ impl Kernel<3> for CuboidFrame {
             .min(S::orthant([across[0], faces[1], across[2]]))
             .min(S::orthant([across[0], across[1], faces[2]]));
 
-        let tunnel: [S; 3] =
-            array!(i < 3 => (faces[i] + S::constant(self.thickness)).max(zero));
-        let tunnels = S::norm([tunnel[0], tunnel[1]])
-            .min(S::norm([tunnel[1], tunnel[2]]))
-            .min(S::norm([tunnel[2], tunnel[0]]));
+        let walls = array!(i < 3 => faces[i] + S::constant(self.thickness));
+        let tunnels = S::orthant([walls[0], walls[1]])
+            .min(S::orthant([walls[1], walls[2]]))
+            .min(S::orthant([walls[2], walls[0]]));
         let inside = faces[0].max(faces[1]).max(faces[2]).max(-tunnels);
         S::select_less(bars, zero, inside, bars)
     }

@@ -13,7 +13,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 12.0;
+const OPERATIONS: f64 = 8.0;
 
 /// A spindle between two points: an arc from one to the other, turned about the line
 /// between them. Exact.

@@ -12,7 +12,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 16.0;
+const OPERATIONS: f64 = 10.0;
 
 /// A prism along y on a rhombus whose diagonals are along x and z, its edges rounded
 /// inwards. Exact.

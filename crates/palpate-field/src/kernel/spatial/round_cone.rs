@@ -14,7 +14,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 10.0;
+const OPERATIONS: f64 = 8.0;
 
 /// Two balls of which neither holds the other.
 fn two_discs(

@@ -14,7 +14,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 14.0;
+const OPERATIONS: f64 = 12.0;
 
 /// A corner that is no farther from the line of its neighbours than this part of the
 /// size is no corner: the direction of the plane would be rounding.
