@@ -66,8 +66,8 @@ fn cut_ball(radius: f64, height: f64) -> Definition<3> {
     let rim = (height / radius).asin();
     let width = radius * rim.cos();
     let profile =
-        vec![arc([0.0; 2], radius, [-FRAC_PI_2, rim]), line([0.0, height], [width, height])];
-    turned(profile, radius, move |rho, y| rho.hypot(y) < radius && y < height)
+        vec![arc([0.0; 2], radius, [rim, FRAC_PI_2]), line([0.0, height], [width, height])];
+    turned(profile, radius, move |rho, y| rho.hypot(y) < radius && y > height)
 }
 
 /// The middle of the wall and its rim, thickened.

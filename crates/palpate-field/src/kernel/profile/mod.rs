@@ -17,7 +17,7 @@ mod sector;
 mod two_discs;
 
 pub(super) use arc::Curve;
-pub(super) use cut_disc::CutDisc;
+pub(super) use cut_disc::{CutDisc, bounds_of_zone};
 pub(super) use lens::Lens;
 pub(super) use moon::Moon;
 pub(super) use rhombus::{Rhombus, inner_radius};

@@ -3,7 +3,7 @@
 
 //! A disc with a bite.
 
-use super::CutDisc;
+use super::bounds_of_zone;
 use crate::bounds::Bounds;
 use crate::kernel::face_if_on_it;
 use crate::scalar::Scalar;
@@ -61,7 +61,7 @@ impl Moon {
 
     /// The bounds when turned about y: those of the disc cut where the circles cross.
     pub(in crate::kernel) fn turned_bounds(&self) -> Bounds<3> {
-        CutDisc::new(self.radius, self.corner[1].clamp(-self.radius, self.radius))
-            .turned_bounds()
+        let top = self.corner[1].clamp(-self.radius, self.radius);
+        bounds_of_zone(self.radius, [-self.radius, top])
     }
 }

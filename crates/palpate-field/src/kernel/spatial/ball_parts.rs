@@ -6,7 +6,7 @@
 use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
-use crate::kernel::profile::{Curve, CutDisc, Moon, Sector};
+use crate::kernel::profile::{Curve, CutDisc, Moon, Sector, bounds_of_zone};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
@@ -31,7 +31,7 @@ const BITE_OPERATIONS: f64 = 16.0;
 /// # fn main() -> Result<(), palpate_field::ShapeError> {
 /// let right_angle = std::f64::consts::FRAC_PI_2;
 /// let scoop = Shape::from_kernel(SolidAngle::new(2.0, right_angle)?);
-/// assert_eq!(scoop.distance(Vector([0.0, 3.0, 4.0])), 3.0); // above the cap
+/// assert_eq!(scoop.distance(Vector([0.0, 4.0, 3.0])), 3.0); // above the cap
 /// assert_eq!(scoop.distance(Vector([0.0, -3.0, 0.0])), 3.0); // below the tip
 /// assert!((scoop.distance(Vector([0.0, 1.0, 0.0])) + 0.5_f64.sqrt()).abs() < 1e-15);
 /// # Ok(())
@@ -114,15 +114,15 @@ primitive! {
 
 /// Checks a height at which a ball of a radius is cut.
 fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
-    finite("height", height, Unit::Metre)?;
+    finite("cut_height", height, Unit::Metre)?;
     if height.abs() < radius {
         return Ok(height);
     }
     let rule = format!("between minus and plus the radius, {radius} m");
-    Err(ShapeError::number("height", rule, height, Unit::Metre))
+    Err(ShapeError::number("cut_height", rule, height, Unit::Metre))
 }
 
-/// What is left of a ball about the origin when all above a height is cut off. Exact.
+/// What is left of a ball about the origin when all below a height is cut off. Exact.
 ///
 /// A disc cut by a line, turned.
 ///
@@ -130,10 +130,10 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
 /// use palpate_field::{Shape, Vector, kernel::CutBall};
 ///
 /// # fn main() -> Result<(), palpate_field::ShapeError> {
-/// let bun = Shape::from_kernel(CutBall::new(5.0, 3.0)?);
-/// assert_eq!(bun.distance(Vector([0.0, 5.0, 2.0])), 2.0); // above the cut
-/// assert_eq!(bun.distance(Vector([7.0, 7.0, 0.0])), 5.0); // from the rim at (4, 3)
-/// assert_eq!(bun.distance(Vector([0.0, -6.0, 8.0])), 5.0); // from the ball
+/// let bun = Shape::from_kernel(CutBall::new(5.0, -3.0)?);
+/// assert_eq!(bun.distance(Vector([0.0, -5.0, 2.0])), 2.0); // below the cut
+/// assert_eq!(bun.distance(Vector([7.0, -7.0, 0.0])), 5.0); // from the rim at (4, −3)
+/// assert_eq!(bun.distance(Vector([0.0, 6.0, 8.0])), 5.0); // from the ball
 /// assert_eq!(bun.distance(Vector([0.0, 0.0, 0.0])), -3.0);
 /// # Ok(())
 /// # }
@@ -142,19 +142,20 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
 pub struct CutBall {
     disc: CutDisc,
     radius: f64,
+    cut_height: f64,
 }
 
 impl CutBall {
-    /// A ball of `radius` without what is above `height` [m].
+    /// A ball of `radius` without what is below `cut_height` [m].
     ///
     /// # Errors
     ///
     /// If the radius is not positive, or the height not between minus and plus the
     /// radius.
-    pub fn new(radius: f64, height: f64) -> Result<Self, ShapeError> {
+    pub fn new(radius: f64, cut_height: f64) -> Result<Self, ShapeError> {
         positive("radius", radius, Unit::Metre)?;
-        height_of_cut(radius, height)?;
-        Ok(Self { disc: CutDisc::new(radius, height), radius })
+        height_of_cut(radius, cut_height)?;
+        Ok(Self { disc: CutDisc::new(radius, cut_height), radius, cut_height })
     }
 }
 
@@ -170,7 +171,7 @@ impl Kernel<3> for CutBall {
     }
 
     fn promise(&self) -> Promise<3> {
-        let bounds = self.disc.turned_bounds();
+        let bounds = bounds_of_zone(self.radius, [self.cut_height, self.radius]);
         Promise {
             symmetric: [true, false, true],
             ..Promise::exact_convex(Some(bounds), OPERATIONS, self.radius)
@@ -180,13 +181,13 @@ impl Kernel<3> for CutBall {
 
 primitive! {
     CutBall, "cut_ball", 3,
-    about: "A ball about the origin, cut off above a height.",
+    about: "A ball about the origin, cut off below a height.",
     model: Tangent,
     parameters: {
         radius: Length = "the radius of the ball",
-        height: Coordinate = "where it is cut, between minus and plus the radius",
+        cut_height: Coordinate = "where it is cut, between minus and plus the radius",
     },
-    example: (0.8, 0.3),
+    example: (0.8, -0.3),
 }
 
 /// A bowl: what is left of a hollow sphere about the origin when all above a height is
@@ -211,12 +212,12 @@ pub struct CutHollowSphere {
     /// The middle of the wall, upside down.
     wall: Curve,
     radius: f64,
-    height: f64,
+    cut_height: f64,
     half_thickness: f64,
 }
 
 impl CutHollowSphere {
-    /// A wall of `thickness` about a sphere of `radius` without what is above `height`
+    /// A wall of `thickness` about a sphere of `radius` without what is above `cut_height`
     /// [m].
     ///
     /// # Errors
@@ -224,17 +225,17 @@ impl CutHollowSphere {
     /// If the radius is not positive, the height not between minus and plus the
     /// radius, or the thickness negative or so large that the wall meets itself: in
     /// the middle, or across the opening.
-    pub fn new(radius: f64, height: f64, thickness: f64) -> Result<Self, ShapeError> {
+    pub fn new(radius: f64, cut_height: f64, thickness: f64) -> Result<Self, ShapeError> {
         positive("radius", radius, Unit::Metre)?;
-        height_of_cut(radius, height)?;
+        height_of_cut(radius, cut_height)?;
         not_negative("thickness", thickness, Unit::Metre)?;
-        let wall = Curve::above(radius, -height);
+        let wall = Curve::above(radius, -cut_height);
         let most = 2.0 * wall.room();
         if thickness > most {
             let rule = format!("at most what closes the middle or the opening, {most} m");
             return Err(ShapeError::number("thickness", rule, thickness, Unit::Metre));
         }
-        Ok(Self { wall, radius, height, half_thickness: 0.5 * thickness })
+        Ok(Self { wall, radius, cut_height, half_thickness: 0.5 * thickness })
     }
 }
 
@@ -246,7 +247,7 @@ impl Kernel<3> for CutHollowSphere {
     }
 
     fn promise(&self) -> Promise<3> {
-        let sheet = CutDisc::new(self.radius, self.height).turned_bounds();
+        let sheet = bounds_of_zone(self.radius, [-self.radius, self.cut_height]);
         let size = self.radius + self.half_thickness;
         Promise {
             has_interior: self.half_thickness > 0.0,
@@ -262,7 +263,7 @@ primitive! {
     model: ClosedForm,
     parameters: {
         radius: Length = "from the origin to the middle of the wall",
-        height: Coordinate = "where it is cut, between minus and plus the radius",
+        cut_height: Coordinate = "where it is cut, between minus and plus the radius",
         thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside",
     },
     example: (0.8, 0.2, 0.15),
@@ -280,7 +281,7 @@ primitive! {
 /// assert_eq!(star.distance(Vector([0.0, 4.0, 0.0])), 1.0); // in the bite
 /// assert_eq!(star.distance(Vector([0.0, 0.0, 0.0])), -3.0); // below its bottom
 /// assert_eq!(star.distance(Vector([0.0, -6.0, 8.0])), 5.0); // from the ball
-/// assert_eq!(star.distance(Vector([7.0, 4.0, 0.0])), 4.0); // from the rim at (3, 4)
+/// assert_eq!(star.distance(Vector([3.0, 8.0, 0.0])), 4.0); // from the rim at (3, 4)
 /// # Ok(())
 /// # }
 /// ```

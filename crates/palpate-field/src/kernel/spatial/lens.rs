@@ -28,7 +28,7 @@ const OPERATIONS: f64 = 8.0;
 /// let seed = Shape::from_kernel(VesicaSegment::new(from, to, 4.0)?);
 /// assert_eq!(seed.distance(Vector([0.0, 0.0, 0.0])), -2.0); // half the width
 /// assert_eq!(seed.distance(Vector([0.0, 4.0, -3.0])), 3.0); // beside it
-/// assert_eq!(seed.distance(Vector([7.0, 0.0, 4.0])), 5.0); // from the tip
+/// assert_eq!(seed.distance(Vector([16.0, 0.0, 5.0])), 13.0); // from the tip
 /// # Ok(())
 /// # }
 /// ```

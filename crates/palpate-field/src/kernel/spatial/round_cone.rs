@@ -45,7 +45,7 @@ fn two_discs(
 /// assert_eq!(pin.distance(Vector([0.0, 5.5, 0.0])), 2.0); // above the upper ball
 /// assert_eq!(pin.distance(Vector([6.0, -10.5, 0.0])), 6.0); // below the lower
 /// // Beside: the side's normal is (4, 3)/5.
-/// assert!((pin.distance(Vector([8.0, 2.5, 0.0])) - 5.4).abs() < 1e-15);
+/// assert!((pin.distance(Vector([8.0, 5.5, 0.0])) - 7.2).abs() < 1e-14);
 /// # Ok(())
 /// # }
 /// ```

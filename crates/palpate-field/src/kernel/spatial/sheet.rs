@@ -48,7 +48,7 @@ const PLANAR: f64 = 1e-6;
 ///
 /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
 /// let plate = Shape::from_kernel(Sheet::<4>::new(corners.map(Vector).to_vec(), 0.0)?);
-/// assert!((plate.distance(Vector([7.0, 6.0, 0.0])) - 5.0).abs() < 1e-15);
+/// assert!((plate.distance(Vector([7.0, 6.0, 0.0])) - 5.0).abs() < 1e-14);
 /// # Ok(())
 /// # }
 /// ```
@@ -76,12 +76,10 @@ impl Sheet<3> {
         let longest = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
         let corners = std::array::from_fn(|i| points[(longest + i) % 3]);
         let [from, to, top] = corners;
-        let basis = basis(to - from, top - from);
-        let height = basis.map_or(0.0, |[_, across]| (top - from).dot(across));
-        let (Some(basis), false) = (basis, height <= FLAT * length(longest)) else {
+        let basis = basis(to - from, top - from).map_err(|height| {
             let rule = "the corners of a triangle with heights of at least 1e-9 of its size";
-            return Err(ShapeError::number("points", rule, height, Unit::Metre));
-        };
+            ShapeError::number("points", rule, height, Unit::Metre)
+        })?;
         Self::in_plane(corners, basis, radius)
     }
 }
@@ -110,10 +108,11 @@ impl Sheet<4> {
         };
         let size = lengths[0].max(lengths[1]);
         let flat = |height: f64| {
-            let rule = "the corners of a convex quadrilateral in order, each at least 1e-9                         of its size outside the line of its neighbours";
-            Err(ShapeError::number("points", rule, height, Unit::Metre))
+            let rule = "the corners of a convex quadrilateral in order, each at least 1e-9 \
+                        of its size outside the line of its neighbours";
+            ShapeError::number("points", rule, height, Unit::Metre)
         };
-        let Some(basis) = basis(longer, left) else { return flat(0.0) };
+        let basis = basis(longer, left).map_err(flat)?;
         let normal = cross(basis[0], basis[1]);
         let apart = normal.dot(corners[1] - corners[0]).abs();
         for i in 0..4 {
@@ -121,11 +120,12 @@ impl Sheet<4> {
             let line = (after - before).normalized().unwrap_or(basis[0]);
             let height = (corner - before).dot(cross(line, normal));
             if height <= FLAT * size {
-                return flat(height);
+                return Err(flat(height));
             }
         }
         if apart > PLANAR * size {
-            let rule = "in one plane, to a millionth of their size; diagonals that cross";
+            let rule = "in one plane, with diagonals that pass each other at no more than a \
+                        millionth of their length";
             return Err(ShapeError::number("points", rule, apart, Unit::Metre));
         }
         Self::in_plane(corners, basis, radius)
@@ -174,14 +174,21 @@ fn checked<const N: usize>(points: Vec<Point<3>>) -> Result<[Point<3>; N], Shape
     Ok(points)
 }
 
-/// Unit vectors along `first` and at right angles to it, on the side of `second`;
-/// `None` if there are none.
-fn basis(first: Vector<f64, 3>, second: Vector<f64, 3>) -> Option<[Vector<f64, 3>; 2]> {
-    let along = first.normalized()?;
+/// Unit vectors along `first` and at right angles to it, on the side of `second`.
+///
+/// # Errors
+///
+/// The height of `second` over `first`, if it is less than [`FLAT`].
+fn basis(first: Vector<f64, 3>, second: Vector<f64, 3>) -> Result<[Vector<f64, 3>; 2], f64> {
+    let along = first.normalized().ok_or(0.0)?;
     let across = second - along * second.dot(along);
+    let height = across.norm();
+    if height <= FLAT * first.norm() {
+        return Err(height);
+    }
     // Twice, so that it is square where the vectors are nearly parallel too.
-    let across = (across - along * across.dot(along)).normalized()?;
-    Some([along, across])
+    let across = (across - along * across.dot(along)).normalized().ok_or(height)?;
+    Ok([along, across])
 }
 
 fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
