@@ -22,8 +22,8 @@ const BITE_OPERATIONS: f64 = 16.0;
 /// The part of a ball about the origin in a cone about the +y axis: a cone with a round
 /// base. Exact.
 ///
-/// A sector of a disc, turned. From half a turn on it is no more convex; of a full turn
-/// nothing would be left to take away.
+/// A sector of a disc, turned. Over half a turn it is not convex, and cells are bounded
+/// by the formula; of a full turn nothing would be left to take away.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::SolidAngle};
