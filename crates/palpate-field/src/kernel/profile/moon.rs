@@ -31,8 +31,12 @@ impl Moon {
     pub(in crate::kernel) fn new(radius: f64, cut_radius: f64, distance: f64) -> Self {
         let (r, s, d) = (radius, cut_radius, distance);
         let height = ((r - s) * (r + s) + d * d) / (2.0 * d);
-        // Heron's formula, of which no factor is a difference of squares.
-        let area = (r + s + d) * (s - d + r) * (s + d - r) * (r + d - s);
+        // Heron's formula in Kahan's order, in which nothing cancels ("Miscalculating
+        // area and angles of a needle-like triangle", 2014).
+        let mut sides = [r, s, d];
+        sides.sort_by(|a, b| b.total_cmp(a));
+        let [a, b, c] = sides;
+        let area = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
         let corner = [area.max(0.0).sqrt() / (2.0 * d), height];
         Self { radius, cut_radius, distance, corner }
     }

@@ -15,10 +15,6 @@ use crate::vector::Vector;
 /// How many rounded operations the distance of a part takes at most.
 const OPERATIONS: f64 = 8.0;
 
-/// The same of a ball with a bite: where the spheres nearly touch, the place of the
-/// rim is rounding.
-const BITE_OPERATIONS: f64 = 16.0;
-
 /// The part of a ball about the origin in a cone about the +y axis: a cone with a round
 /// base. Exact.
 ///
@@ -324,7 +320,7 @@ impl Kernel<3> for DeathStar {
         let bounds = self.moon.turned_bounds();
         Promise {
             symmetric: [true, false, true],
-            ..Promise::exact(Some(bounds), BITE_OPERATIONS, self.size)
+            ..Promise::exact(Some(bounds), OPERATIONS, self.size)
         }
     }
 }
