@@ -5,9 +5,11 @@
 //! gives numbers. Nothing panics.
 
 use palpate_field::kernel::{
-    Arc, Argument, Ball, CappedCone, Capsule, Cuboid, Cylinder, Ellipsoid, Entry, HalfSpace,
-    Parameter, ParameterKind, Polygon, RegularPolygon, RegularStar, Ring, RoundedCuboid,
-    RoundedCylinder, Simplex, Torus,
+    Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule, Cuboid,
+    CuboidFrame, CutBall, CutHollowSphere, Cylinder, CylinderBetween, DeathStar, Ellipsoid,
+    Entry, HalfSpace, InfiniteCone, Link, Parameter, ParameterKind, Polygon, RegularPolygon,
+    RegularStar, RhombusPrism, Ring, RoundCone, RoundConeBetween, RoundedCuboid,
+    RoundedCylinder, Sheet, Simplex, SolidAngle, Torus, VesicaSegment,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::Model;
@@ -72,6 +74,43 @@ fn messages_of_primitives_name_the_number_and_its_unit() {
         message(Polygon::new(vec![square(1.0); 30_000])),
     ];
     insta::assert_snapshot!("primitives", messages.join("\n"));
+}
+
+#[test]
+fn messages_of_parts_of_balls_and_of_sheets_name_the_number_and_its_unit() {
+    let at = Vector([0.5, 0.25, 0.0]);
+    let to = Vector([0.5, 0.25, 0.75]);
+    let corners = |last: [f64; 3]| {
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], last];
+        square.map(Vector).to_vec()
+    };
+    let crossed = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let on_a_line = [1.0, 2.0, 5.0].map(|x| Vector([x, x, x])).to_vec();
+    let messages = [
+        message(CuboidFrame::new(Vector([1.0, 0.5, 2.0]), 0.25)),
+        message(CappedTorus::new(1.0, 0.1, -0.5)),
+        message(Link::new(0.1, 0.25, 1.0)),
+        message(InfiniteCone::new(std::f64::consts::PI)),
+        message(SolidAngle::new(1.0, std::f64::consts::TAU)),
+        message(CutBall::new(0.5, -0.5)),
+        message(CutHollowSphere::new(0.5, 0.4, 0.75)),
+        message(DeathStar::new(0.5, 0.25, 0.25)),
+        message(DeathStar::new(0.5, 0.25, 0.75)),
+        message(RoundCone::new(0.75, 0.25, 0.5)),
+        message(CylinderBetween::new(at, at, 0.1)),
+        message(CappedConeBetween::new(at, to, -0.1, 0.2)),
+        message(CappedConeBetween::new(at, to, 0.0, 0.0)),
+        message(RoundConeBetween::new(at, to, 1.0, 0.25)),
+        message(VesicaSegment::new(at, to, 0.8)),
+        message(RhombusPrism::new(Vector([0.6, 1.0, 0.8]), 0.25)),
+        message(Sheet::<3>::new(corners([0.0, 1.0, 0.0]), 0.1)),
+        message(Sheet::<3>::new(on_a_line, 0.1)),
+        message(Sheet::<4>::new(corners([0.0, 1.0, 0.25]), 0.1)),
+        message(Sheet::<4>::new(corners([0.75, 0.5, 0.0]), 0.1)),
+        message(Sheet::<4>::new(crossed.map(Vector).to_vec(), 0.1)),
+        message(Sheet::<4>::new(corners([0.0, 1.0, 0.0]), -0.1)),
+    ];
+    insta::assert_snapshot!("parts_and_sheets", messages.join("\n"));
 }
 
 #[test]

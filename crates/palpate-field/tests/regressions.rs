@@ -4,9 +4,10 @@
 //! The smallest case of each bug that a law or an oracle found.
 
 use palpate_field::kernel::{
-    Ball, CoolS, CylinderApproximation, Ellipsoid, HexagonalPrism, Octahedron, Polygon,
-    Pyramid, RegularPolygon, Simplex,
+    Arc, Ball, CoolS, CuboidFrame, CylinderApproximation, DeathStar, Ellipsoid, HexagonalPrism,
+    Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
 };
+use palpate_field::operator::Smooth;
 use palpate_field::scalar::{Cubic, Model, Scalar};
 use palpate_field::{
     BLOCK, Block, Column, Kernel, Point, Quantity, Shape, ShapeError, Unit, Vector,
@@ -262,5 +263,53 @@ fn a_union_can_be_asked_at_the_farthest_point() -> Outcome {
     });
     let row = Shape::union(members.collect::<Result<Vec<_>, _>>()?)?;
     assert!(row.distance(Vector([1e15; 3])) > 1e15);
+    Ok(())
+}
+
+/// At the centre the gradient led along x, where a short arc is not.
+#[test]
+fn an_arc_has_its_gradient_towards_itself_at_its_centre() -> Outcome {
+    let arc = Shape::from_kernel(Arc::new(1.0, 0.5, 0.0)?);
+    let (f, g) = arc.distance_gradient(Vector([0.0, 0.0]));
+    assert_eq!((f, g), (1.0, Vector([0.0, -1.0])));
+    Ok(())
+}
+
+/// Each union squared the remainder of the one in it, until it was infinite.
+#[test]
+fn models_of_nested_smooth_unions_stay_near_their_members() -> Outcome {
+    let ball = || Ball::new(0.5).map(Shape::<3>::from_kernel);
+    let mut shape = ball()?;
+    for _ in 0..12 {
+        shape = Shape::smooth_union([shape, ball()?], Smooth::Cubic, 1e-3)?;
+    }
+    let over = model(&shape, Vector([3.0, 0.5, -0.5]), [1.0, 4.0, 2.0]);
+    assert!(over.lower < 100.0 && over.upper < 100.0, "{over:?}");
+    Ok(())
+}
+
+/// On the face of a bar behind the box's own, no tunnel was outside.
+#[test]
+fn the_frame_of_a_box_has_a_normal_on_its_inner_faces() -> Outcome {
+    let frame = Shape::from_kernel(CuboidFrame::new(Vector([0.9, 0.7, 0.5]), 0.2)?);
+    let p = Vector([0.35, 0.1, 0.05]);
+    for ulp in -4..=4 {
+        let q = p + Vector([0.0, 0.0, f64::from(ulp) * 1e-17]);
+        assert_eq!(frame.distance_gradient(q).1, Vector([0.0, 0.0, -1.0]), "{ulp}");
+    }
+    Ok(())
+}
+
+/// Spheres that hardly cross share less than a rounding; the rim is far wider.
+#[test]
+fn a_bite_as_shallow_as_a_rounding_is_no_deeper() -> Outcome {
+    let most = 0.5 + 0.75;
+    let star = Shape::from_kernel(DeathStar::new(0.5, 0.75, most * (1.0 - f64::EPSILON))?);
+    for x in [0.0, 1e-9, 2e-9, 5e-9, 1e-8] {
+        for y in [0.5, 0.5 - 1e-16, 0.5 + 1e-16] {
+            let f = star.distance(Vector([x, y, 0.0]));
+            assert!(f.abs() < 1e-14, "{f} at {x}, {y}");
+        }
+    }
     Ok(())
 }

@@ -66,11 +66,36 @@ pub fn direction<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64,
     Ok(v.normalized().unwrap_or(Vector::unit(0)))
 }
 
-fn argument<const D: usize>(u: &mut Unstructured<'_>, what: &Parameter) -> Result<Argument> {
+/// As many points as a primitive needs, in a plane where it needs them there.
+fn points<const D: usize>(u: &mut Unstructured<'_>, primitive: &str) -> Result<Vec<Vec<f64>>> {
+    if primitive == "quad_sheet" {
+        // The ends of two diagonals that cross.
+        let (centre, first, second) = (vector::<D>(u)?, vector::<D>(u)?, vector::<D>(u)?);
+        let mut end = |diagonal: Vector<f64, D>, sign: f64| -> Result<Vec<f64>> {
+            Ok((centre + diagonal * (sign * length(u)?)).0.to_vec())
+        };
+        return Ok(vec![
+            end(first, 1.0)?,
+            end(second, 1.0)?,
+            end(first, -1.0)?,
+            end(second, -1.0)?,
+        ]);
+    }
+    let count = if primitive == "triangle_sheet" { 3 } else { D + 1 };
+    (0..count).map(|_| Ok(vector::<D>(u)?.0.to_vec())).collect()
+}
+
+fn argument<const D: usize>(
+    u: &mut Unstructured<'_>,
+    primitive: &str,
+    what: &Parameter,
+) -> Result<Argument> {
     let components = |u: &mut Unstructured<'_>, positive: bool| -> Result<Vec<f64>> {
         (0..D).map(|_| if positive { length(u) } else { coordinate(u) }).collect()
     };
     Ok(match what.kind {
+        // Most thicknesses of up to 1.5 m fill what they are the thickness of.
+        ParameterKind::Length if what.name == "thickness" => Argument::Number(0.2 * length(u)?),
         ParameterKind::Length => Argument::Number(length(u)?),
         ParameterKind::LengthOrZero => {
             let zero = u.ratio(1_u8, 5_u8)?;
@@ -91,9 +116,7 @@ fn argument<const D: usize>(u: &mut Unstructured<'_>, what: &Parameter) -> Resul
             let positive = what.name == "size" || what.name == "radii";
             Argument::Vector(components(u, positive)?)
         }
-        ParameterKind::Points => {
-            Argument::Points((0..=D).map(|_| components(u, false)).collect::<Result<_>>()?)
-        }
+        ParameterKind::Points => Argument::Points(points::<D>(u, primitive)?),
         ParameterKind::Rings => {
             let rings = u.int_in_range(1..=2_usize)?;
             let ring = |u: &mut Unstructured<'_>| -> Result<Vec<Vec<f64>>> {
@@ -116,7 +139,7 @@ where
 {
     for _ in 0..ATTEMPTS {
         let arguments: Vec<_> =
-            parameters.iter().map(|p| argument::<D>(u, p)).collect::<Result<_>>()?;
+            parameters.iter().map(|p| argument::<D>(u, name, p)).collect::<Result<_>>()?;
         if Space::with_kernel(name, &arguments, IntoShape).is_ok() {
             return Ok(Some(arguments));
         }

@@ -76,6 +76,7 @@ dimension! { 3:
     kernel::Cylinder, kernel::RoundedCylinder, kernel::InfiniteCylinder,
     kernel::CappedCone, kernel::Cone, kernel::Pyramid, kernel::Torus,
     kernel::HexagonalPrism, kernel::TriangularPrism, kernel::Octahedron,
+    kernel::CuboidFrame, kernel::CappedTorus, kernel::Link, kernel::InfiniteCone, kernel::CylinderBetween, kernel::CappedConeBetween, kernel::SolidAngle, kernel::CutBall, kernel::CutHollowSphere, kernel::DeathStar, kernel::RoundCone, kernel::RoundConeBetween, kernel::VesicaSegment, kernel::RhombusPrism, kernel::Sheet<3>, kernel::Sheet<4>,
     kernel::CubeApproximation, kernel::CylinderApproximation,
     kernel::ConeApproximation, kernel::PyramidApproximation,
 }

@@ -5,9 +5,8 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::field::Placement;
+use crate::kernel::between::Between;
 use crate::kernel::{Kernel, primitive};
-use crate::pose::{Pose, Rotation};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
@@ -105,8 +104,7 @@ primitive! {
 #[derive(Clone, Debug)]
 pub struct Segment<const D: usize> {
     radius: f64,
-    half_length: f64,
-    placement: Placement<D>,
+    between: Between<D>,
 }
 
 impl<const D: usize> Segment<D> {
@@ -116,53 +114,21 @@ impl<const D: usize> Segment<D> {
     ///
     /// If the radius is negative or a coordinate not finite.
     pub fn new(from: Point<D>, to: Point<D>, radius: f64) -> Result<Self, ShapeError> {
-        for (name, point) in [("from", from), ("to", to)] {
-            for x in point.0 {
-                crate::error::finite(name, x, Unit::Metre)?;
-            }
-        }
+        let between = Between::new(from, to)?;
         not_negative("radius", radius, Unit::Metre)?;
-        let centre = (from + to) * 0.5;
-        let rotation = match (to - from).normalized() {
-            Some(direction) => turn_y_towards(direction)?,
-            None => Rotation::identity(),
-        };
-        Ok(Self {
-            radius,
-            half_length: 0.5 * (to - from).norm(),
-            placement: Placement::new(Pose::new(rotation, centre)),
-        })
+        Ok(Self { radius, between })
     }
-}
-
-/// A rotation that takes the y axis to the unit vector `direction`.
-///
-/// A reflection and a flip of one axis. Reflecting along `y + d` takes −y to
-/// `d`, along `y − d` it takes y to `d`; the longer of the two is taken, so that
-/// nothing cancels.
-fn turn_y_towards<const D: usize>(
-    direction: Vector<f64, D>,
-) -> Result<Rotation<D>, ShapeError> {
-    let y = Vector::<f64, D>::unit(1);
-    let (along, flipped) =
-        if direction[1] < 0.0 { (y - direction, 0) } else { (y + direction, 1) };
-    let along = along.normalized().unwrap_or(y);
-    let columns = std::array::from_fn(|axis| {
-        let unit = Vector::<f64, D>::unit(axis);
-        let image = unit - along * (2.0 * unit.dot(along));
-        if axis == flipped { (-image).0 } else { image.0 }
-    });
-    Ok(Rotation::from_matrix(columns)?.inverse())
 }
 
 impl<const D: usize> Kernel<D> for Segment<D> {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
-        to_segment(self.placement.to_body(p), self.half_length) - S::constant(self.radius)
+        to_segment(self.between.to_body(p), self.between.half_length())
+            - S::constant(self.radius)
     }
 
     fn promise(&self) -> Promise<D> {
-        promise(self.half_length, self.radius).placed(&self.placement.world_from_body)
+        promise(self.between.half_length(), self.radius).placed(self.between.pose())
     }
 }
 
@@ -180,24 +146,4 @@ primitive! {
         Vector(std::array::from_fn(|i| [0.5, 0.3, -0.1][i])),
         0.2,
     ),
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_y_axis_turns_to_every_direction() {
-        for d in [
-            [0.0, 1.0, 0.0],
-            [0.0, -1.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1e-9, -1.0, 0.0],
-            [0.3, -0.5, 0.8],
-        ] {
-            let d = Vector(d).normalized().unwrap();
-            let turned = turn_y_towards(d).unwrap().rotate(Vector::unit(1));
-            assert!((turned - d).norm() < 1e-15, "{d:?}");
-        }
-    }
 }

@@ -6,11 +6,13 @@
 mod primitive;
 
 mod ball;
+mod between;
 mod capsule;
 mod cuboid;
 mod ellipsoid;
 mod half_space;
 pub mod planar;
+mod profile;
 mod simplex;
 pub mod spatial;
 
@@ -134,7 +136,7 @@ static PLANAR: [Entry<2>; 14] = [
     Entry::of::<CoolS>(),
 ];
 
-static SPATIAL: [Entry<3>; 22] = [
+static SPATIAL: [Entry<3>; 38] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<3>>(),
     Entry::of::<RoundedCuboid<3>>(),
@@ -153,6 +155,22 @@ static SPATIAL: [Entry<3>; 22] = [
     Entry::of::<HexagonalPrism>(),
     Entry::of::<TriangularPrism>(),
     Entry::of::<Octahedron>(),
+    Entry::of::<CuboidFrame>(),
+    Entry::of::<CappedTorus>(),
+    Entry::of::<Link>(),
+    Entry::of::<InfiniteCone>(),
+    Entry::of::<CylinderBetween>(),
+    Entry::of::<CappedConeBetween>(),
+    Entry::of::<SolidAngle>(),
+    Entry::of::<CutBall>(),
+    Entry::of::<CutHollowSphere>(),
+    Entry::of::<DeathStar>(),
+    Entry::of::<RoundCone>(),
+    Entry::of::<RoundConeBetween>(),
+    Entry::of::<VesicaSegment>(),
+    Entry::of::<RhombusPrism>(),
+    Entry::of::<Sheet<3>>(),
+    Entry::of::<Sheet<4>>(),
     Entry::of::<CubeApproximation>(),
     Entry::of::<CylinderApproximation>(),
     Entry::of::<ConeApproximation>(),

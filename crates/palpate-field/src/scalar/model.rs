@@ -541,7 +541,7 @@ impl Scalar for Model {
     }
 
     /// Concave in `(a, b)`: above, the tangent plane is a bound; below, the
-    /// second derivative of the fill over the range of `a − b`.
+    /// second derivative of the fill over the range of `a − b`, or all of the fill.
     #[inline(always)]
     fn smooth_min<B: Blend>(self, other: Self, unit: f64) -> Self {
         let apart = f64::abs(self.value - other.value);
@@ -554,12 +554,20 @@ impl Scalar for Model {
             * INFLATE;
         let nearest = ((apart - spread) / unit * (1.0 - 4.0 * UNIT)).max_of(0.0);
         let below = 0.5 * B::curvature(nearest) / unit * spread * spread * INFLATE;
+        let lower = weight * self.lower + rest * other.lower + below;
+        // At least the smaller of both less the whole fill: else nested unions with
+        // cells larger than their reach would square the remainder again and again.
+        let coarse = (apart
+            + self.slope_between(&other)
+            + unit * B::fill(0.0)
+            + self.lower.max_of(other.lower))
+            * INFLATE;
         Self {
             value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, unit),
             gradient: array!(k < 3 => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),
-            lower: weight * self.lower + rest * other.lower + below,
+            lower: Scalar::min(lower, coarse),
             upper: weight * self.upper + rest * other.upper,
         }
         // The operands and the fill, whose argument is rounded, may cancel in the value.

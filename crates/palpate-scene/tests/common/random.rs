@@ -45,6 +45,12 @@ fn arguments<const D: usize>(parameters: &[Parameter], attempt: usize) -> Vec<Ar
             [[-0.6, -0.4, -0.3], [0.7, -0.3, -0.2], [0.1, 0.6, -0.1], [0.0, 0.1, 0.7]];
         corners[i % 4][..D].to_vec()
     };
+    // The corners of a convex quadrilateral, in space in a plane.
+    let flat = |i: usize| -> Vec<f64> {
+        let corners =
+            [[-0.6, -0.4, -0.2], [0.7, -0.3, -0.15], [0.5, 0.6, 0.3], [-0.4, 0.4, 0.2]];
+        corners[i][..D].to_vec()
+    };
     let mut digits = attempt;
     let mut next = || {
         let digit = digits % LENGTHS.len();
@@ -60,7 +66,10 @@ fn arguments<const D: usize>(parameters: &[Parameter], attempt: usize) -> Vec<Ar
                 let shift = next();
                 Argument::Vector((0..D).map(|i| LENGTHS[(i + shift) % 5]).collect())
             }
-            ParameterKind::Points => Argument::Points((0..=D + next()).map(point).collect()),
+            ParameterKind::Points => Argument::Points(match next() {
+                4 => (0..4).map(flat).collect(),
+                more => (0..D + more).map(point).collect(),
+            }),
             ParameterKind::Rings => Argument::Rings(vec![(0..3).map(point).collect()]),
             _ => Argument::Number(LENGTHS[next()]),
         })

@@ -9,7 +9,10 @@
 
 mod patch;
 mod planar;
+mod revolved;
+mod slab;
 mod spatial;
+mod tube;
 
 use palpate_field::Point;
 use palpate_field::kernel::Argument;

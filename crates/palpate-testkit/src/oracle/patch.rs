@@ -85,6 +85,15 @@ impl Patch<2> {
     }
 }
 
+impl Patch<3> {
+    /// This surface after a rigid motion.
+    #[must_use]
+    pub fn moved(self, motion: impl Fn(Point<3>) -> Point<3> + 'static) -> Self {
+        let at = self.at;
+        Self { at: Box::new(move |u, v| motion(at(u, v))), speed: self.speed }
+    }
+}
+
 /// A part of a patch, with a lower bound of its distance.
 struct Part {
     lower: f64,

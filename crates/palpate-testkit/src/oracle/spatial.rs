@@ -9,7 +9,7 @@ use palpate_field::kernel::Argument;
 use palpate_field::{Point, Vector};
 
 use super::planar::{FAR, corners, edges, even_odd, from_segment, in_rounded_box};
-use super::{Definition, Outside, Patch, number, points, vector};
+use super::{Definition, Outside, Patch, number, points, revolved, slab, tube, vector};
 
 /// A solid of revolution from the corners of its profile in (ρ, y).
 fn turned(
@@ -26,12 +26,12 @@ fn turned(
     Definition::new(boundary, move |p| contains(p[0].hypot(p[2]), p[1]))
 }
 
-fn cylinder(r: f64, half: f64) -> Definition<3> {
+pub(super) fn cylinder(r: f64, half: f64) -> Definition<3> {
     let profile = [[0.0, half], [r, half], [r, -half], [0.0, -half]];
     turned(&profile, move |rho, y| rho < r && y.abs() < half)
 }
 
-fn capped_cone(bottom: f64, top: f64, height: f64) -> Definition<3> {
+pub(super) fn capped_cone(bottom: f64, top: f64, height: f64) -> Definition<3> {
     let half = 0.5 * height;
     let profile = [[0.0, half], [top, half], [bottom, -half], [0.0, -half]];
     turned(&profile, move |rho, y| {
@@ -85,6 +85,40 @@ fn box_of(half: Point<3>, r: f64) -> Definition<3> {
     Definition::new(boundary, move |p| in_rounded_box(half, r, p))
 }
 
+/// The bars along the edges of a box: of each octant the four rectangles at which
+/// something ends across each axis.
+fn frame(half: Point<3>, thickness: f64) -> Definition<3> {
+    let hole = half - Vector([thickness; 3]);
+    let mut boundary = Vec::new();
+    for octant in 0..8_u8 {
+        let sign = move |axis: usize| if octant >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        for axis in 0..3 {
+            let others = [(axis + 1) % 3, (axis + 2) % 3];
+            let mut rectangle = |at: f64, ranges: [[f64; 2]; 2]| {
+                let [[a, b], [c, d]] = ranges;
+                boundary.push(Patch::surface([b - a, d - c], move |u, v| {
+                    let mut p = Vector::ZERO;
+                    p[axis] = at * sign(axis);
+                    p[others[0]] = (a + (b - a) * u) * sign(others[0]);
+                    p[others[1]] = (c + (d - c) * v) * sign(others[1]);
+                    p
+                }));
+            };
+            let [i, j] = others;
+            // The face of the box, without its window.
+            rectangle(half[axis], [[hole[i], half[i]], [0.0, half[j]]]);
+            rectangle(half[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
+            // Behind it, the faces of the bars that are seen through another window.
+            rectangle(hole[axis], [[hole[i], half[i]], [0.0, hole[j]]]);
+            rectangle(hole[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
+        }
+    }
+    Definition::new(boundary, move |p| {
+        let in_box = (0..3).all(|i| p[i].abs() < half[i]);
+        in_box && (0..3).filter(|i| p[*i].abs() > hole[*i]).count() >= 2
+    })
+}
+
 /// A convex body from its triangles: inside is behind all their planes.
 fn hull(triangles: Vec<[Point<3>; 3]>, centre: Point<3>) -> Definition<3> {
     let planes: Vec<_> = triangles
@@ -99,7 +133,7 @@ fn hull(triangles: Vec<[Point<3>; 3]>, centre: Point<3>) -> Definition<3> {
     Definition::new(boundary, move |p| planes.iter().all(|(a, n)| (p - *a).dot(*n) < 0.0))
 }
 
-fn cross(a: Point<3>, b: Point<3>) -> Point<3> {
+pub(super) fn cross(a: Point<3>, b: Point<3>) -> Point<3> {
     Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
@@ -246,6 +280,11 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<3>> {
         "cylinder_approximation" => bound(cylinder(n(0), 0.5 * n(1))),
         "cone_approximation" => bound(capped_cone(n(0), 0.0, n(1))),
         "pyramid_approximation" => bound(pyramid(n(0), n(1))),
-        _ => return None,
+        "cuboid_frame" => frame(vector::<3>(a, 0) * 0.5, n(1)),
+        _ => {
+            return revolved::definition(name, a)
+                .or_else(|| slab::definition(name, a))
+                .or_else(|| tube::definition(name, a));
+        }
     })
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
@@ -16,12 +17,7 @@ use crate::vector::Vector;
 /// Exact; inside a bound where the tube meets itself, at the centre or across
 /// the opening. With a radius of zero it has no inside.
 ///
-/// # Derivation
-///
-/// Fold to `x ≥ 0`. With φ the angle from the y axis, the nearest point is on
-/// the arc at φ if φ is at most half the opening angle, else its end. That φ is
-/// larger shows in the sign of the distance from the line through the end and
-/// the origin, without an inverse function.
+/// Folded to `x ≥ 0`, it is all within a distance of half an arc.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Arc};
@@ -38,10 +34,7 @@ use crate::vector::Vector;
 pub struct Arc {
     ring_radius: f64,
     radius: f64,
-    /// Half the angle.
-    half_angle: f64,
-    /// Its sine and cosine.
-    end: [f64; 2],
+    half: Curve,
 }
 
 impl Arc {
@@ -59,37 +52,25 @@ impl Arc {
             let rule = "in (0, 2π], a full turn at most";
             return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
         }
-        let half_angle = 0.5 * angle;
-        let end = [libm::sin(half_angle), libm::cos(half_angle)];
-        Ok(Self { ring_radius, radius, half_angle, end })
+        Ok(Self { ring_radius, radius, half: Curve::to_angle(ring_radius, 0.5 * angle) })
     }
 }
 
 impl Kernel<2> for Arc {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let folded = Vector([p.0[0].abs(), p.0[1]]);
-        let [sin, cos] = self.end;
-        let past_end = folded.dot_constant(&[cos, -sin]);
-        let end = Vector([sin, cos]).scale(self.ring_radius);
-        let to_arc = (p.norm() - S::constant(self.ring_radius)).abs();
-        let to_end = (folded - Vector::of(&end.0)).norm();
-        S::select_less(S::constant(0.0), past_end, to_end, to_arc) - S::constant(self.radius)
+        self.half.distance([p.0[0].abs(), p.0[1]]) - S::constant(self.radius)
     }
 
     fn promise(&self) -> Promise<2> {
-        let [sin, cos] = self.end;
+        let [sin, cos] = self.half.end();
         let widest = if cos < 0.0 { 1.0 } else { sin };
         let aabb = Aabb {
             min: Vector([-widest, cos]).scale(self.ring_radius),
             max: Vector([widest, 1.0]).scale(self.ring_radius),
         };
         let bounds = Bounds::of_box(aabb.grown(4.0 * f64::EPSILON * self.ring_radius));
-        let gap = 2.0 * self.ring_radius * sin;
-        let opens = self.half_angle < std::f64::consts::PI;
-        let across = opens && self.half_angle > std::f64::consts::FRAC_PI_2;
-        let meets_itself =
-            self.radius > self.ring_radius || (across && gap < 2.0 * self.radius);
+        let meets_itself = self.radius > self.half.room();
         Promise {
             inside: if meets_itself { Quality::Bound } else { Quality::Exact },
             has_interior: self.radius > 0.0,

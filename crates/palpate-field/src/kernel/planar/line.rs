@@ -8,7 +8,7 @@ use crate::vector::{Point, Vector};
 
 /// A segment in the plane, by its middle, direction and half length.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(in crate::kernel) struct Edge {
     middle: [f64; 2],
     along: [f64; 2],
     across: [f64; 2],
@@ -17,7 +17,7 @@ pub(super) struct Edge {
 
 impl Edge {
     /// From `from` to `to`; its `across` points to the right.
-    pub(super) fn new(from: Point<2>, to: Point<2>) -> Self {
+    pub(in crate::kernel) fn new(from: Point<2>, to: Point<2>) -> Self {
         let along = (to - from).normalized().unwrap_or(Vector([1.0, 0.0]));
         Self {
             middle: ((from + to) * 0.5).0,
@@ -28,14 +28,14 @@ impl Edge {
     }
 
     /// The unit vector to the right of the edge.
-    pub(super) fn across(&self) -> [f64; 2] {
+    pub(in crate::kernel) fn across(&self) -> [f64; 2] {
         self.across
     }
 
     /// How far `p` is to the right of the edge's line, and how far it is past
     /// the nearer end; zero beside the edge.
     #[inline(always)]
-    pub(super) fn offsets<S: Scalar>(&self, p: Vector<S, 2>) -> [S; 2] {
+    pub(in crate::kernel) fn offsets<S: Scalar>(&self, p: Vector<S, 2>) -> [S; 2] {
         let q = p - Vector::of(&self.middle);
         let past = q.dot_constant(&self.along).abs() - S::constant(self.half_length);
         [q.dot_constant(&self.across), past.max(S::constant(0.0))]
@@ -43,7 +43,7 @@ impl Edge {
 
     /// The distance to the edge.
     #[inline(always)]
-    pub(super) fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+    pub(in crate::kernel) fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         S::norm(self.offsets(p))
     }
 
@@ -52,7 +52,7 @@ impl Edge {
     /// Beside the edge it is the offset from its line itself, which has a
     /// gradient on the line too.
     #[inline(always)]
-    pub(super) fn signed_distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+    pub(in crate::kernel) fn signed_distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         let zero = S::constant(0.0);
         let [across, past] = self.offsets(p);
         let distance = S::norm([across, past]);

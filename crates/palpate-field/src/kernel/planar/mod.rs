@@ -5,7 +5,7 @@
 
 mod arc;
 mod cool_s;
-mod line;
+pub(super) mod line;
 mod polygon;
 mod regular;
 mod ring;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Cones about the y axis, whole and capped.
+//! Cones about the y axis: whole, capped and without a base.
 
-use super::cylinder::{from_axis, turned_bounds};
+use super::cylinder::{from_axis, in_profile, turned_bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
@@ -11,7 +11,10 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 16.0;
+const OPERATIONS: f64 = 10.0;
+
+/// The same of a cone without a base.
+const INFINITE_OPERATIONS: f64 = 6.0;
 
 /// A cone about the y axis with its tip cut off. Exact.
 ///
@@ -173,4 +176,78 @@ primitive! {
         height: Length = "the full height",
     },
     example: (0.6, 1.0),
+}
+
+/// A cone about the y axis without a base, its tip at the origin, opening downwards.
+/// Exact, without bounds.
+///
+/// # Derivation
+///
+/// In the profile the surface is a half line from the origin. Where `p` is beside it,
+/// the distance is the offset from its line, which is nearer than the half line across
+/// the axis; above, the tip is nearest.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::InfiniteCone};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let right_angle = std::f64::consts::FRAC_PI_2;
+/// let funnel = Shape::from_kernel(InfiniteCone::new(right_angle)?);
+/// assert_eq!(funnel.distance(Vector([0.0, 2.0, 0.0])), 2.0); // above the tip
+/// let depth = 8.0_f64.sqrt();
+/// assert!((funnel.distance(Vector([0.0, -4.0, 0.0])) + depth).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct InfiniteCone {
+    /// Sine and cosine of half the opening angle.
+    half_angle: [f64; 2],
+}
+
+impl InfiniteCone {
+    /// A cone that opens by `angle` [rad] from side to side.
+    ///
+    /// # Errors
+    ///
+    /// If the angle is not between 0 and π.
+    pub fn new(angle: f64) -> Result<Self, ShapeError> {
+        if !(angle > 0.0 && angle < std::f64::consts::PI) {
+            let rule = "in (0, π), less than half a turn";
+            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
+        }
+        let half_angle = 0.5 * angle;
+        Ok(Self { half_angle: [libm::sin(half_angle), libm::cos(half_angle)] })
+    }
+}
+
+impl Kernel<3> for InfiniteCone {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [sin, cos] = self.half_angle;
+        let profile = in_profile(p);
+        let out = S::weighted_sum(profile, &[cos, sin]);
+        let along = S::weighted_sum(profile, &[sin, -cos]);
+        S::select_less(along, S::constant(0.0), p.norm(), out)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, INFINITE_OPERATIONS, 0.0)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        Promise {
+            symmetric: [true, false, true],
+            ..Promise::exact_convex(None, INFINITE_OPERATIONS, 0.0)
+        }
+    }
+}
+
+primitive! {
+    InfiniteCone, "infinite_cone", 3,
+    about: "A cone without a base, its tip at the origin, opening downwards.",
+    model: Tangent,
+    parameters: { angle: Angle = "the opening from side to side, less than half a turn" },
+    example: (0.9),
 }

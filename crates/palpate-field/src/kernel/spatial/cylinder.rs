@@ -16,6 +16,13 @@ pub(super) fn from_axis<S: Scalar>(p: Vector<S, 3>) -> S {
     S::norm([p.0[0], p.0[2]])
 }
 
+/// The distance from the y axis, and the height: where `p` is in the profile of a
+/// solid that turns about y.
+#[inline(always)]
+pub(super) fn in_profile<S: Scalar>(p: Vector<S, 3>) -> [S; 2] {
+    [from_axis(p), p.0[1]]
+}
+
 /// The bounds of what a box of `half_width` and `half_height` holds when turned
 /// about the y axis.
 pub(super) fn turned_bounds(half_width: f64, half_height: f64) -> Bounds<3> {

@@ -4,19 +4,33 @@
 //! Kernels of space.
 
 mod approximation;
+mod ball_parts;
+mod between;
 mod cone;
 mod cylinder;
+mod frame;
+mod lens;
 mod octahedron;
 mod prism;
 mod pyramid;
+mod rhombus;
+mod round_cone;
+mod sheet;
 mod torus;
 
 pub use approximation::{
     ConeApproximation, CubeApproximation, CylinderApproximation, PyramidApproximation,
 };
-pub use cone::{CappedCone, Cone};
+pub use ball_parts::{CutBall, CutHollowSphere, DeathStar, SolidAngle};
+pub use between::{CappedConeBetween, CylinderBetween};
+pub use cone::{CappedCone, Cone, InfiniteCone};
 pub use cylinder::{Cylinder, InfiniteCylinder, RoundedCylinder};
+pub use frame::CuboidFrame;
+pub use lens::VesicaSegment;
 pub use octahedron::Octahedron;
 pub use prism::{HexagonalPrism, TriangularPrism};
 pub use pyramid::Pyramid;
-pub use torus::Torus;
+pub use rhombus::RhombusPrism;
+pub use round_cone::{RoundCone, RoundConeBetween};
+pub use sheet::Sheet;
+pub use torus::{CappedTorus, Link, Torus};

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The torus.
+//! Tubes about rings that lie flat: the torus, a part of it, and a chain's link.
 
 use super::cylinder::from_axis;
-use crate::bounds::Bounds;
-use crate::error::{ShapeError, Unit, positive};
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, primitive};
-use crate::promise::Promise;
+use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
 use crate::vector::Vector;
 
@@ -72,4 +73,163 @@ primitive! {
         radius: Length = "the radius of the tube",
     },
     example: (0.6, 0.2),
+}
+
+/// All points within `radius` of an arc of a circle about the y axis, open towards −z.
+///
+/// Exact; inside a bound where the tube meets itself, at the centre or across the
+/// opening. With a radius of zero it has no inside.
+///
+/// # Derivation
+///
+/// Folded to `x ≥ 0`, the distance from the arc in its plane is that of half a planar
+/// arc, with z for the planar y; the height above the plane is across it.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CappedTorus};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let half = std::f64::consts::PI;
+/// let handle = Shape::from_kernel(CappedTorus::new(2.0, 0.5, half)?);
+/// assert_eq!(handle.distance(Vector([0.0, 4.0, 5.0])), 4.5); // 5 from the middle
+/// assert!((handle.distance(Vector([2.0, 4.0, -3.0])) - 4.5).abs() < 1e-15); // from an end
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CappedTorus {
+    ring_radius: f64,
+    radius: f64,
+    half: Curve,
+}
+
+impl CappedTorus {
+    /// An arc of a circle of `ring_radius` [m] that spans `angle` [rad] about the +z
+    /// axis, with a tube of `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the circle's radius is not positive, the tube's negative, or the angle not
+    /// in (0, 2π].
+    pub fn new(ring_radius: f64, radius: f64, angle: f64) -> Result<Self, ShapeError> {
+        positive("ring_radius", ring_radius, Unit::Metre)?;
+        not_negative("radius", radius, Unit::Metre)?;
+        if !(angle > 0.0 && angle <= std::f64::consts::TAU) {
+            let rule = "in (0, 2π], a full turn at most";
+            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
+        }
+        Ok(Self { ring_radius, radius, half: Curve::to_angle(ring_radius, 0.5 * angle) })
+    }
+}
+
+impl Kernel<3> for CappedTorus {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [x, y, z] = p.0;
+        S::norm([self.half.distance([x.abs(), z]), y]) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let [sin, cos] = self.half.end();
+        let widest = if cos < 0.0 { 1.0 } else { sin };
+        let aabb = Aabb {
+            min: Vector([-widest, 0.0, cos]) * self.ring_radius,
+            max: Vector([widest, 0.0, 1.0]) * self.ring_radius,
+        };
+        let slack = 4.0 * f64::EPSILON * self.ring_radius;
+        let bounds = Bounds {
+            aabb: aabb.grown(slack),
+            ball: BoundingBall {
+                centre: Vector([0.0, 0.0, cos.max(0.0) * self.ring_radius]),
+                radius: widest * self.ring_radius + slack,
+            },
+        };
+        let meets_itself = self.radius > self.half.room();
+        let size = self.ring_radius + self.radius;
+        Promise {
+            inside: if meets_itself { Quality::Bound } else { Quality::Exact },
+            has_interior: self.radius > 0.0,
+            symmetric: [true, true, false],
+            ..Promise::exact(Some(bounds.grown(self.radius)), 10.0, size)
+        }
+    }
+}
+
+primitive! {
+    CappedTorus, "capped_torus", 3,
+    about: "All points within a radius of an arc of a circle about the y axis, open towards -z.",
+    model: ClosedForm,
+    parameters: {
+        ring_radius: Length = "the radius of the circle",
+        radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
+        angle: Angle = "how much of the circle, about the +z axis",
+    },
+    example: (0.7, 0.15, 4.0),
+}
+
+/// A chain's link: a torus about the y axis with straight sides along z. Exact.
+///
+/// Cut in the middle, pulled apart and joined: in its plane, the curve inside the tube
+/// is at `ring_radius` from a segment, of which the nearest point leads to that of the
+/// curve.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Link};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let link = Shape::from_kernel(Link::new(2.0, 0.5, 6.0)?);
+/// assert_eq!(link.distance(Vector([0.0, 0.0, 1.0])), 1.5); // in the hole
+/// assert_eq!(link.distance(Vector([5.0, 4.0, -2.0])), 4.5); // beside a side
+/// assert_eq!(link.distance(Vector([0.0, 4.0, 8.0])), 4.5); // past the bow
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Link {
+    ring_radius: f64,
+    radius: f64,
+    half_length: f64,
+}
+
+impl Link {
+    /// A link with bows of `ring_radius`, its tube of `radius`, its straight sides of
+    /// `length` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a radius is not positive, the tube's is the larger, or the length is
+    /// negative.
+    pub fn new(ring_radius: f64, radius: f64, length: f64) -> Result<Self, ShapeError> {
+        let torus = Torus::new(ring_radius, radius)?;
+        let half_length = 0.5 * not_negative("length", length, Unit::Metre)?;
+        Ok(Self { ring_radius: torus.ring_radius, radius: torus.radius, half_length })
+    }
+}
+
+impl Kernel<3> for Link {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [x, y, z] = p.0;
+        let along = (z.abs() - S::constant(self.half_length)).max(S::constant(0.0));
+        let from_curve = S::norm([x, along]) - S::constant(self.ring_radius);
+        S::norm([from_curve, y]) - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let reach = self.ring_radius + self.radius;
+        let half = Vector([reach, self.radius, reach + self.half_length]);
+        Promise::exact(Some(Bounds::centred(half, half[2])), 9.0, half[2]).symmetric()
+    }
+}
+
+primitive! {
+    Link, "link", 3,
+    about: "A chain's link: a torus about the y axis with straight sides along z.",
+    model: ClosedForm,
+    parameters: {
+        ring_radius: Length = "the radius of the circle of each bow",
+        radius: Length = "the radius of the tube",
+        length: LengthOrZero = "the length of the straight sides",
+    },
+    example: (0.4, 0.15, 0.8),
 }

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Parts of balls and spheres about the y axis.
+
+use super::cylinder::in_profile;
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, finite, not_negative, positive};
+use crate::kernel::profile::{Curve, CutDisc, Moon, Sector, bounds_of_zone};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// How many rounded operations the distance of a part takes at most.
+const OPERATIONS: f64 = 8.0;
+
+/// The part of a ball about the origin in a cone about the +y axis: a cone with a round
+/// base. Exact.
+///
+/// A sector of a disc, turned. Over half a turn it is not convex, and cells are bounded
+/// by the formula; of a full turn nothing would be left to take away.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::SolidAngle};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let right_angle = std::f64::consts::FRAC_PI_2;
+/// let scoop = Shape::from_kernel(SolidAngle::new(2.0, right_angle)?);
+/// assert_eq!(scoop.distance(Vector([0.0, 4.0, 3.0])), 3.0); // above the cap
+/// assert_eq!(scoop.distance(Vector([0.0, -3.0, 0.0])), 3.0); // below the tip
+/// assert!((scoop.distance(Vector([0.0, 1.0, 0.0])) + 0.5_f64.sqrt()).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct SolidAngle {
+    sector: Sector,
+    convex: bool,
+}
+
+impl SolidAngle {
+    /// The part of a ball of `radius` [m] in a cone that opens by `angle` [rad] from
+    /// side to side.
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or the angle not between 0 and 2π.
+    pub fn new(radius: f64, angle: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        if !(angle > 0.0 && angle < std::f64::consts::TAU) {
+            let rule = "in (0, 2π), less than a full turn";
+            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
+        }
+        let convex = angle <= std::f64::consts::PI;
+        Ok(Self { sector: Sector::new(radius, 0.5 * angle), convex })
+    }
+}
+
+impl Kernel<3> for SolidAngle {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.sector.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        if self.convex {
+            tangent_model(self, cell, OPERATIONS, self.sector.radius())
+        } else {
+            self.distance(cell)
+        }
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let (radius, [sin, cos]) = (self.sector.radius(), self.sector.edge());
+        let widest = if cos < 0.0 { radius } else { radius * sin };
+        let aabb = Aabb {
+            min: Vector([-widest, radius * cos.min(0.0), -widest]),
+            max: Vector([widest, radius, widest]),
+        };
+        // The ball through tip and rim, or the one whose widest circle is the rim.
+        let slim = cos > sin;
+        let (centre, around) = if slim {
+            (0.5 * radius / cos, 0.5 * radius / cos)
+        } else {
+            (radius * cos.max(0.0), widest)
+        };
+        let slack = 8.0 * f64::EPSILON * radius;
+        let ball = BoundingBall { centre: Vector([0.0, centre, 0.0]), radius: around + slack };
+        let bounds = Bounds { aabb: aabb.grown(slack), ball };
+        Promise {
+            convex: self.convex,
+            symmetric: [true, false, true],
+            ..Promise::exact(Some(bounds), OPERATIONS, radius)
+        }
+    }
+}
+
+primitive! {
+    SolidAngle, "solid_angle", 3,
+    about: "The part of a ball in a cone about the +y axis, its tip at the origin.",
+    model: Tangent,
+    parameters: {
+        radius: Length = "the radius of the ball",
+        angle: Angle = "the opening from side to side, less than a full turn",
+    },
+    example: (0.9, 1.2),
+}
+
+/// Checks a height at which a ball of a radius is cut.
+fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
+    finite("cut_height", height, Unit::Metre)?;
+    if height.abs() < radius {
+        return Ok(height);
+    }
+    let rule = format!("between minus and plus the radius, {radius} m");
+    Err(ShapeError::number("cut_height", rule, height, Unit::Metre))
+}
+
+/// What is left of a ball about the origin when all below a height is cut off. Exact.
+///
+/// A disc cut by a line, turned.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CutBall};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let bun = Shape::from_kernel(CutBall::new(5.0, -3.0)?);
+/// assert_eq!(bun.distance(Vector([0.0, -5.0, 2.0])), 2.0); // below the cut
+/// assert_eq!(bun.distance(Vector([7.0, -7.0, 0.0])), 5.0); // from the rim at (4, −3)
+/// assert_eq!(bun.distance(Vector([0.0, 6.0, 8.0])), 5.0); // from the ball
+/// assert_eq!(bun.distance(Vector([0.0, 0.0, 0.0])), -3.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CutBall {
+    disc: CutDisc,
+    radius: f64,
+    cut_height: f64,
+}
+
+impl CutBall {
+    /// A ball of `radius` without what is below `cut_height` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or the height not between minus and plus the
+    /// radius.
+    pub fn new(radius: f64, cut_height: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        height_of_cut(radius, cut_height)?;
+        Ok(Self { disc: CutDisc::new(radius, cut_height), radius, cut_height })
+    }
+}
+
+impl Kernel<3> for CutBall {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.disc.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let bounds = bounds_of_zone(self.radius, [self.cut_height, self.radius]);
+        Promise {
+            symmetric: [true, false, true],
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, self.radius)
+        }
+    }
+}
+
+primitive! {
+    CutBall, "cut_ball", 3,
+    about: "A ball about the origin, cut off below a height.",
+    model: Tangent,
+    parameters: {
+        radius: Length = "the radius of the ball",
+        cut_height: Coordinate = "where it is cut, between minus and plus the radius",
+    },
+    example: (0.8, -0.3),
+}
+
+/// A bowl: what is left of a hollow sphere about the origin when all above a height is
+/// cut off, its rim rounded. Exact.
+///
+/// All points within half the thickness of an arc, turned. With a thickness of zero it
+/// has no inside.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CutHollowSphere};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let bowl = Shape::from_kernel(CutHollowSphere::new(5.0, -3.0, 1.0)?);
+/// assert_eq!(bowl.distance(Vector([0.0, -4.0, 0.0])), 0.5); // in the bowl
+/// assert_eq!(bowl.distance(Vector([7.0, 1.0, 0.0])), 4.5); // from the rim at (4, −3)
+/// assert_eq!(bowl.distance(Vector([0.0, -8.0, 6.0])), 4.5); // from below
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CutHollowSphere {
+    /// The middle of the wall, upside down.
+    wall: Curve,
+    radius: f64,
+    cut_height: f64,
+    half_thickness: f64,
+}
+
+impl CutHollowSphere {
+    /// A wall of `thickness` about a sphere of `radius` without what is above `cut_height`
+    /// [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, the height not between minus and plus the
+    /// radius, or the thickness negative or so large that the wall meets itself: in
+    /// the middle, or across the opening.
+    pub fn new(radius: f64, cut_height: f64, thickness: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        height_of_cut(radius, cut_height)?;
+        not_negative("thickness", thickness, Unit::Metre)?;
+        let wall = Curve::above(radius, -cut_height);
+        let most = 2.0 * wall.room();
+        if thickness > most {
+            let rule = format!("at most what closes the middle or the opening, {most} m");
+            return Err(ShapeError::number("thickness", rule, thickness, Unit::Metre));
+        }
+        Ok(Self { wall, radius, cut_height, half_thickness: 0.5 * thickness })
+    }
+}
+
+impl Kernel<3> for CutHollowSphere {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [rho, y] = in_profile(p);
+        self.wall.distance([rho, -y]) - S::constant(self.half_thickness)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let sheet = bounds_of_zone(self.radius, [-self.radius, self.cut_height]);
+        let size = self.radius + self.half_thickness;
+        Promise {
+            has_interior: self.half_thickness > 0.0,
+            symmetric: [true, false, true],
+            ..Promise::exact(Some(sheet.grown(self.half_thickness)), 8.0, size)
+        }
+    }
+}
+
+primitive! {
+    CutHollowSphere, "cut_hollow_sphere", 3,
+    about: "A bowl: a hollow sphere about the origin, cut off above a height, its rim round.",
+    model: ClosedForm,
+    parameters: {
+        radius: Length = "from the origin to the middle of the wall",
+        cut_height: Coordinate = "where it is cut, between minus and plus the radius",
+        thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside",
+    },
+    example: (0.8, 0.2, 0.15),
+}
+
+/// A ball about the origin with a bite from above: without another ball. Exact.
+///
+/// A disc without another, turned.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::DeathStar};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let star = Shape::from_kernel(DeathStar::new(5.0, 5.0, 8.0)?);
+/// assert_eq!(star.distance(Vector([0.0, 4.0, 0.0])), 1.0); // in the bite
+/// assert_eq!(star.distance(Vector([0.0, 0.0, 0.0])), -3.0); // below its bottom
+/// assert_eq!(star.distance(Vector([0.0, -6.0, 8.0])), 5.0); // from the ball
+/// assert_eq!(star.distance(Vector([3.0, 8.0, 0.0])), 4.0); // from the rim at (3, 4)
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct DeathStar {
+    moon: Moon,
+    size: f64,
+}
+
+impl DeathStar {
+    /// A ball of `radius` without one of `cut_radius` that is `distance` above it,
+    /// from centre to centre [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or the spheres do not cross.
+    pub fn new(radius: f64, cut_radius: f64, distance: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        positive("cut_radius", cut_radius, Unit::Metre)?;
+        positive("distance", distance, Unit::Metre)?;
+        let (least, most) = ((radius - cut_radius).abs(), radius + cut_radius);
+        if distance <= least || distance >= most {
+            let rule = format!(
+                "between the difference and the sum of the radii, {least} m and {most} m"
+            );
+            return Err(ShapeError::number("distance", rule, distance, Unit::Metre));
+        }
+        let size = radius + cut_radius + distance;
+        Ok(Self { moon: Moon::new(radius, cut_radius, distance), size })
+    }
+}
+
+impl Kernel<3> for DeathStar {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.moon.distance(in_profile(p))
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let bounds = self.moon.turned_bounds();
+        Promise {
+            symmetric: [true, false, true],
+            ..Promise::exact(Some(bounds), OPERATIONS, self.size)
+        }
+    }
+}
+
+primitive! {
+    DeathStar, "death_star", 3,
+    about: "A ball about the origin with a ball-shaped bite from above.",
+    model: ClosedForm,
+    parameters: {
+        radius: Length = "the radius of the ball",
+        cut_radius: Length = "the radius of the bite",
+        distance: Length = "from centre to centre, so that the spheres cross",
+    },
+    example: (0.9, 0.6, 1.1),
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The frame of a box.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::{Vector, array};
+
+/// The twelve edges of a box as bars with a square section, within the box. Exact.
+///
+/// # Derivation
+///
+/// A point is in a bar if it is in the box and less than the thickness behind at least
+/// two of its faces. Folded into the positive octant, the three bars there are boxes,
+/// and outside the nearest of them counts. What is outside, seen from inside, is
+/// outside the box or in one of three tunnels, one along each axis: the distance to the
+/// nearest is that to a face of the box, or to a tunnel's rectangle across its axis.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::CuboidFrame};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let crate_of_bars = CuboidFrame::new(Vector([10.0, 8.0, 6.0]), 1.0)?;
+/// let frame = Shape::from_kernel(crate_of_bars);
+/// assert_eq!(frame.distance(Vector([0.0, 0.0, 0.0])), 13.0_f64.sqrt()); // (3, 2) away
+/// assert_eq!(frame.distance(Vector([8.0, 8.0, 0.0])), 5.0); // from an edge: 3-4-5
+/// assert_eq!(frame.distance(Vector([4.5, 3.5, 0.0])), -0.5); // in a bar
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct CuboidFrame {
+    half_extents: [f64; 3],
+    thickness: f64,
+    /// From the centre to the middle of the bars.
+    middle: [f64; 3],
+}
+
+impl CuboidFrame {
+    /// The frame of a box with the given edge lengths, its bars of `thickness` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or the thickness not less than half the shortest
+    /// length.
+    pub fn new(size: Vector<f64, 3>, thickness: f64) -> Result<Self, ShapeError> {
+        let mut shortest = f64::INFINITY;
+        for length in size.0 {
+            shortest = shortest.min(0.5 * positive("size", length, Unit::Metre)?);
+        }
+        positive("thickness", thickness, Unit::Metre)?;
+        if thickness >= shortest {
+            let rule = format!("less than half the shortest edge, {shortest} m");
+            return Err(ShapeError::number("thickness", rule, thickness, Unit::Metre));
+        }
+        let half_extents = size.0.map(|length| 0.5 * length);
+        let middle = half_extents.map(|half| half - 0.5 * thickness);
+        Ok(Self { half_extents, thickness, middle })
+    }
+}
+
+impl Kernel<3> for CuboidFrame {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let zero = S::constant(0.0);
+        let p = p.abs().0;
+        let faces = array!(i < 3 => p[i] - S::constant(self.half_extents[i]));
+        let across = array!(i < 3 => {
+            (p[i] - S::constant(self.middle[i])).abs() - S::constant(0.5 * self.thickness)
+        });
+        let bars = S::orthant([faces[0], across[1], across[2]])
+            .min(S::orthant([across[0], faces[1], across[2]]))
+            .min(S::orthant([across[0], across[1], faces[2]]));
+
+        let walls = array!(i < 3 => faces[i] + S::constant(self.thickness));
+        let tunnels = S::orthant([walls[0], walls[1]])
+            .min(S::orthant([walls[1], walls[2]]))
+            .min(S::orthant([walls[2], walls[0]]));
+        let inside = faces[0].max(faces[1]).max(faces[2]).max(-tunnels);
+        S::select_less(bars, zero, inside, bars)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let half = Vector(self.half_extents);
+        let radius = half.norm() * (1.0 + 4.0 * f64::EPSILON);
+        Promise::exact(Some(Bounds::centred(half, radius)), 6.0, radius).symmetric()
+    }
+}
+
+primitive! {
+    CuboidFrame, "cuboid_frame", 3,
+    about: "The twelve edges of a box as square bars.",
+    model: ClosedForm,
+    parameters: {
+        size: Vector = "the edge lengths",
+        thickness: Length = "the thickness of the bars, less than half the shortest edge",
+    },
+    example: (Vector([1.4, 1.1, 0.8]), 0.2),
+}

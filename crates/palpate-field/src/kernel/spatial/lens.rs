@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Turned lenses.
+
+use super::cylinder::in_profile;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::between::Between;
+use crate::kernel::profile::Lens;
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::{Point, Vector};
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 8.0;
+
+/// A spindle between two points: an arc from one to the other, turned about the line
+/// between them. Exact.
+///
+/// Half of what two discs have in common, turned, in a frame of its own.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::VesicaSegment};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let (from, to) = (Vector([-4.0, 0.0, 0.0]), Vector([4.0, 0.0, 0.0]));
+/// let seed = Shape::from_kernel(VesicaSegment::new(from, to, 4.0)?);
+/// assert_eq!(seed.distance(Vector([0.0, 0.0, 0.0])), -2.0); // half the width
+/// assert_eq!(seed.distance(Vector([0.0, 4.0, -3.0])), 3.0); // beside it
+/// assert_eq!(seed.distance(Vector([16.0, 0.0, 5.0])), 13.0); // from the tip
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct VesicaSegment {
+    spindle: Spindle,
+    between: Between<3>,
+}
+
+impl VesicaSegment {
+    /// A spindle with its tips at two points, of full `width` in the middle [m].
+    ///
+    /// # Errors
+    ///
+    /// If the width is not positive or more than the distance of the points, or a
+    /// coordinate not finite.
+    pub fn new(from: Point<3>, to: Point<3>, width: f64) -> Result<Self, ShapeError> {
+        let between = Between::apart(from, to)?;
+        positive("width", width, Unit::Metre)?;
+        let length = 2.0 * between.half_length();
+        if width > length {
+            let rule = format!("at most the distance of the tips, {length} m");
+            return Err(ShapeError::number("width", rule, width, Unit::Metre));
+        }
+        let spindle = Spindle(Lens::new(between.half_length(), 0.5 * width));
+        Ok(Self { spindle, between })
+    }
+}
+
+impl Kernel<3> for VesicaSegment {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.spindle.distance(self.between.to_body(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        self.spindle.model(self.between.to_body(cell))
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let pose = self.between.pose();
+        let lens = &self.spindle.0;
+        let bounds = lens.turned_bounds(self.between.direction(), pose.translation);
+        Promise { bounds: Some(bounds), ..self.spindle.promise().placed(pose) }
+    }
+}
+
+/// A spindle along the y axis about the origin.
+#[derive(Clone, Debug)]
+struct Spindle(Lens);
+
+impl Kernel<3> for Spindle {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.0.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.0.half_height())
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let bounds = self.0.turned_bounds(Vector::unit(1), Vector::ZERO);
+        Promise::exact_convex(Some(bounds), OPERATIONS, self.0.half_height()).symmetric()
+    }
+}
+
+primitive! {
+    VesicaSegment, "vesica_segment", 3,
+    about: "A spindle between two points: an arc turned about the line between them.",
+    model: Tangent,
+    parameters: {
+        from: Vector = "one tip",
+        to: Vector = "the other tip",
+        width: Length = "the full width in the middle, at most the distance of the tips",
+    },
+    example: (Vector([-0.7, -0.5, 0.2]), Vector([0.8, 0.6, -0.1]), 0.7),
+}

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Prisms on rhombi.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::profile::{Rhombus, inner_radius};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 10.0;
+
+/// A prism along y on a rhombus whose diagonals are along x and z, its edges rounded
+/// inwards. Exact.
+///
+/// The orthant of the rhombus's distance and `|y| − h/2`. All faces are moved inwards by
+/// the rounding, and the rest is grown by as much: the faces stay where they are.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RhombusPrism};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let tile = Shape::from_kernel(RhombusPrism::new(Vector([8.0, 2.0, 6.0]), 0.0)?);
+/// assert_eq!(tile.distance(Vector([8.0, 4.0, 0.0])), 5.0); // past a corner: 3-4-5
+/// assert!((tile.distance(Vector([5.0, 0.0, 5.0])) - 4.6).abs() < 1e-15); // from a side
+/// assert_eq!(tile.distance(Vector([1.0, 0.75, 1.0])), -0.25);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RhombusPrism {
+    rhombus: Rhombus,
+    half_height: f64,
+    rounding: f64,
+}
+
+impl RhombusPrism {
+    /// A prism with diagonals of `size[0]` along x and `size[2]` along z, `size[1]` high,
+    /// its edges rounded with radius `rounding` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or the rounding is negative or more than half the
+    /// height or the radius of the circle in the rhombus.
+    pub fn new(size: Vector<f64, 3>, rounding: f64) -> Result<Self, ShapeError> {
+        for length in size.0 {
+            positive("size", length, Unit::Metre)?;
+        }
+        let [a, half_height, b] = size.0.map(|length| 0.5 * length);
+        not_negative("rounding", rounding, Unit::Metre)?;
+        let most = half_height.min(inner_radius([a, b]));
+        if rounding > most {
+            let rule = format!(
+                "at most half the height and the radius of the circle in the rhombus, {most} m"
+            );
+            return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
+        }
+        let rhombus = Rhombus::new([a, b], rounding);
+        Ok(Self { rhombus, half_height: half_height - rounding, rounding })
+    }
+
+    /// From the centre to the farthest corner of what is grown, by coordinate [m].
+    fn core(&self) -> Vector<f64, 3> {
+        let [a, b] = self.rhombus.corners();
+        Vector([a, self.half_height, b])
+    }
+
+    fn size(&self) -> f64 {
+        self.core().norm() + self.rounding
+    }
+}
+
+impl Kernel<3> for RhombusPrism {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [x, y, z] = p.abs().0;
+        S::orthant([self.rhombus.distance([x, z]), y - S::constant(self.half_height)])
+            - S::constant(self.rounding)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.size())
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let core = self.core();
+        let widest = core[0].max(core[2]).hypot(core[1]);
+        let radius = (widest + self.rounding) * (1.0 + 4.0 * f64::EPSILON);
+        let half = (core + Vector::constant(self.rounding)) * (1.0 + 4.0 * f64::EPSILON);
+        let bounds = Bounds::centred(half, radius);
+        Promise::exact_convex(Some(bounds), OPERATIONS, self.size()).symmetric()
+    }
+}
+
+primitive! {
+    RhombusPrism, "rhombus_prism", 3,
+    about: "A prism along y on a rhombus, its edges rounded inwards.",
+    model: Tangent,
+    parameters: {
+        size: Vector = "the diagonals along x and z, and the height along y",
+        rounding: LengthOrZero = "the radius of the edges",
+    },
+    example: (Vector([1.6, 0.6, 1.0]), 0.08),
+}

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The convex hulls of two balls.
+
+use super::cylinder::in_profile;
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::between::Between;
+use crate::kernel::profile::TwoDiscs;
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::{Point, Vector};
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 8.0;
+
+/// Two balls of which neither holds the other.
+fn two_discs(
+    [first, second]: [(&'static str, f64); 2],
+    (what, distance): (&'static str, f64),
+) -> Result<TwoDiscs, ShapeError> {
+    positive(first.0, first.1, Unit::Metre)?;
+    positive(second.0, second.1, Unit::Metre)?;
+    positive(what, distance, Unit::Metre)?;
+    let least = (first.1 - second.1).abs();
+    if distance <= least {
+        let rule = format!("more than the difference of the radii, {least} m");
+        return Err(ShapeError::number(what, rule, distance, Unit::Metre));
+    }
+    Ok(TwoDiscs::new(first.1, second.1, distance))
+}
+
+/// Two balls above each other on the y axis and all that is between: their convex
+/// hull. Exact.
+///
+/// The origin is half-way between the centres. The hull of two discs, turned.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RoundCone};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let pin = Shape::from_kernel(RoundCone::new(4.0, 1.0, 5.0)?);
+/// assert_eq!(pin.distance(Vector([0.0, 5.5, 0.0])), 2.0); // above the upper ball
+/// assert_eq!(pin.distance(Vector([6.0, -10.5, 0.0])), 6.0); // below the lower
+/// // Beside: the side's normal is (4, 3)/5.
+/// assert!((pin.distance(Vector([8.0, 5.5, 0.0])) - 7.2).abs() < 1e-14);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RoundCone(TwoDiscs);
+
+impl RoundCone {
+    /// Balls of two radii, their centres `height` apart [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or one ball holds the other.
+    pub fn new(bottom_radius: f64, top_radius: f64, height: f64) -> Result<Self, ShapeError> {
+        let radii = [("bottom_radius", bottom_radius), ("top_radius", top_radius)];
+        Ok(Self(two_discs(radii, ("height", height))?))
+    }
+}
+
+impl Kernel<3> for RoundCone {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.0.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.0.size())
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let (half, [bottom, top]) = (self.0.half_distance(), self.0.radii());
+        let widest = bottom.max(top);
+        let aabb = Aabb {
+            min: Vector([-widest, -half - bottom, -widest]),
+            max: Vector([widest, half + top, widest]),
+        };
+        let centre = Vector([0.0, 0.5 * (top - bottom), 0.0]);
+        let radius = 0.5 * self.0.size() * (1.0 + 4.0 * f64::EPSILON);
+        let bounds = Bounds { aabb, ball: BoundingBall { centre, radius } };
+        Promise {
+            symmetric: [true, bottom == top, true],
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, self.0.size())
+        }
+    }
+}
+
+primitive! {
+    RoundCone, "round_cone", 3,
+    about: "Two balls above each other and all that is between them.",
+    model: Tangent,
+    parameters: {
+        bottom_radius: Length = "the radius of the lower ball",
+        top_radius: Length = "the radius of the upper ball",
+        height: Length = "from centre to centre, more than the radii differ",
+    },
+    example: (0.45, 0.2, 0.8),
+}
+
+/// Balls about two points and all that is between: their convex hull. Exact.
+///
+/// A [`RoundCone`] in a frame of its own.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RoundConeBetween};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let (from, to) = (Vector([1.0, 0.0, 0.0]), Vector([6.0, 0.0, 0.0]));
+/// let bone = Shape::from_kernel(RoundConeBetween::new(from, to, 4.0, 1.0)?);
+/// assert_eq!(bone.distance(Vector([9.0, 0.0, 4.0])), 4.0); // from the small end
+/// assert_eq!(bone.distance(Vector([-8.0, 0.0, 0.0])), 5.0); // from the large end
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RoundConeBetween {
+    cone: RoundCone,
+    between: Between<3>,
+}
+
+impl RoundConeBetween {
+    /// Balls of two radii about two points [m].
+    ///
+    /// # Errors
+    ///
+    /// If a radius is not positive, a coordinate not finite, or one ball holds the
+    /// other.
+    pub fn new(
+        from: Point<3>,
+        to: Point<3>,
+        from_radius: f64,
+        to_radius: f64,
+    ) -> Result<Self, ShapeError> {
+        let between = Between::new(from, to)?;
+        let radii = [("from_radius", from_radius), ("to_radius", to_radius)];
+        let distance = ("the distance from `from` to `to`", 2.0 * between.half_length());
+        Ok(Self { cone: RoundCone(two_discs(radii, distance)?), between })
+    }
+}
+
+impl Kernel<3> for RoundConeBetween {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        self.cone.distance(self.between.to_body(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        self.cone.model(self.between.to_body(cell))
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let (discs, pose) = (&self.cone.0, self.between.pose());
+        let [start, end] = discs.radii();
+        let ball = |along: f64, radius: f64| {
+            let centre = pose.transform_point(Vector([0.0, along, 0.0]));
+            Aabb { min: centre, max: centre }.grown(radius)
+        };
+        let half = discs.half_distance();
+        let aabb = ball(-half, start).union(&ball(half, end));
+        let placed = self.cone.promise().placed(pose);
+        let bounds = placed.bounds.map(|around| {
+            let slack = 8.0 * f64::EPSILON * around.radius_about_origin();
+            Bounds { aabb: aabb.grown(slack), ..around }
+        });
+        Promise { bounds, ..placed }
+    }
+}
+
+primitive! {
+    RoundConeBetween, "round_cone_between", 3,
+    about: "Balls about two points and all that is between them.",
+    model: Tangent,
+    parameters: {
+        from: Vector = "the centre of one ball",
+        to: Vector = "the centre of the other ball",
+        from_radius: Length = "the radius of one ball",
+        to_radius: Length = "the radius of the other ball",
+    },
+    example: (Vector([-0.4, -0.3, 0.2]), Vector([0.5, 0.4, -0.1]), 0.4, 0.2),
+}
