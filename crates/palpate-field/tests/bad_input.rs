@@ -128,7 +128,14 @@ fn bad(parameter: &Parameter, dimension: usize) -> Vec<Argument> {
         ParameterKind::LengthOrZero => numbers(&[-0.02, NAN, INFINITY, -INFINITY, 1e300]),
         ParameterKind::Coordinate => numbers(&never),
         ParameterKind::Angle => numbers(&[0.0, -0.02, NAN, INFINITY, 6.3, 1e300]),
-        ParameterKind::Count => [0, 2, 1_000_000, u32::MAX].map(Argument::Count).to_vec(),
+        ParameterKind::Count => {
+            let mut list = vec![0, 1_000_000, u32::MAX];
+            // A polygon needs three sides, a star three branches.
+            if parameter.name != "steps" {
+                list.push(2);
+            }
+            list.into_iter().map(Argument::Count).collect()
+        }
         ParameterKind::Vector => {
             let mut list = never.to_vec();
             if matches!(parameter.name, "size" | "radii") {
