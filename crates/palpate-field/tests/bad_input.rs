@@ -5,9 +5,11 @@
 //! gives numbers. Nothing panics.
 
 use palpate_field::kernel::{
-    Arc, Argument, Ball, CappedCone, Capsule, Cuboid, Cylinder, Ellipsoid, Entry, HalfSpace,
-    Parameter, ParameterKind, Polygon, RegularPolygon, RegularStar, Ring, RoundedCuboid,
-    RoundedCylinder, Simplex, Torus,
+    Arc, Argument, Ball, CappedCone, Capsule, ChamferedRectangle, Cross, Cuboid, CutDisk,
+    Cylinder, Ellipsoid, Entry, HalfSpace, Horseshoe, IsoscelesTrapezoid, Moon,
+    OrientedRectangle, OrientedVesica, Parameter, ParameterKind, Pie, Polygon, RegularPolygon,
+    RegularStar, Ring, RingSector, RoundedCuboid, RoundedCylinder, RoundedRectangle, RoundedX,
+    Simplex, Stairs, Torus, Tunnel, UnevenCapsule, Vesica,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::Model;
@@ -72,6 +74,39 @@ fn messages_of_primitives_name_the_number_and_its_unit() {
         message(Polygon::new(vec![square(1.0); 30_000])),
     ];
     insta::assert_snapshot!("primitives", messages.join("\n"));
+}
+
+#[test]
+fn messages_of_outlines_name_the_number_and_its_unit() {
+    let (a, b) = (Vector([0.25, 0.5]), Vector([1.25, 0.5]));
+    let messages = [
+        message(RoundedRectangle::new(Vector([1.0, 0.5]), 0.1, -0.02, 0.1, 0.1)),
+        message(RoundedRectangle::new(Vector([1.0, 0.5]), 0.25, 0.1, 0.45, 0.1)),
+        message(ChamferedRectangle::new(Vector([1.0, 0.5]), 0.3)),
+        message(OrientedRectangle::new(a, a, 0.1)),
+        message(OrientedRectangle::new(a, Vector([NAN, 0.5]), 0.1)),
+        message(IsoscelesTrapezoid::new(0.0, 0.0, 1.0)),
+        message(Stairs::new(0.25, 0.125, 0)),
+        message(Stairs::new(0.25, 0.125, 1000)),
+        message(Stairs::new(1e14, 0.125, 100)),
+        message(Cross::new(0.5, 0.5)),
+        message(RoundedX::new(0.5, 0.3)),
+        message(Tunnel::new(1.0, 0.25)),
+        message(UnevenCapsule::new(0.75, 0.25, 0.5)),
+        message(Pie::new(0.5, 7.0)),
+        message(CutDisk::new(0.5, -0.5)),
+        message(RingSector::new(0.5, 0.25, 1.0)),
+        message(Horseshoe::new(0.5, 1.0, 0.25, 1.0)),
+        message(Horseshoe::new(0.5, 5.0, 0.75, 0.25)),
+        message(Vesica::new(0.5, 0.25)),
+        message(Vesica::new(0.0001, 0.25)),
+        message(OrientedVesica::new(a, b, 1.5)),
+        message(Moon::new(0.5, 0.25, 0.75)),
+        message(Moon::new(0.5, 0.25, 0.125)),
+        message(RegularStar::hexagram(0.0)),
+        message(RegularStar::pentagram(NAN)),
+    ];
+    insta::assert_snapshot!("outlines", messages.join("\n"));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 10.0;
+const OPERATIONS: f64 = 6.0;
 
 /// A band along an arc about the origin and its tangents at both ends, with flat
 /// ends, open downwards. Exact.
@@ -95,8 +95,9 @@ impl Kernel<2> for Horseshoe {
         let along = folded.dot_constant(&[cos, -sin]);
         let out = folded.dot_constant(&[sin, cos]) - radius;
         let (side, end) = (out.abs() - width, along - S::constant(self.length));
-        let ring = (p.norm() - radius).abs() - width;
-        let arc = ring.max(-S::norm([end, side.max(zero)]));
+        // y first: from the centre, the +y axis leads to the ring.
+        let ring = (S::norm([p.0[1], p.0[0]]) - radius).abs() - width;
+        let arc = ring.max(-S::norm([-end, side.max(zero)]));
         S::select_less(zero, along, S::orthant([side, end]), arc)
     }
 

@@ -11,13 +11,24 @@ use crate::pose::{Pose, Rotation};
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
 
-/// The distance of a convex shape of `size` [m] that is the intersection of sides
-/// (half-planes and discs): inside the largest distance to a side, `sides`;
-/// outside that to the nearest piece of the outline, `pieces`.
+/// The distance of a shape of `size` [m] that is the intersection of sides
+/// (half-planes, discs, what is outside a disc): inside the largest distance to a side,
+/// `sides`; outside that to the nearest piece of the outline, `pieces`.
 #[inline(always)]
-pub(super) fn convex<S: Scalar>(sides: S, pieces: S, size: f64) -> S {
+pub(super) fn intersection<S: Scalar>(sides: S, pieces: S, size: f64) -> S {
     let outside = face_if_on_it(pieces, sides, size);
     S::select_less(sides, S::constant(0.0), sides, outside)
+}
+
+/// `out`, the distance to a side, for a point on or out of it that is not `past` its piece
+/// of the outline; else `otherwise`, the distance to the ends of pieces.
+///
+/// Not the smaller of the two: next to the end of a piece they differ by less than their
+/// rounding, and the direction from the end is only nearly the side's normal.
+#[inline(always)]
+pub(super) fn beside<S: Scalar>(out: S, past: S, otherwise: S) -> S {
+    let zero = S::constant(0.0);
+    S::select_less(zero, past, otherwise, S::select_less(out, zero, otherwise, out))
 }
 
 /// The box `aabb`, and of the ball of `radius` about (0, `height`) and the one

@@ -4,7 +4,7 @@
 //! Rhombi, parallelograms, trapezoids and triangles along the axes.
 
 use super::line::Edge;
-use super::outline::{bounds_about, convex};
+use super::outline::{beside, bounds_about, intersection};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
@@ -13,7 +13,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distances take at most.
-const OPERATIONS: f64 = 10.0;
+const OPERATIONS: f64 = 6.0;
 
 /// A rhombus about the origin, its diagonals along the axes. Exact.
 ///
@@ -63,7 +63,7 @@ impl Kernel<2> for Rhombus {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         let [out, past] = self.edge.offsets(p.abs());
-        convex(out, S::norm([out, past]), self.radius())
+        intersection(out, S::norm([out, past]), self.radius())
     }
 
     #[inline(always)]
@@ -146,8 +146,10 @@ impl Kernel<2> for Parallelogram {
         let right = self.right.offsets(turned);
         let left = self.left.offsets(turned);
         let sides = top[0].max(right[0]).max(left[0]);
-        let pieces = S::norm(top).min(S::norm(right)).min(S::norm(left));
-        convex(sides, pieces, self.radius)
+        let corners = S::norm(top).min(S::norm(right)).min(S::norm(left));
+        let by_sides = beside(right[0], right[1], beside(left[0], left[1], corners));
+        let pieces = beside(top[0], top[1], by_sides);
+        intersection(sides, pieces, self.radius)
     }
 
     #[inline(always)]
@@ -232,8 +234,9 @@ impl Kernel<2> for IsoscelesTrapezoid {
         let [bottom, top] = [self.bottom, self.top].map(S::constant);
         let past_cap = (x - S::select_less(y, zero, bottom, top)).max(zero);
         let side = self.side.offsets(Vector([x, y]));
-        let pieces = S::norm([cap, past_cap]).min(S::norm(side));
-        convex(side[0].max(cap), pieces, self.size())
+        let corners = S::norm([cap, past_cap]).min(S::norm(side));
+        let pieces = beside(cap, past_cap, beside(side[0], side[1], corners));
+        intersection(side[0].max(cap), pieces, self.size())
     }
 
     #[inline(always)]

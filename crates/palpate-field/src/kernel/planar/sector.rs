@@ -12,7 +12,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distances take at most.
-const OPERATIONS: f64 = 8.0;
+const OPERATIONS: f64 = 6.0;
 
 /// The angle between two rays from the origin, at the same angle from the +y axis,
 /// and the straight pieces of an outline on them.
@@ -201,7 +201,8 @@ impl RingSector {
 impl Kernel<2> for RingSector {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let ring = (p.norm() - S::constant(self.mean_radius)).abs();
+        // y first: from the centre, the +y axis leads to the ring.
+        let ring = (S::norm([p.0[1], p.0[0]]) - S::constant(self.mean_radius)).abs();
         self.wedge.cut(p, ring - S::constant(self.half_width))
     }
 

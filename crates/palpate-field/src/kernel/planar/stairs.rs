@@ -17,7 +17,7 @@ const MOST_STEPS: u32 = 256;
 const HALVINGS: usize = 8;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 12.0;
+const OPERATIONS: f64 = 6.0;
 
 /// A solid staircase that rises to the right, centred at the origin. Exact.
 ///

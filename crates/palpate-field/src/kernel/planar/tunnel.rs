@@ -69,7 +69,7 @@ impl Kernel<2> for Tunnel {
         let bounds = bounds_about(Aabb::centred(half), -below, self.half_height + below);
         Promise {
             symmetric: [true, false],
-            ..Promise::exact_convex(Some(bounds), 7.0, half.norm())
+            ..Promise::exact_convex(Some(bounds), 6.0, half.norm())
         }
     }
 }
@@ -86,7 +86,7 @@ primitive! {
 }
 
 /// How many rounded operations the distance of an uneven capsule takes at most.
-const CAPSULE_OPERATIONS: f64 = 10.0;
+const CAPSULE_OPERATIONS: f64 = 6.0;
 
 /// Two discs on the y axis and all between their common tangents, centred between
 /// the discs' centres. Exact.

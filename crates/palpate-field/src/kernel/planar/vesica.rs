@@ -118,7 +118,7 @@ primitive! {
 /// let leaf = OrientedVesica::new(Vector([0.0, 0.0]), Vector([8.0, 0.0]), 4.0)?;
 /// let leaf = Shape::from_kernel(leaf);
 /// assert!((leaf.distance(Vector([4.0, 0.0])) + 2.0).abs() < 1e-15);
-/// assert!((leaf.distance(Vector([11.0, 4.0])) - 5.0).abs() < 1e-14); // from `to`
+/// assert!((leaf.distance(Vector([12.0, 3.0])) - 5.0).abs() < 1e-14); // from `to`
 /// # Ok(())
 /// # }
 /// ```
