@@ -20,15 +20,19 @@ pub(super) fn intersection<S: Scalar>(sides: S, pieces: S, size: f64) -> S {
     S::select_less(sides, S::constant(0.0), sides, outside)
 }
 
-/// `out`, the distance to a side, for a point on or out of it that is not `past` its piece
-/// of the outline; else `otherwise`, the distance to the ends of pieces.
+/// The distance to one piece of an outline, or to the others, which are `otherwise` away.
+/// `out` is the offset from the piece's line or circle, negative inside.
 ///
-/// Not the smaller of the two: next to the end of a piece they differ by less than their
-/// rounding, and the direction from the end is only nearly the side's normal.
+/// A point on or out of it that is not `past` the piece's ends is beside the piece, which
+/// then is the nearest. The smaller of both would not do: next to an end they differ by
+/// less than their rounding, and the direction from the end is only nearly the normal.
 #[inline(always)]
 pub(super) fn beside<S: Scalar>(out: S, past: S, otherwise: S) -> S {
     let zero = S::constant(0.0);
-    S::select_less(zero, past, otherwise, S::select_less(out, zero, otherwise, out))
+    // Behind the piece, seen through the shape: so that models over cells on the outline
+    // do not have to choose between far apart numbers.
+    let behind = otherwise.min(out.abs());
+    S::select_less(zero, past, otherwise, S::select_less(out, zero, behind, out))
 }
 
 /// The box `aabb`, and of the ball of `radius` about (0, `height`) and the one
