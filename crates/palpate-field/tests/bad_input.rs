@@ -5,11 +5,13 @@
 //! gives numbers. Nothing panics.
 
 use palpate_field::kernel::{
-    Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule, Cuboid,
-    CuboidFrame, CutBall, CutHollowSphere, Cylinder, CylinderBetween, DeathStar, Ellipsoid,
-    Entry, HalfSpace, InfiniteCone, Link, Parameter, ParameterKind, Polygon, RegularPolygon,
-    RegularStar, RhombusPrism, Ring, RoundCone, RoundConeBetween, RoundedCuboid,
-    RoundedCylinder, Sheet, Simplex, SolidAngle, Torus, VesicaSegment,
+    Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule,
+    ChamferedRectangle, Cross, Cuboid, CuboidFrame, CutBall, CutDisk, CutHollowSphere,
+    Cylinder, CylinderBetween, DeathStar, Ellipsoid, Entry, HalfSpace, Horseshoe, InfiniteCone,
+    IsoscelesTrapezoid, Link, Moon, OrientedRectangle, OrientedVesica, Parameter,
+    ParameterKind, Pie, Polygon, RegularPolygon, RegularStar, RhombusPrism, Ring, RingSector,
+    RoundCone, RoundConeBetween, RoundedCuboid, RoundedCylinder, RoundedRectangle, RoundedX,
+    Sheet, Simplex, SolidAngle, Stairs, Torus, Tunnel, UnevenCapsule, Vesica, VesicaSegment,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::Model;
@@ -114,6 +116,39 @@ fn messages_of_parts_of_balls_and_of_sheets_name_the_number_and_its_unit() {
 }
 
 #[test]
+fn messages_of_outlines_name_the_number_and_its_unit() {
+    let (a, b) = (Vector([0.25, 0.5]), Vector([1.25, 0.5]));
+    let messages = [
+        message(RoundedRectangle::new(Vector([1.0, 0.5]), 0.1, -0.02, 0.1, 0.1)),
+        message(RoundedRectangle::new(Vector([1.0, 0.5]), 0.25, 0.1, 0.45, 0.1)),
+        message(ChamferedRectangle::new(Vector([1.0, 0.5]), 0.3)),
+        message(OrientedRectangle::new(a, a, 0.1)),
+        message(OrientedRectangle::new(a, Vector([NAN, 0.5]), 0.1)),
+        message(IsoscelesTrapezoid::new(0.0, 0.0, 1.0)),
+        message(Stairs::new(0.25, 0.125, 0)),
+        message(Stairs::new(0.25, 0.125, 1000)),
+        message(Stairs::new(1e14, 0.125, 100)),
+        message(Cross::new(0.5, 0.5)),
+        message(RoundedX::new(0.5, 0.3)),
+        message(Tunnel::new(1.0, 0.25)),
+        message(UnevenCapsule::new(0.75, 0.25, 0.5)),
+        message(Pie::new(0.5, 7.0)),
+        message(CutDisk::new(0.5, -0.5)),
+        message(RingSector::new(0.5, 0.25, 1.0)),
+        message(Horseshoe::new(0.5, 1.0, 0.25, 1.0)),
+        message(Horseshoe::new(0.5, 5.0, 0.75, 0.25)),
+        message(Vesica::new(0.5, 0.25)),
+        message(Vesica::new(0.0001, 0.25)),
+        message(OrientedVesica::new(a, b, 1.5)),
+        message(Moon::new(0.5, 0.25, 0.75)),
+        message(Moon::new(0.5, 0.25, 0.125)),
+        message(RegularStar::hexagram(0.0)),
+        message(RegularStar::pentagram(NAN)),
+    ];
+    insta::assert_snapshot!("outlines", messages.join("\n"));
+}
+
+#[test]
 fn messages_of_operators_name_the_number_and_its_unit() -> Outcome {
     let far = Pose::translation(Vector([0.0, 1e300, 0.0]));
     let none: [Shape<3>; 0] = [];
@@ -167,7 +202,14 @@ fn bad(parameter: &Parameter, dimension: usize) -> Vec<Argument> {
         ParameterKind::LengthOrZero => numbers(&[-0.02, NAN, INFINITY, -INFINITY, 1e300]),
         ParameterKind::Coordinate => numbers(&never),
         ParameterKind::Angle => numbers(&[0.0, -0.02, NAN, INFINITY, 6.3, 1e300]),
-        ParameterKind::Count => [0, 2, 1_000_000, u32::MAX].map(Argument::Count).to_vec(),
+        ParameterKind::Count => {
+            let mut list = vec![0, 1_000_000, u32::MAX];
+            // A polygon needs three sides, a star three branches.
+            if parameter.name != "steps" {
+                list.push(2);
+            }
+            list.into_iter().map(Argument::Count).collect()
+        }
         ParameterKind::Vector => {
             let mut list = never.to_vec();
             if matches!(parameter.name, "size" | "radii") {

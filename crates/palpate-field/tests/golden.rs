@@ -71,7 +71,7 @@ fn tips_point_up() -> Result<(), ShapeError> {
         beside[0] = 0.2;
         Ok(shape.distance(near_tip) < 0.0 && shape.distance(beside) > 0.0)
     }
-    for name in ["regular_polygon", "regular_star", "cool_s"] {
+    for name in ["regular_polygon", "regular_star", "cool_s", "isosceles_triangle"] {
         assert!(tip(Entry::<2>::ALL, name)?, "the tip of {name}");
     }
     for name in ["cone", "pyramid", "cone_approximation", "pyramid_approximation"] {

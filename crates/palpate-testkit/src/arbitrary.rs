@@ -109,7 +109,8 @@ fn argument<const D: usize>(
         }),
         ParameterKind::Count => Argument::Count(match u.int_in_range(0..=3_u8)? {
             0 => u.int_in_range(3..=256)?,
-            _ => u.int_in_range(3..=12)?,
+            // Polygons and stars have at least three.
+            _ => u.int_in_range(if what.name == "steps" { 1 } else { 3 }..=12)?,
         }),
         ParameterKind::Vector | ParameterKind::Direction => {
             // Sizes and radii must be positive; all else may have any sign.

@@ -68,6 +68,7 @@ dimension! { 2:
     kernel::Segment<2>, kernel::HalfSpace<2>, kernel::Simplex<2>, kernel::Ellipsoid<2>,
     kernel::Ring, kernel::Arc, kernel::RegularPolygon, kernel::RegularStar,
     kernel::Polygon, kernel::CoolS,
+    kernel::RoundedRectangle, kernel::ChamferedRectangle, kernel::OrientedRectangle, kernel::Rhombus, kernel::IsoscelesTrapezoid, kernel::Parallelogram, kernel::IsoscelesTriangle, kernel::Stairs, kernel::Cross, kernel::RoundedX, kernel::Tunnel, kernel::UnevenCapsule, kernel::Pie, kernel::CutDisk, kernel::RingSector, kernel::Horseshoe, kernel::Vesica, kernel::OrientedVesica, kernel::Moon,
 }
 
 dimension! { 3:

@@ -119,7 +119,7 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
 
 // Statics, and not constants, so that the code of all primitives is in this crate
 // once and not in every crate that looks at the lists.
-static PLANAR: [Entry<2>; 14] = [
+static PLANAR: [Entry<2>; 33] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<2>>(),
     Entry::of::<RoundedCuboid<2>>(),
@@ -134,6 +134,25 @@ static PLANAR: [Entry<2>; 14] = [
     Entry::of::<RegularStar>(),
     Entry::of::<Polygon>(),
     Entry::of::<CoolS>(),
+    Entry::of::<RoundedRectangle>(),
+    Entry::of::<ChamferedRectangle>(),
+    Entry::of::<OrientedRectangle>(),
+    Entry::of::<Rhombus>(),
+    Entry::of::<IsoscelesTrapezoid>(),
+    Entry::of::<Parallelogram>(),
+    Entry::of::<IsoscelesTriangle>(),
+    Entry::of::<Stairs>(),
+    Entry::of::<Cross>(),
+    Entry::of::<RoundedX>(),
+    Entry::of::<Tunnel>(),
+    Entry::of::<UnevenCapsule>(),
+    Entry::of::<Pie>(),
+    Entry::of::<CutDisk>(),
+    Entry::of::<RingSector>(),
+    Entry::of::<Horseshoe>(),
+    Entry::of::<Vesica>(),
+    Entry::of::<OrientedVesica>(),
+    Entry::of::<Moon>(),
 ];
 
 static SPATIAL: [Entry<3>; 38] = [

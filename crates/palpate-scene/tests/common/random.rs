@@ -22,7 +22,7 @@ pub struct Known {
 /// 0.1 m and 0.9 m.
 pub fn known<const D: usize>(catalogue: &'static [Entry<D>]) -> Vec<Known> {
     let fit = |entry: &'static Entry<D>| {
-        (0..1000_usize).find_map(|attempt| {
+        (0..10_000_usize).find_map(|attempt| {
             let arguments = arguments::<D>(entry.parameters, attempt);
             entry.build(&arguments).ok().map(|_| arguments)
         })

@@ -5,6 +5,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::rc::Rc;
 
 use palpate_field::{Point, Vector};
 
@@ -62,6 +63,20 @@ impl<const D: usize> Patch<D> {
 }
 
 impl Patch<2> {
+    /// This curve, and its mirror image on the other side of the y axis.
+    #[must_use]
+    pub fn mirrored(self) -> (Self, Self) {
+        let at = Rc::new(self.at);
+        let image = Rc::clone(&at);
+        let mirrored = move |u: f64, v: f64| {
+            let [x, y] = image(u, v).0;
+            Vector([-x, y])
+        };
+        let speed = self.speed;
+        let kept = Self { at: Box::new(move |u, v| at(u, v)), speed };
+        (kept, Self { at: Box::new(mirrored), speed })
+    }
+
     /// The surface that this curve, no further than `widest` [m] from the axis,
     /// sweeps when turned about y.
     #[must_use]

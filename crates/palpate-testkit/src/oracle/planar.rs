@@ -13,9 +13,9 @@ use super::{Definition, Patch, number, points, vector};
 /// How far test points and the sampled part of unbounded shapes reach [m].
 pub(super) const FAR: f64 = 16.0;
 
-const AXES: [Point<2>; 2] = [Vector([1.0, 0.0]), Vector([0.0, 1.0])];
+pub(super) const AXES: [Point<2>; 2] = [Vector([1.0, 0.0]), Vector([0.0, 1.0])];
 
-fn arc(centre: [f64; 2], radius: f64, angles: [f64; 2]) -> Patch<2> {
+pub(super) fn arc(centre: [f64; 2], radius: f64, angles: [f64; 2]) -> Patch<2> {
     Patch::arc(Vector(centre), AXES, radius, angles)
 }
 
@@ -54,7 +54,7 @@ pub(super) fn corners(count: f64, radii: &[f64]) -> Vec<Point<2>> {
         .collect()
 }
 
-fn polygon(rings: Vec<Vec<Point<2>>>) -> Definition<2> {
+pub(super) fn polygon(rings: Vec<Vec<Point<2>>>) -> Definition<2> {
     let boundary = rings.iter().flat_map(|ring| edges(ring)).collect();
     Definition::new(boundary, move |p| even_odd(&rings, p))
 }
@@ -228,6 +228,6 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
             _ => return None,
         },
         "cool_s" => cool_s(n(0)),
-        _ => return None,
+        _ => return super::outlines::definition(name, a),
     })
 }

@@ -203,6 +203,58 @@ impl RegularStar {
         let edge = Edge::new(inner, Vector([0.0, outer_radius]));
         Ok(Self { fold, branches, outer_radius, edge })
     }
+
+    /// The star of two triangles, with six tips at `radius` from the centre [m].
+    ///
+    /// A triangle's edges are `r/2` from the centre, and an inner corner lies on two
+    /// of them, 30° from the middle of either: at `r/2 / cos 30° = r/√3`.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::RegularStar};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let star = Shape::from_kernel(RegularStar::hexagram(2.0)?);
+    /// // On the base of the triangle whose tip is up, at y = −1.
+    /// assert!((star.distance(Vector([1.0, -1.0]))).abs() < 1e-15);
+    /// assert!((star.distance(Vector([0.0, -3.0])) - 1.0).abs() < 1e-15); // a tip
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive.
+    pub fn hexagram(radius: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        Self::new(6, radius, radius / 3.0_f64.sqrt())
+    }
+
+    /// The star drawn in five strokes, with five tips at `radius` from the centre [m].
+    ///
+    /// A stroke joins tips 144° apart, so it is `r cos 72°` from the centre, and an
+    /// inner corner lies on two strokes, 36° from the middle of either: at
+    /// `r cos 72° / cos 36° = r (3 − √5)/2`.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::RegularStar};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let star = Shape::from_kernel(RegularStar::pentagram(2.0)?);
+    /// // On the stroke between the tips at the left and right, as high as they are.
+    /// let height = 2.0 * 72.0_f64.to_radians().cos();
+    /// assert!(star.distance(Vector([1.5, height])).abs() < 1e-15);
+    /// assert!((star.distance(Vector([0.0, 3.0])) - 1.0).abs() < 1e-15); // a tip
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive.
+    pub fn pentagram(radius: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        Self::new(5, radius, radius * (0.5 * (3.0 - 5.0_f64.sqrt())))
+    }
 }
 
 impl Kernel<2> for RegularStar {

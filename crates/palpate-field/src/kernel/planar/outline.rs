@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What outlines in the plane share.
+
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, finite, positive};
+use crate::field::Placement;
+use crate::kernel::face_if_on_it;
+use crate::pose::{Pose, Rotation};
+use crate::scalar::Scalar;
+use crate::vector::{Point, Vector};
+
+/// The distance of a shape of `size` [m] that is the intersection of sides
+/// (half-planes, discs, what is outside a disc): inside the largest distance to a side,
+/// `sides`; outside that to the nearest piece of the outline, `pieces`.
+#[inline(always)]
+pub(super) fn intersection<S: Scalar>(sides: S, pieces: S, size: f64) -> S {
+    let outside = face_if_on_it(pieces, sides, size);
+    S::select_less(sides, S::constant(0.0), sides, outside)
+}
+
+/// The distance to one piece of an outline, or to the others, which are `otherwise` away.
+/// `out` is the offset from the piece's line or circle, negative inside.
+///
+/// A point on or out of it that is not `past` the piece's ends is beside the piece, which
+/// then is the nearest. The smaller of both would not do: next to an end they differ by
+/// less than their rounding, and the direction from the end is only nearly the normal.
+#[inline(always)]
+pub(super) fn beside<S: Scalar>(out: S, past: S, otherwise: S) -> S {
+    let zero = S::constant(0.0);
+    // Behind the piece, seen through the shape: so that models over cells on the outline
+    // do not have to choose between far apart numbers.
+    let behind = otherwise.min(out.abs());
+    S::select_less(zero, past, otherwise, S::select_less(out, zero, behind, out))
+}
+
+/// The box `aabb`, and of the ball of `radius` about (0, `height`) and the one
+/// around the box the smaller.
+pub(super) fn bounds_about(aabb: Aabb<2>, height: f64, radius: f64) -> Bounds<2> {
+    let centre = Vector([0.0, height]);
+    let ball = BoundingBall { centre, radius: radius * (1.0 + 8.0 * f64::EPSILON) };
+    let around = Bounds::of_box(aabb);
+    if around.ball.radius < ball.radius { around } else { Bounds { aabb, ball } }
+}
+
+/// A frame whose origin is half-way between two points, its y axis towards `to`,
+/// and half their distance [m].
+pub(super) fn frame_between(
+    from: Point<2>,
+    to: Point<2>,
+) -> Result<(Placement<2>, f64), ShapeError> {
+    for (name, point) in [("from", from), ("to", to)] {
+        for x in point.0 {
+            finite(name, x, Unit::Metre)?;
+        }
+    }
+    let apart = (to - from).norm();
+    let away = || ShapeError::number("to", "away from `from`", apart, Unit::Metre);
+    positive("to", apart, Unit::Metre).map_err(|_| away())?;
+    let [x, y] = (to - from).normalized().ok_or_else(away)?.0;
+    let rotation = Rotation::from_matrix([[y, x], [-x, y]])?;
+    Ok((Placement::new(Pose::new(rotation, (from + to) * 0.5)), 0.5 * apart))
+}
+
+/// Half of an angle in (0, 2π) [rad].
+pub(super) fn half_of_less_than_a_turn(angle: f64) -> Result<f64, ShapeError> {
+    // Written so that NaN fails.
+    if angle > 0.0 && angle < std::f64::consts::TAU {
+        return Ok(0.5 * angle);
+    }
+    let rule = "in (0, 2π), less than a full turn";
+    Err(ShapeError::number("angle", rule, angle, Unit::Radian))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{
+        Ball, Capsule, ChamferedRectangle, Cuboid, CutDisk, Horseshoe, IsoscelesTrapezoid,
+        Kernel, Parallelogram, Pie, RegularPolygon, RegularStar, Rhombus, RingSector,
+        RoundedCuboid, RoundedRectangle, RoundedX, Stairs, UnevenCapsule, Vesica,
+    };
+
+    /// Compares two kernels on a grid about the origin, no point of which is special.
+    fn same(a: &impl Kernel<2>, b: &impl Kernel<2>) {
+        for i in 0..40 {
+            for k in 0..40 {
+                let p = Vector([0.113 * f64::from(i) - 2.2, 0.127 * f64::from(k) - 2.4]);
+                let (x, y) = (a.distance(p), b.distance(p));
+                assert!((x - y).abs() < 1e-14, "{x} and {y} at {p:?}: {a:?}, {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn special_cases_are_the_shapes_they_are_known_as() -> Result<(), ShapeError> {
+        use std::f64::consts::{PI, SQRT_2};
+        let size = Vector([1.9, 1.3]);
+        let rectangle = Cuboid::new(size)?;
+        same(&rectangle, &ChamferedRectangle::new(size, 0.0)?);
+        same(&rectangle, &Parallelogram::new(1.9, 1.3, 0.0)?);
+        same(&rectangle, &IsoscelesTrapezoid::new(1.9, 1.9, 1.3)?);
+        same(&rectangle, &Stairs::new(1.9, 1.3, 1)?);
+        let rounded = RoundedRectangle::new(size, 0.4, 0.4, 0.4, 0.4)?;
+        same(&RoundedCuboid::new(size, 0.4)?, &rounded);
+        same(&RegularPolygon::new(4, 0.8)?, &Rhombus::new(Vector([1.6, 1.6]))?);
+        let octagon = ChamferedRectangle::new(Vector([2.0, 2.0]), 2.0 - SQRT_2)?;
+        let corner = 1.0_f64.hypot(SQRT_2 - 1.0);
+        let turned = Rotation::from_angle(PI / 8.0)?;
+        let turned = Placement::new(Pose::rotation(turned));
+        for (x, y) in [(0.1, 0.2), (1.7, 0.4), (-0.9, -1.1), (0.3, -2.0)] {
+            let p = Vector([x, y]);
+            let regular = RegularPolygon::new(8, corner)?.distance(turned.to_body(p));
+            assert!((octagon.distance(p) - regular).abs() < 1e-14, "at {p:?}");
+        }
+        same(&Ball::new(0.8)?, &Vesica::new(1.6, 1.6)?);
+        same(&Ball::new(0.8)?, &RoundedX::new(1.6, 0.8)?);
+        same(&Capsule::new(0.5, 2.0)?, &UnevenCapsule::new(0.5, 0.5, 1.0)?);
+        same(&CutDisk::new(1.2, 0.0)?, &Pie::new(1.2, PI)?);
+        for angle in [1.0, PI, 5.0] {
+            let sector = RingSector::new(0.6, 1.2, angle)?;
+            same(&sector, &Horseshoe::new(0.9, angle, 0.0, 0.6)?);
+        }
+        Ok(())
+    }
+
+    /// Outside, the distance to a union is the smaller of its parts'.
+    #[test]
+    fn a_hexagram_is_two_triangles() -> Result<(), ShapeError> {
+        let (star, triangle) = (RegularStar::hexagram(1.1)?, RegularPolygon::new(3, 1.1)?);
+        for i in 0..40 {
+            for k in 0..40 {
+                let p = Vector([0.113 * f64::from(i) - 2.2, 0.127 * f64::from(k) - 2.4]);
+                let both = triangle.distance(p).min(triangle.distance(-p));
+                let f = star.distance(p);
+                let right =
+                    if both < 0.0 { f <= both + 1e-14 } else { (f - both).abs() < 1e-14 };
+                assert!(right, "{f} and {both} at {p:?}");
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Stairs.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// The most steps.
+const MOST_STEPS: u32 = 256;
+
+/// Halvings that find one of [`MOST_STEPS`] steps.
+const HALVINGS: usize = 8;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 6.0;
+
+/// A solid staircase that rises to the right, centred at the origin. Exact.
+///
+/// # Derivation
+///
+/// From its lower left corner, step `k` has a riser at `x = kw` and a tread at
+/// `y = (k + 1)h`. Lines square to the slope through the inner corners part the
+/// plane into a strip for each step, which holds its riser and tread and nothing
+/// else of the steps.
+///
+/// Inside, the nearest of the steps' points is in the point's own strip. For a tread
+/// `m` steps on, `u` to the right of the strip's upper inner corner and `mh + v`
+/// above the point, with `v ≥ uw/h` and `u ≤ mw`, is at
+/// `(mh + v)² ≥ 2u² + v²`, more than the inner corner at `u² + v²`. Risers are the
+/// same with the axes exchanged.
+///
+/// Outside, what holds inside holds for the strips through the outer corners instead:
+/// between two of them are a tread and the riser after it. So of the strips through
+/// the inner corners, the point's own riser and tread, the tread before and the riser
+/// after are enough.
+///
+/// The strip is found by halving.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Stairs};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// // From (−6, −3) to (6, 3).
+/// let flight = Shape::from_kernel(Stairs::new(4.0, 2.0, 3)?);
+/// assert_eq!(flight.distance(Vector([-1.0, 1.5])), 0.5); // above the second tread
+/// assert_eq!(flight.distance(Vector([1.5, 2.0])), 0.5); // before the third riser
+/// assert_eq!(flight.distance(Vector([-1.0, 0.0])), -1.0);
+/// assert_eq!(flight.distance(Vector([9.0, 7.0])), 5.0); // past the top
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stairs {
+    step: [f64; 2],
+    half_extents: [f64; 2],
+    /// A step's vector over its square: a product with it counts steps.
+    count: [f64; 2],
+    steps: u32,
+    /// By how many steps a halving moves; zero when done.
+    halvings: [f64; HALVINGS],
+}
+
+impl Stairs {
+    /// So many `steps`, each `step_width` deep and `step_height` high [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, the whole longer than 1e15 m, or there are not 1
+    /// to 256 steps.
+    pub fn new(step_width: f64, step_height: f64, steps: u32) -> Result<Self, ShapeError> {
+        let step = [
+            positive("step_width", step_width, Unit::Metre)?,
+            positive("step_height", step_height, Unit::Metre)?,
+        ];
+        if !(1..=MOST_STEPS).contains(&steps) {
+            let rule = format!("from 1 to {MOST_STEPS}");
+            return Err(ShapeError::number("steps", rule, f64::from(steps), Unit::One));
+        }
+        let [w, h] = step;
+        let half_extents = step.map(|length| 0.5 * length * f64::from(steps));
+        positive("step_width times steps", 2.0 * half_extents[0], Unit::Metre)?;
+        positive("step_height times steps", 2.0 * half_extents[1], Unit::Metre)?;
+        // Divided by the larger first, so that no square leaves the range.
+        let larger = w.max(h);
+        let square = larger * ((w / larger) * (w / larger) + (h / larger) * (h / larger));
+        let count = [w / larger / square, h / larger / square];
+        let mut left = steps;
+        let halvings = std::array::from_fn(|_| {
+            let half = if left > 1 { left.div_ceil(2) } else { 0 };
+            left = half.max(1);
+            f64::from(half)
+        });
+        Ok(Self { step, half_extents, count, steps, halvings })
+    }
+
+    fn size(&self) -> f64 {
+        self.half_extents[0].hypot(self.half_extents[1])
+    }
+
+    /// How many steps are before the strip that holds `q`, which is measured from
+    /// the lower left corner.
+    #[inline(always)]
+    fn steps_before<S: Scalar>(&self, q: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        // Half a step before the end is in the last strip.
+        let last = f64::from(self.steps) - 0.5;
+        let mut rest = q.dot_constant(&self.count).clamp(0.0, last);
+        let mut before = zero;
+        for halving in self.halvings {
+            let half = S::constant(halving);
+            let taken = S::select_less(rest, half, zero, half);
+            rest = rest - taken;
+            before = before + taken;
+        }
+        before
+    }
+}
+
+/// The distance to an edge from the offset from its line and the place along it from
+/// its middle.
+#[inline(always)]
+fn to_edge<S: Scalar>(out: S, along: S, half_length: f64) -> S {
+    let past = along.abs() - S::constant(half_length);
+    S::norm([out, past.max(S::constant(0.0))])
+}
+
+impl Kernel<2> for Stairs {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        let [w, h] = self.step;
+        let [half_width, half_height] = self.half_extents;
+        let q = p + Vector::of(&self.half_extents);
+        let before = self.steps_before(q);
+        // From the middle of the step's box.
+        let x = q.0[0] - before.scale(w) - S::constant(0.5 * w);
+        let y = q.0[1] - before.scale(h) - S::constant(0.5 * h);
+        let (half_w, half_h) = (S::constant(0.5 * w), S::constant(0.5 * h));
+        // Offsets out of the solid.
+        let (riser, tread) = (-x - half_w, y - half_h);
+        let (wall, floor) = (p.0[0] - S::constant(half_width), -q.0[1]);
+        let sides = riser.max(tread).max(wall).max(floor);
+
+        let own = to_edge(riser, y, 0.5 * h).min(to_edge(tread, x, 0.5 * w));
+        let tread_before = to_edge(y + half_h, x + S::constant(w), 0.5 * w);
+        let riser_after = to_edge(half_w - x, y - S::constant(h), 0.5 * h);
+        let is_first = S::select_less(before, S::constant(0.5), own, tread_before);
+        let last = S::constant(f64::from(self.steps) - 1.5);
+        let is_last = S::select_less(last, before, own, riser_after);
+        let ends = to_edge(wall, p.0[1], half_height).min(to_edge(floor, p.0[0], half_width));
+        let nearest = own.min(is_first).min(is_last).min(ends);
+        S::select_less(sides, zero, -nearest, nearest)
+    }
+
+    /// A cell may hold many steps, of which the formula sees one.
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        let centre = Vector(cell.0.map(|x| x.value));
+        let far = self.size() + centre.norm() + Model::radius(&cell.0);
+        let rounding = OPERATIONS * f64::EPSILON * far;
+        Model::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let radius = self.size() * (1.0 + 4.0 * f64::EPSILON);
+        let bounds = Bounds::centred(Vector(self.half_extents), radius);
+        Promise::exact(Some(bounds), OPERATIONS, radius)
+    }
+}
+
+primitive! {
+    Stairs, "stairs", 2,
+    about: "A solid staircase that rises to the right.",
+    model: Lipschitz,
+    parameters: {
+        step_width: Length = "the depth of a step",
+        step_height: Length = "the height of a step",
+        steps: Count = "how many steps, 1 to 256",
+    },
+    example: (0.42, 0.3, 4),
+}

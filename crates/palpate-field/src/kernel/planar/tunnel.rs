@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Round arches and rods that taper.
+
+use super::outline::bounds_about;
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::promise::Promise;
+use crate::scalar::{Model, Scalar};
+use crate::vector::Vector;
+
+/// The cross-section of a tunnel, a rectangle below and half a disc on top, about
+/// the y axis and centred at half its height. Exact.
+///
+/// # Derivation
+///
+/// Without its floor it is all that is within `r` of a ray that runs down the y
+/// axis. The floor is square to its walls, so both together are an orthant.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Tunnel};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let tunnel = Shape::from_kernel(Tunnel::new(4.0, 6.0)?);
+/// assert_eq!(tunnel.distance(Vector([3.0, 5.0])), 3.0); // from the arch: 3-4-5
+/// assert_eq!(tunnel.distance(Vector([-5.0, -7.0])), 5.0); // from the corner (−2, −3)
+/// assert_eq!(tunnel.distance(Vector([0.0, -2.0])), -1.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tunnel {
+    radius: f64,
+    half_height: f64,
+}
+
+impl Tunnel {
+    /// A tunnel of full `width` and `height`, the arch included [m].
+    ///
+    /// # Errors
+    ///
+    /// If either is not positive, or the height less than half the width.
+    pub fn new(width: f64, height: f64) -> Result<Self, ShapeError> {
+        let radius = 0.5 * positive("width", width, Unit::Metre)?;
+        positive("height", height, Unit::Metre)?;
+        if height < radius {
+            let rule = format!("at least half the width, {radius} m");
+            return Err(ShapeError::number("height", rule, height, Unit::Metre));
+        }
+        Ok(Self { radius, half_height: 0.5 * height })
+    }
+}
+
+impl Kernel<2> for Tunnel {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let [x, y] = p.0;
+        let above = (y - S::constant(self.half_height - self.radius)).max(S::constant(0.0));
+        let wall = S::norm([x, above]) - S::constant(self.radius);
+        S::orthant([wall, -y - S::constant(self.half_height)])
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let half = Vector([self.radius, self.half_height]);
+        // The centre from which the top and the corners are equally far.
+        let below = self.radius * (0.25 * self.radius / self.half_height);
+        let bounds = bounds_about(Aabb::centred(half), -below, self.half_height + below);
+        Promise {
+            symmetric: [true, false],
+            ..Promise::exact_convex(Some(bounds), 6.0, half.norm())
+        }
+    }
+}
+
+primitive! {
+    Tunnel, "tunnel", 2,
+    about: "A rectangle below and half a disc on top.",
+    model: ClosedForm,
+    parameters: {
+        width: Length = "the full width",
+        height: Length = "the full height, the half disc included",
+    },
+    example: (1.1, 1.5),
+}
+
+/// How many rounded operations the distance of an uneven capsule takes at most.
+const CAPSULE_OPERATIONS: f64 = 6.0;
+
+/// Two discs on the y axis and all between their common tangents, centred between
+/// the discs' centres. Exact.
+///
+/// # Derivation
+///
+/// Fold to `x ≥ 0`. The right tangent has the same distance from both centres as
+/// their discs' radii, so its normal is `(c, s)` with `s = (r_bottom − r_top)/h` and
+/// `c² + s² = 1`. Measured along it from the bottom centre, it touches the bottom disc
+/// at 0 and the top one at `ch`: before, the nearest point is on the bottom disc,
+/// past it on the top disc, between on the tangent.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::UnevenCapsule};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let pin = Shape::from_kernel(UnevenCapsule::new(4.0, 1.0, 5.0)?);
+/// assert_eq!(pin.distance(Vector([0.0, 4.5])), 1.0); // above the tip, at 3.5
+/// assert_eq!(pin.distance(Vector([0.0, -7.0])), 0.5); // below
+/// // On the tangent's normal (0.8, 0.6) through the bottom centre.
+/// assert!((pin.distance(Vector([8.0, 3.5])) - 6.0).abs() < 1e-14);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct UnevenCapsule {
+    bottom_radius: f64,
+    top_radius: f64,
+    height: f64,
+    /// Out of the right tangent, of length one.
+    normal: [f64; 2],
+}
+
+impl UnevenCapsule {
+    /// A capsule of discs with the given radii, their centres `height` apart [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or one disc holds the other.
+    pub fn new(bottom_radius: f64, top_radius: f64, height: f64) -> Result<Self, ShapeError> {
+        positive("bottom_radius", bottom_radius, Unit::Metre)?;
+        positive("top_radius", top_radius, Unit::Metre)?;
+        positive("height", height, Unit::Metre)?;
+        let difference = bottom_radius - top_radius;
+        if height <= difference.abs() {
+            let difference = difference.abs();
+            let rule = format!("more than the difference of the radii, {difference} m");
+            return Err(ShapeError::number("height", rule, height, Unit::Metre));
+        }
+        let sin = difference / height;
+        let cos =
+            ((height - difference) / height).sqrt() * ((height + difference) / height).sqrt();
+        Ok(Self { bottom_radius, top_radius, height, normal: [cos, sin] })
+    }
+
+    fn size(&self) -> f64 {
+        0.5 * self.height + self.bottom_radius.max(self.top_radius)
+    }
+}
+
+impl Kernel<2> for UnevenCapsule {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let zero = S::constant(0.0);
+        let [cos, sin] = self.normal;
+        let half = S::constant(0.5 * self.height);
+        let x = p.0[0].abs();
+        let from_bottom = Vector([x, p.0[1] + half]);
+        let along = from_bottom.dot_constant(&[-sin, cos]);
+        let bottom = from_bottom.norm() - S::constant(self.bottom_radius);
+        let top = S::norm([x, p.0[1] - half]) - S::constant(self.top_radius);
+        let side = from_bottom.dot_constant(&[cos, sin]) - S::constant(self.bottom_radius);
+        let past = S::select_less(S::constant(self.height * cos), along, top, side);
+        S::select_less(along, zero, bottom, past)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        tangent_model(self, cell, CAPSULE_OPERATIONS, self.size())
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let (half, size) = (0.5 * self.height, self.size());
+        let disc = |y: f64, radius: f64| BoundingBall { centre: Vector([0.0, y]), radius };
+        let (bottom, top) = (disc(-half, self.bottom_radius), disc(half, self.top_radius));
+        let widest = self.bottom_radius.max(self.top_radius);
+        let aabb = Aabb {
+            min: Vector([-widest, -half - self.bottom_radius]),
+            max: Vector([widest, half + self.top_radius]),
+        };
+        let aabb = aabb.grown(4.0 * f64::EPSILON * size);
+        let bounds = Bounds { aabb, ball: bottom.union(&top) };
+        Promise {
+            symmetric: [true, self.bottom_radius == self.top_radius],
+            ..Promise::exact_convex(Some(bounds), CAPSULE_OPERATIONS, size)
+        }
+    }
+}
+
+primitive! {
+    UnevenCapsule, "uneven_capsule", 2,
+    about: "Two discs on the y axis and all between their common tangents.",
+    model: Tangent,
+    parameters: {
+        bottom_radius: Length = "the radius of the lower disc",
+        top_radius: Length = "the radius of the upper disc",
+        height: Length = "between the centres of the discs",
+    },
+    example: (0.5, 0.25, 0.8),
+}
