@@ -411,8 +411,8 @@ where
                 let half = 0.5 * (aabb.max[k] - aabb.min[k]);
                 let inside = p.0[k] - place[k] - S::constant(centre[k]);
                 let gap = S::constant(2.0 * spacing - half);
-                let lowest = S::constant((first + 1.5) * spacing);
-                let highest = S::constant((last - 1.5) * spacing);
+                let lowest = S::constant((first + 0.5) * spacing);
+                let highest = S::constant((last - 0.5) * spacing);
                 let above = S::select_less(place[k], highest, gap - inside, far);
                 let below = S::select_less(lowest, place[k], gap + inside, far);
                 above.min(below).max(S::constant(0.0))

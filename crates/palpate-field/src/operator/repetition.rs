@@ -129,6 +129,9 @@ impl Row {
     }
 
     /// How far `x` is at least from the copies that are not asked, along the axis.
+    ///
+    /// Also from those next after the ends, as if they were there: where a point comes
+    /// into the last tile, the copy that it leaves behind must not limit it at once.
     #[inline(always)]
     fn clearance<S: Scalar>(&self, x: S) -> S {
         let place = self.nearest(x);
@@ -136,8 +139,8 @@ impl Row {
         let gap = S::constant(2.0 * self.spacing - self.half_extent);
         let far = S::constant(LARGEST_LENGTH);
         let limit = |number: f64| S::constant(number * self.spacing);
-        let above = S::select_less(place, limit(self.last - 1.5), gap - inside, far);
-        let below = S::select_less(limit(self.first + 1.5), place, gap + inside, far);
+        let above = S::select_less(place, limit(self.last - 0.5), gap - inside, far);
+        let below = S::select_less(limit(self.first + 0.5), place, gap + inside, far);
         above.min(below).max(S::constant(0.0))
     }
 }
