@@ -70,6 +70,8 @@ fn argument<const D: usize>(u: &mut Unstructured<'_>, what: &Parameter) -> Resul
         (0..D).map(|_| if positive { length(u) } else { coordinate(u) }).collect()
     };
     Ok(match what.kind {
+        // Deeper ones leave little of what they are taken from.
+        ParameterKind::Length if what.name == "dip" => Argument::Number(0.15 * length(u)?),
         ParameterKind::Length => Argument::Number(length(u)?),
         ParameterKind::LengthOrZero => {
             let zero = u.ratio(1_u8, 5_u8)?;

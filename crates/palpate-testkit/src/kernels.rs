@@ -68,6 +68,9 @@ dimension! { 2:
     kernel::Segment<2>, kernel::HalfSpace<2>, kernel::Simplex<2>, kernel::Ellipsoid<2>,
     kernel::Ring, kernel::Arc, kernel::RegularPolygon, kernel::RegularStar,
     kernel::Polygon, kernel::CoolS,
+    kernel::Egg, kernel::Heart, kernel::RoundedCross, kernel::BobblyCross,
+    kernel::Parabola, kernel::ParabolaSegment, kernel::QuadraticBezier,
+    kernel::QuadraticCircle, kernel::Hyperbola, kernel::CircleWave,
 }
 
 dimension! { 3:

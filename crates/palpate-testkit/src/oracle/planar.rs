@@ -15,7 +15,7 @@ pub(super) const FAR: f64 = 16.0;
 
 const AXES: [Point<2>; 2] = [Vector([1.0, 0.0]), Vector([0.0, 1.0])];
 
-fn arc(centre: [f64; 2], radius: f64, angles: [f64; 2]) -> Patch<2> {
+pub(super) fn arc(centre: [f64; 2], radius: f64, angles: [f64; 2]) -> Patch<2> {
     Patch::arc(Vector(centre), AXES, radius, angles)
 }
 
@@ -228,6 +228,6 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
             _ => return None,
         },
         "cool_s" => cool_s(n(0)),
-        _ => return None,
+        _ => return super::curves::definition(name, a),
     })
 }
