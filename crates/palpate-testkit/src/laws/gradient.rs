@@ -52,6 +52,9 @@ pub fn gradient_is_bounded<const D: usize>(
 /// Slopes that differ by more show a kink between them.
 const KINK: f64 = 1e-3;
 
+/// Slopes that over the shorter step differ by more show two kinks within the longer.
+const PLATEAU: f64 = 1e-5;
+
 /// How much shorter the second step is that looks for kinks.
 const SHORTER: f64 = 16.0;
 
@@ -80,7 +83,7 @@ pub fn gradient_is_the_slope<const D: usize>(
     let plateau = (0..D).any(|axis| {
         let closer = around(Vector::unit(axis), shorter);
         let apart = (0..2).map(|i| (closer[i] - differences[axis][i]).abs());
-        apart.fold(0.0, f64::max) > KINK + 2.0 * SHORTER * error
+        apart.fold(0.0, f64::max) > PLATEAU + 2.0 * SHORTER * error
     });
     let slope = Vector(differences.map(|[ahead, behind]| 0.5 * (ahead + behind)));
     // Several kinks can hide from the axes, where they cross.

@@ -192,24 +192,42 @@ fn bezier_tube(points: [Point<2>; 3], r: f64) -> Definition<2> {
     let fastest = (b - a).norm().max((c - b).norm()) * 2.0;
     let slowest = from_curve(Vector::ZERO, |t| bezier(points, t)[1]);
     let turning = (second[0] * (b - a)[1] - second[1] * (b - a)[0]).abs() * 2.0;
-    let turned = if turning > 0.0 { turning / (slowest * slowest) } else { 0.0 };
+    // What turns back at once is a hairpin with a round end.
+    let hairpin = turning * r > 1e3 * fastest * slowest * slowest;
+    let turned = if hairpin || turning == 0.0 { 0.0 } else { turning / (slowest * slowest) };
+    // Where it is slowest, which is where a hairpin turns.
+    let square = second.dot(second);
+    let place = if square > 0.0 { -2.0 * (b - a).dot(second) / square } else { 0.5 };
+    let place = place.clamp(0.0, 1.0);
     let mut boundary = Vec::new();
     for side in [r, -r] {
-        boundary.push(Patch::curve(fastest + r * turned, move |t| {
-            let [p, v] = bezier(points, t);
-            p + across(v) * side
-        }));
+        for [from, to] in [[0.0, place], [place, 1.0]] {
+            boundary.push(Patch::curve(fastest + r * turned, move |t| {
+                let [p, v] = bezier(points, from + (to - from) * t);
+                p + across(v) * side
+            }));
+        }
+    }
+    if hairpin || slowest <= 1e-9 * fastest {
+        boundary.push(arc(bezier(points, place)[0].0, r, [0.0, 2.0 * PI]));
     }
     // Half circles, away from the curve.
-    for (end, t, sign) in [(a, 0.0, -1.0), (c, 1.0, 1.0)] {
-        let [x, y] = (bezier(points, t)[1] * sign).0;
+    // The control point may be an end too.
+    let tangent = |near: Point<2>, far: Point<2>| if near.norm() > 0.0 { near } else { far };
+    for (end, away) in [(a, tangent(a - b, a - c)), (c, tangent(c - b, c - a))] {
+        let [x, y] = away.0;
         let away = y.atan2(x);
-        boundary.push(arc(end.0, r, [away - 0.5 * PI, away + 0.5 * PI]));
+        // All of the circle, if all three points are one.
+        let reach = if x == 0.0 && y == 0.0 { PI } else { 0.5 * PI };
+        boundary.push(arc(end.0, r, [away - reach, away + reach]));
     }
     let tube = Definition::new(boundary, move |p| from_curve(p, |t| bezier(points, t)[0]) < r);
     // With less than this the parallels have no cusps.
     let curvature_radius = slowest.powi(3) / turning;
-    Definition { overlaps_itself: turning == 0.0 || r > 0.999 * curvature_radius, ..tube }
+    Definition {
+        overlaps_itself: turning == 0.0 || hairpin || r > 0.999 * curvature_radius,
+        ..tube
+    }
 }
 
 fn quadratic_circle(r: f64) -> Definition<2> {

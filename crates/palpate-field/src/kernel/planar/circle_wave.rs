@@ -19,7 +19,7 @@ const FOLDS: i32 = 54;
 const LARGEST_ANGLE: f64 = 5.0 / 3.0 * PI;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 10.0;
+const OPERATIONS: f64 = 5.0;
 
 /// All points within `radius` of an endless line of equal arcs, up and down in turn,
 /// along the x axis, which they meet where they continue each other. A crest is at

@@ -11,7 +11,7 @@ use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 6.0;
+const OPERATIONS: f64 = 4.0;
 
 /// The slope of the line on which the side arc and the top arc have their centres:
 /// the tangent of 60°.

@@ -19,7 +19,7 @@ const HEIGHT: f64 = 0.75 * SQRT_2 + 0.5;
 const HALF_WIDTH: f64 = 0.25 * SQRT_2 + 0.5;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 8.0;
+const OPERATIONS: f64 = 5.0;
 
 /// A heart about the y axis, its tip down, centred at half its height: a square on
 /// its corner, with half a disc on each of its upper edges. Exact.

@@ -10,15 +10,15 @@ use crate::scalar::{Float, Model, Scalar};
 use crate::vector::Vector;
 
 /// Halvings of the range of the unknown, in its exponent: six leave a factor of less
-/// than 4 of the 2¹²⁰ between a rounding of one and the largest that squares.
+/// than 6 of the 2¹⁵⁰ between an ulp of the thinnest and the largest that squares.
 const HALVINGS: usize = 6;
 
 /// Newton steps after that: each doubles the digits, and the first is within a factor
-/// of 4 of the root.
+/// of 6 of the root.
 const STEPS: usize = 7;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 12.0;
+const OPERATIONS: f64 = 6.0;
 
 /// What is beyond one branch of a hyperbola, `(y/b)² − (x/a)² ≥ 1` and `y > 0`. Exact,
 /// without bounds.
@@ -39,8 +39,8 @@ const OPERATIONS: f64 = 12.0;
 /// than 1, the zero is between ξ and `ξ + κ`, on the side towards 1 of `ξ/(1 − κ)` where
 /// κ < 1, and more than `√(κ² − 1)` where κ > 1. The range is halved in its exponent;
 /// then Newton's method goes, without overshooting, from above if h is convex and from
-/// below if it is concave. A ξ of zero is moved by an ulp of one, so that points on
-/// the medial axis have a nearest point too.
+/// below if it is concave. An x of zero is moved by an ulp of a, so that points on the
+/// medial axis have a nearest point too.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Hyperbola};
@@ -94,7 +94,8 @@ impl Hyperbola {
         let (zero, one) = (S::constant(0.0), S::constant(1.0));
         let [a, b] = self.radii;
         let kappa = y.scale(self.shares[1]);
-        let xi = x.scale(self.shares[0]).max(S::constant(S::EPSILON));
+        let tiny = S::EPSILON * a * self.shares[0];
+        let xi = x.scale(self.shares[0]).max(S::constant(tiny));
         let norm = |s: S| S::norm([one, s]);
         let sum = xi + kappa;
         let convex =

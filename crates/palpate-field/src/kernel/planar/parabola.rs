@@ -12,10 +12,10 @@ use crate::scalar::{Float, Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance from a parabola takes at most.
-const OPERATIONS: f64 = 8.0;
+const OPERATIONS: f64 = 5.0;
 
 /// The same of a segment.
-const SEGMENT_OPERATIONS: f64 = 10.0;
+const SEGMENT_OPERATIONS: f64 = 5.0;
 
 /// What is above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
 /// bounds.

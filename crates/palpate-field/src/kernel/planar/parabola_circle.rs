@@ -14,10 +14,10 @@ use crate::scalar::{Float, Model, Scalar};
 use crate::vector::{Vector, array};
 
 /// How many rounded operations the distance of a quadratic circle takes at most.
-const CIRCLE_OPERATIONS: f64 = 8.0;
+const CIRCLE_OPERATIONS: f64 = 5.0;
 
 /// The same of a cross.
-const CROSS_OPERATIONS: f64 = 8.0;
+const CROSS_OPERATIONS: f64 = 5.0;
 
 /// A point folded by the mirrors at the axes and between them, in the frame of the
 /// diagonal: how far it is beside it, and along it from the centre.

@@ -25,7 +25,7 @@ const MOST_OFF: f64 = 0.25;
 const STRAIGHT: f64 = 8.0;
 
 /// How many rounded operations the distance takes at most.
-const OPERATIONS: f64 = 20.0;
+const OPERATIONS: f64 = 6.0;
 
 /// All points within `radius` of a quadratic Bézier curve, that from `from` to `to`
 /// with one control point between.
@@ -72,6 +72,8 @@ pub struct QuadraticBezier {
     radius: f64,
     /// The largest of the steps.
     length: f64,
+    /// |d × c|.
+    turning: f64,
     /// The unit vectors across c and along it.
     axes: [[f64; 2]; 2],
     vertex: [f64; 2],
@@ -102,19 +104,22 @@ impl QuadraticBezier {
             }
         }
         not_negative("radius", radius, Unit::Metre)?;
-        let (step, last) = (control - from, to - control);
-        let bend = last - step;
+        let chord = to - from;
+        let (mut step, last) = (control - from, to - control);
+        let mut bend = last - step;
         let length = step.norm().max(last.norm());
-        let up = bend.normalized().unwrap_or(Vector([0.0, 1.0]));
-        // What is not bent is never asked for its parabola.
         let straight = bend.norm() <= STRAIGHT * f64::EPSILON * length;
+        if straight {
+            (step, bend) = (chord * 0.5, Vector::ZERO);
+        }
+        // What is not bent is never asked for its parabola.
+        let up = bend.normalized().unwrap_or(Vector([0.0, 1.0]));
         let height = if straight { 1.0 } else { bend.norm() };
         let start = if straight { 0.0 } else { -step.dot(up) / height };
         let right = Vector([up[1], -up[0]]);
         let half_speed = step.dot(right);
         let right = if half_speed < 0.0 { -right } else { right };
         let vertex = from + step * (2.0 * start) + bend * (start * start);
-        let chord = to - from;
         let square = chord.dot(chord);
         let along = if square > 0.0 { chord * (1.0 / square) } else { Vector::ZERO };
         let mut this = Self {
@@ -123,6 +128,7 @@ impl QuadraticBezier {
             bend: bend.0,
             radius,
             length,
+            turning: (step[0] * bend[1] - step[1] * bend[0]).abs(),
             axes: [right.0, up.0],
             vertex: vertex.0,
             start,
@@ -150,11 +156,11 @@ impl QuadraticBezier {
         let bounds = Aabb::around(points).map(|aabb| {
             Bounds::of_box(aabb.grown(4.0 * f64::EPSILON * largest)).grown(self.radius)
         });
-        // |B'|³ / |B' × B''|, where |B'| is the least.
+        // 2|B'/2|³ / |d × c|, where |B'| is the least.
         let nearest_vertex = self.start.clamp(0.0, 1.0);
         let speed = Vector(self.step) + Vector(self.bend) * nearest_vertex;
-        let turning = (self.step[0] * self.bend[1] - self.step[1] * self.bend[0]).abs();
-        let meets_itself = 2.0 * speed.norm().powi(3) < self.radius * turning
+        let cube = speed.dot(speed) * speed.norm();
+        let meets_itself = 2.0 * cube < self.radius * self.turning
             || speed.norm() <= STRAIGHT * f64::EPSILON * self.length;
         let fills = self.radius > 0.0 && meets_itself;
         Promise {
@@ -164,66 +170,105 @@ impl QuadraticBezier {
         }
     }
 
-    /// The offset from the nearest point of the curve, and its length.
+    /// `p − B(t)`, where `from` is `p − B(0)`.
     #[inline(always)]
-    fn solve<S: Scalar>(&self, p: Vector<S, 2>) -> (Vector<S, 2>, S) {
-        let (zero, one) = (S::constant(0.0), S::constant(1.0));
+    fn offset<S: Scalar>(&self, from: Vector<S, 2>, t: S) -> Vector<S, 2> {
+        let (step, bend) = (&self.step, &self.bend);
+        Vector(array!(i < 2 => {
+            from.0[i] - t * (t.scale(bend[i]) + S::constant(2.0 * step[i]))
+        }))
+    }
+
+    /// Half of `B'(t)`.
+    #[inline(always)]
+    fn speed<S: Scalar>(&self, t: S) -> Vector<S, 2> {
+        Vector(array!(i < 2 => t.scale(self.bend[i]) + S::constant(self.step[i])))
+    }
+
+    /// The parameters that one of is the nearest point's, before they are clamped.
+    #[inline(always)]
+    fn candidates<S: Scalar>(&self, p: Vector<S, 2>, from: Vector<S, 2>) -> [S; 2] {
         let bend = self.bend[0].abs().max(self.bend[1].abs());
-        let from = p - Vector::of(&self.from);
-        let off = OFF * S::EPSILON * (1.0 + self.start.abs());
-        let [first, second] = if bend <= STRAIGHT * S::EPSILON * self.length {
+        if bend <= STRAIGHT * S::EPSILON * self.length {
             let t = from.dot_constant(&self.along);
-            [t, t]
-        } else {
-            let q = p - Vector::of(&self.vertex);
-            let [a, b] = array!(i < 2 => q.dot_constant(&self.axes[i]));
-            let [near, far] = self.curve.feet(a.abs(), b);
-            let start = S::constant(self.start);
-            let sided = |tau: S| S::select_less(a, zero, -tau, tau) + start;
-            [sided(near), sided(far)]
-        };
-        let offset = |t: S| {
-            let mut t = t.clamp(0.0, 1.0);
-            let at = |t: S, i: usize| {
-                from.0[i] - t * (t.scale(self.bend[i]) + S::constant(2.0 * self.step[i]))
-            };
-            for _ in 0..POLISH {
-                let speed: [S; 2] =
-                    array!(i < 2 => t.scale(self.bend[i]) + S::constant(self.step[i]));
-                let from_curve = Vector(array!(i < 2 => at(t, i)));
-                // Half the derivative of half the square of the distance, and its own.
-                let slope = -from_curve.dot(Vector(speed));
-                let bent = (speed[0].squared() + speed[1].squared()).scale(2.0)
-                    - from_curve.dot_constant(&self.bend);
-                let step = slope / S::select_less(zero, bent, bent, one);
-                let step = S::select_less(zero, bent, step, zero);
-                let most = if off < MOST_OFF { off } else { MOST_OFF };
-                t = (t - step.clamp(-most, most)).clamp(0.0, 1.0);
-            }
-            Vector(array!(i < 2 => at(t, i)))
-        };
-        let (first, second) = (offset(first), offset(second));
-        let (near, far) = (first.norm(), second.norm());
-        let nearest =
-            Vector(array!(i < 2 => S::select_less(far, near, second.0[i], first.0[i])));
-        (nearest, near.min(far))
+            return [t, t];
+        }
+        let q = p - Vector::of(&self.vertex);
+        let [a, b] = array!(i < 2 => q.dot_constant(&self.axes[i]));
+        let feet = self.curve.feet(a.abs(), b);
+        array!(i < 2 => {
+            let tau = S::select_less(a, S::constant(0.0), -feet[i], feet[i]);
+            tau + S::constant(self.start)
+        })
+    }
+
+    /// A candidate on the curve, polished.
+    #[inline(always)]
+    fn polished<S: Scalar>(&self, from: Vector<S, 2>, candidate: S) -> S {
+        let (zero, one) = (S::constant(0.0), S::constant(1.0));
+        let off = OFF * S::EPSILON.max(f64::EPSILON) * (1.0 + self.start.abs());
+        let most = off.min(MOST_OFF);
+        let mut t = candidate.clamp(0.0, 1.0);
+        for _ in 0..POLISH {
+            let (offset, speed) = (self.offset(from, t), self.speed(t));
+            // A quarter of the derivative of the square of the distance, and its own.
+            let slope = -offset.dot(speed);
+            let rise = speed.dot(speed).scale(2.0) - offset.dot_constant(&self.bend);
+            let step = slope / S::select_less(zero, rise, rise, one);
+            let step = S::select_less(zero, rise, step, zero);
+            t = (t - step.clamp(-most, most)).clamp(0.0, 1.0);
+        }
+        t
+    }
+
+    /// The nearest point's parameter, the offset from it, and its length.
+    #[inline(always)]
+    fn solve<S: Scalar>(&self, p: Vector<S, 2>) -> (S, Vector<S, 2>, S) {
+        let from = p - Vector::of(&self.from);
+        let candidates = self.candidates(p, from);
+        let [first, second] = array!(i < 2 => self.polished(from, candidates[i]));
+        let (near, far) = (self.offset(from, first), self.offset(from, second));
+        let (length, other) = (near.norm(), far.norm());
+        let choose = |far: S, near: S| S::select_less(other, length, far, near);
+        let nearest = Vector(array!(i < 2 => choose(far.0[i], near.0[i])));
+        (choose(second, first), nearest, length.min(other))
     }
 }
 
 impl Kernel<2> for QuadraticBezier {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        self.solve(p).1 - S::constant(self.radius)
+        self.solve(p).2 - S::constant(self.radius)
     }
 
-    /// The gradient is along the line from the nearest point.
+    /// The gradient is along the line from the nearest point; nearer to it than the
+    /// centre of curvature, it is the curve's normal there, which is the more precise.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
-        let (offset, length) = self.solve(p);
-        let inverse = one / T::select_less(zero, length, length, one);
-        let across = T::select_less(zero, length, offset.0[0] * inverse, one);
-        (length - T::constant(self.radius), Vector([across, offset.0[1] * inverse]))
+        let unit = |v: Vector<T, 2>| {
+            let length = v.norm();
+            let inverse = one / T::select_less(zero, length, length, one);
+            let across = T::select_less(zero, length, v.0[0] * inverse, one);
+            Vector([across, v.0[1] * inverse])
+        };
+        let (t, offset, length) = self.solve(p);
+        let speed = self.speed(t);
+        let normal = unit(Vector([speed.0[1], -speed.0[0]]));
+        let side = T::select_less(offset.dot(normal), zero, -one, one);
+        let away = unit(offset);
+        // As 2|B'/2|³ is the radius of curvature times the turning, which is known to
+        // a few roundings.
+        let bend = self.bend[0].abs().max(self.bend[1].abs());
+        let rounding = STRAIGHT * T::EPSILON * self.length * bend;
+        let turning = self.turning.max(rounding);
+        let curved = length.scale(turning) - (speed.dot(speed) * speed.norm()).scale(2.0);
+        let gradient = array!(i < 2 => {
+            let near = T::select_less(curved, zero, side * normal.0[i], away.0[i]);
+            let from_start = T::select_less(zero, t, near, away.0[i]);
+            T::select_less(t, one, from_start, away.0[i])
+        });
+        (length - T::constant(self.radius), Vector(gradient))
     }
 
     #[inline(always)]
