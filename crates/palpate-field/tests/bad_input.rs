@@ -5,9 +5,9 @@
 //! gives numbers. Nothing panics.
 
 use palpate_field::kernel::{
-    Arc, Argument, Ball, CappedCone, Capsule, Cuboid, Cylinder, Ellipsoid, Entry, HalfSpace,
-    Parameter, ParameterKind, Polygon, RegularPolygon, RegularStar, Ring, RoundedCuboid,
-    RoundedCylinder, Simplex, Torus,
+    self, Arc, Argument, Ball, CappedCone, Capsule, Cuboid, Cylinder, Ellipsoid, Entry,
+    HalfSpace, Parameter, ParameterKind, Polygon, RegularPolygon, RegularStar, Ring,
+    RoundedCuboid, RoundedCylinder, Simplex, Torus,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::Model;
@@ -72,6 +72,26 @@ fn messages_of_primitives_name_the_number_and_its_unit() {
         message(Polygon::new(vec![square(1.0); 30_000])),
     ];
     insta::assert_snapshot!("primitives", messages.join("\n"));
+}
+
+#[test]
+fn messages_of_curves_name_the_number_and_its_unit() {
+    let a = Vector([0.25, 0.5]);
+    let messages = [
+        message(kernel::Egg::new(0.25, 0.5)),
+        message(kernel::Heart::new(-1.0)),
+        message(kernel::RoundedCross::new(Vector([1.0, 0.5]), 0.5)),
+        message(kernel::BobblyCross::new(1.0, 0.2, 0.0)),
+        message(kernel::BobblyCross::new(1.0, 0.1, 0.5)),
+        message(kernel::Parabola::new(0.0)),
+        message(kernel::ParabolaSegment::new(1.0, NAN)),
+        message(kernel::QuadraticBezier::new(a, Vector([NAN, 0.0]), a, 0.1)),
+        message(kernel::QuadraticBezier::new(a, a, a, -0.1)),
+        message(kernel::QuadraticCircle::new(-0.5)),
+        message(kernel::Hyperbola::new(Vector([1.0, 1e-7]))),
+        message(kernel::CircleWave::new(0.5, 5.5, 0.1)),
+    ];
+    insta::assert_snapshot!("curves", messages.join("\n"));
 }
 
 #[test]
