@@ -46,7 +46,7 @@ const OPERATIONS: f64 = 5.0;
 /// let wave = CircleWave::new(5.0, std::f64::consts::PI, 0.5)?;
 /// let wave = Shape::from_kernel(wave);
 /// assert!((wave.distance(Vector([40.0, 7.0])) - 1.5).abs() < 1e-14); // above a crest
-/// assert!((wave.distance(Vector([-10.0, 1.0])) - 5.5).abs() < 1e-14); // over a trough
+/// assert!((wave.distance(Vector([-10.0, -1.0])) - 3.5).abs() < 1e-14); // in a trough
 /// # Ok(())
 /// # }
 /// ```
