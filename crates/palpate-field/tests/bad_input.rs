@@ -5,7 +5,7 @@
 //! gives numbers. Nothing panics.
 
 use palpate_field::kernel::{
-    Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule,
+    self, Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule,
     ChamferedRectangle, Cross, Cuboid, CuboidFrame, CutBall, CutDisk, CutHollowSphere,
     Cylinder, CylinderBetween, DeathStar, Ellipsoid, Entry, HalfSpace, Horseshoe, InfiniteCone,
     IsoscelesTrapezoid, Link, Moon, OrientedRectangle, OrientedVesica, Parameter,
@@ -146,6 +146,26 @@ fn messages_of_outlines_name_the_number_and_its_unit() {
         message(RegularStar::pentagram(NAN)),
     ];
     insta::assert_snapshot!("outlines", messages.join("\n"));
+}
+
+#[test]
+fn messages_of_curves_name_the_number_and_its_unit() {
+    let a = Vector([0.25, 0.5]);
+    let messages = [
+        message(kernel::Egg::new(0.25, 0.5)),
+        message(kernel::Heart::new(-1.0)),
+        message(kernel::RoundedCross::new(Vector([1.0, 0.5]), 0.5)),
+        message(kernel::BobblyCross::new(1.0, 0.2, 0.0)),
+        message(kernel::BobblyCross::new(1.0, 0.1, 0.5)),
+        message(kernel::Parabola::new(0.0)),
+        message(kernel::ParabolaSegment::new(1.0, NAN)),
+        message(kernel::QuadraticBezier::new(a, Vector([NAN, 0.0]), a, 0.1)),
+        message(kernel::QuadraticBezier::new(a, a, a, -0.1)),
+        message(kernel::QuadraticCircle::new(-0.5)),
+        message(kernel::Hyperbola::new(Vector([1.0, 1e-7]))),
+        message(kernel::CircleWave::new(0.5, 5.5, 0.1)),
+    ];
+    insta::assert_snapshot!("curves", messages.join("\n"));
 }
 
 #[test]

@@ -96,6 +96,8 @@ fn argument<const D: usize>(
     Ok(match what.kind {
         // Most thicknesses of up to 1.5 m fill what they are the thickness of.
         ParameterKind::Length if what.name == "thickness" => Argument::Number(0.2 * length(u)?),
+        // Deeper ones leave little of what they are taken from.
+        ParameterKind::Length if what.name == "dip" => Argument::Number(0.15 * length(u)?),
         ParameterKind::Length => Argument::Number(length(u)?),
         ParameterKind::LengthOrZero => {
             let zero = u.ratio(1_u8, 5_u8)?;

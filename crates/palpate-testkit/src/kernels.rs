@@ -69,6 +69,9 @@ dimension! { 2:
     kernel::Ring, kernel::Arc, kernel::RegularPolygon, kernel::RegularStar,
     kernel::Polygon, kernel::CoolS,
     kernel::RoundedRectangle, kernel::ChamferedRectangle, kernel::OrientedRectangle, kernel::Rhombus, kernel::IsoscelesTrapezoid, kernel::Parallelogram, kernel::IsoscelesTriangle, kernel::Stairs, kernel::Cross, kernel::RoundedX, kernel::Tunnel, kernel::UnevenCapsule, kernel::Pie, kernel::CutDisk, kernel::RingSector, kernel::Horseshoe, kernel::Vesica, kernel::OrientedVesica, kernel::Moon,
+    kernel::Egg, kernel::Heart, kernel::RoundedCross, kernel::BobblyCross,
+    kernel::Parabola, kernel::ParabolaSegment, kernel::QuadraticBezier,
+    kernel::QuadraticCircle, kernel::Hyperbola, kernel::CircleWave,
 }
 
 dimension! { 3:

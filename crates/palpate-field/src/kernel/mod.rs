@@ -117,9 +117,24 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
+/// Bounds an exact kernel that is not convex over a cell by its value at the centre;
+/// `operations` and `size` as for [`tangent_model`].
+#[inline(always)]
+pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
+    kernel: &K,
+    cell: Vector<Model, D>,
+    operations: f64,
+    size: f64,
+) -> Model {
+    let centre = Vector(array!(i < D => cell.0[i].value));
+    let far = size + centre.norm() + Model::radius(&cell.0);
+    let rounding = operations * f64::EPSILON * far;
+    Model::lipschitz(kernel.distance(centre), 1.0, &cell.0, rounding)
+}
+
 // Statics, and not constants, so that the code of all primitives is in this crate
 // once and not in every crate that looks at the lists.
-static PLANAR: [Entry<2>; 33] = [
+static PLANAR: [Entry<2>; 43] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<2>>(),
     Entry::of::<RoundedCuboid<2>>(),
@@ -153,6 +168,16 @@ static PLANAR: [Entry<2>; 33] = [
     Entry::of::<Vesica>(),
     Entry::of::<OrientedVesica>(),
     Entry::of::<Moon>(),
+    Entry::of::<Egg>(),
+    Entry::of::<Heart>(),
+    Entry::of::<RoundedCross>(),
+    Entry::of::<BobblyCross>(),
+    Entry::of::<Parabola>(),
+    Entry::of::<ParabolaSegment>(),
+    Entry::of::<QuadraticBezier>(),
+    Entry::of::<QuadraticCircle>(),
+    Entry::of::<Hyperbola>(),
+    Entry::of::<CircleWave>(),
 ];
 
 static SPATIAL: [Entry<3>; 38] = [

@@ -7,6 +7,7 @@
 //! distance to the boundary is found by sampling: coarsely where it is far,
 //! down to a spacing where it may be nearest.
 
+mod curves;
 mod outlines;
 mod patch;
 mod planar;

@@ -228,6 +228,9 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
             _ => return None,
         },
         "cool_s" => cool_s(n(0)),
-        _ => return super::outlines::definition(name, a),
+        _ => {
+            return super::outlines::definition(name, a)
+                .or_else(|| super::curves::definition(name, a));
+        }
     })
 }

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Outlines of four equal arcs of parabolas.
+
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+use super::parabola_foot::Quadratic;
+use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::{Kernel, lipschitz_model, primitive, tangent_model};
+use crate::promise::{Promise, Quality};
+use crate::scalar::{Float, Model, Scalar};
+use crate::vector::{Vector, array};
+
+/// How many rounded operations the distance of a quadratic circle takes at most.
+const CIRCLE_OPERATIONS: f64 = 5.0;
+
+/// The same of a cross.
+const CROSS_OPERATIONS: f64 = 5.0;
+
+/// A point folded by the mirrors at the axes and between them, in the frame of the
+/// diagonal: how far it is beside it, and along it from the centre.
+#[inline(always)]
+fn folded<S: Scalar>(p: Vector<S, 2>) -> [S; 2] {
+    let [x, y] = p.abs().0;
+    let diagonal = Vector([x, y]).dot_constant(&[FRAC_1_SQRT_2, FRAC_1_SQRT_2]);
+    [(x - y).abs().scale(FRAC_1_SQRT_2), diagonal]
+}
+
+/// A gradient at a folded point as one at `p`.
+#[inline(always)]
+fn unfolded<T: Float>(p: Vector<T, 2>, [beside, along]: [T; 2]) -> Vector<T, 2> {
+    let zero = T::constant(0.0);
+    let [x, y] = p.abs().0;
+    let larger = (along + beside).scale(FRAC_1_SQRT_2);
+    let smaller = (along - beside).scale(FRAC_1_SQRT_2);
+    let both = [T::select_less(x, y, smaller, larger), T::select_less(x, y, larger, smaller)];
+    Vector(array!(i < 2 => T::select_less(p.0[i], zero, -both[i], both[i])))
+}
+
+/// A round shape about the origin whose outline is four arcs of parabolas. Exact.
+///
+/// # Derivation
+///
+/// The quarter from (r, 0) to (0, r) is the Bézier curve with its control point at
+/// (r, r): tangent to the lines x = r and y = r, where it continues its neighbours. It
+/// is the parabola about the diagonal with its vertex at (3r/4, 3r/4), of the points
+/// `(r/√2)τ` beside the diagonal and `(r/2√2)τ²` back along it, for |τ| ≤ 1. Folded by
+/// the eight mirrors, a point is between the axis and the diagonal; there the
+/// nearest point of the parabola is at 0 ≤ τ ≤ 1, since the normal at τ = 1 is the
+/// axis.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::QuadraticCircle};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let pebble = Shape::from_kernel(QuadraticCircle::new(4.0)?);
+/// assert!((pebble.distance(Vector([0.0, -9.0])) - 5.0).abs() < 1e-14);
+/// // Along the diagonal from the vertex at (3, 3).
+/// assert!((pebble.distance(Vector([-5.0, 5.0])) - 8.0_f64.sqrt()).abs() < 1e-14);
+/// assert!((pebble.distance(Vector([0.0, 0.0])) + 4.0).abs() < 1e-14);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct QuadraticCircle {
+    radius: f64,
+    /// From the vertex back along the diagonal.
+    curve: Quadratic,
+}
+
+impl QuadraticCircle {
+    /// One that meets the axes at `radius` from the centre [m].
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive.
+    pub fn new(radius: f64) -> Result<Self, ShapeError> {
+        positive("radius", radius, Unit::Metre)?;
+        let along = FRAC_1_SQRT_2 * radius;
+        Ok(Self { radius, curve: Quadratic::new(along, 0.5 * along) })
+    }
+
+    /// How far the vertices are from the centre.
+    fn vertex(&self) -> f64 {
+        0.75 * SQRT_2 * self.radius
+    }
+
+    #[inline(always)]
+    fn solve<S: Scalar>(&self, p: Vector<S, 2>) -> (S, [S; 2]) {
+        let [beside, along] = folded(p);
+        let nearest = self.curve.nearest(beside, S::constant(self.vertex()) - along);
+        (nearest.below, [nearest.normal[0], -nearest.normal[1]])
+    }
+}
+
+impl Kernel<2> for QuadraticCircle {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        self.solve(p).0
+    }
+
+    /// The gradient is the normal at the nearest point, on both sides.
+    #[inline(always)]
+    fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
+        let (distance, gradient) = self.solve(p);
+        (distance, unfolded(p, gradient))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        tangent_model(self, cell, CIRCLE_OPERATIONS, self.radius)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let bounds = Bounds::centred(Vector::constant(self.radius), self.vertex());
+        let bounds = bounds.grown(4.0 * f64::EPSILON * self.radius);
+        Promise::exact_convex(Some(bounds), CIRCLE_OPERATIONS, self.radius).symmetric()
+    }
+}
+
+primitive! {
+    QuadraticCircle, "quadratic_circle", 2,
+    about: "A round shape whose outline is four arcs of parabolas.",
+    model: Tangent,
+    parameters: { radius: Length = "from the centre to where it meets the axes" },
+    example: (0.8),
+}
+
+/// A cross with four tips on the axes, joined by hollow arcs of parabolas, grown by
+/// a rounding.
+///
+/// Exact; inside a bound where the rounding is more than the arcs' least radius of
+/// curvature, so that it fills them.
+///
+/// # Derivation
+///
+/// With a the distance of a tip from the centre, before it is grown, the arc between
+/// two tips is a parabola about the diagonal, `a/√2` to both sides, whose vertex is
+/// the `dip` nearer to the centre than the chord: `(a/√2)τ` beside the diagonal,
+/// `dip·τ²` outwards. Folded by the eight mirrors, the nearest point is that of the
+/// parabola or, where it is beyond the tip, the tip. What is inside has its nearest
+/// point on the arc if the arc stays within its quadrant: if its slope at the tip,
+/// `2√2 dip/a`, is at most one.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::BobblyCross};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let cross = Shape::from_kernel(BobblyCross::new(8.0, 1.0, 1.0)?);
+/// assert!((cross.distance(Vector([0.0, 9.0])) - 5.0).abs() < 1e-14); // over a tip
+/// // Of the chord's 3/√2 from the centre, the dip takes 1 and the rounding gives it.
+/// let inside = cross.distance(Vector([0.0, 0.0]));
+/// assert!((inside + 4.5_f64.sqrt()).abs() < 1e-14);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct BobblyCross {
+    /// From the centre to a tip, without the rounding.
+    tip: f64,
+    dip: f64,
+    rounding: f64,
+    /// From the vertex outwards.
+    curve: Quadratic,
+}
+
+impl BobblyCross {
+    /// A cross of full `width` and as high, its sides drawn in by `dip` from the line
+    /// between two tips, with a `rounding` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the width or the dip is not positive, the rounding negative or not less than
+    /// half the width, or the dip so deep that the arcs would cross the axes.
+    pub fn new(width: f64, dip: f64, rounding: f64) -> Result<Self, ShapeError> {
+        positive("width", width, Unit::Metre)?;
+        positive("dip", dip, Unit::Metre)?;
+        not_negative("rounding", rounding, Unit::Metre)?;
+        let tip = 0.5 * width - rounding;
+        if tip < 1e-6 * width {
+            let rule = format!("less than half the width, {} m", 0.5 * width);
+            return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
+        }
+        let deepest = tip / (2.0 * SQRT_2);
+        // A rounding more is meant to be no more.
+        if dip > deepest * (1.0 + 4.0 * f64::EPSILON) {
+            let rule = format!("at most {deepest} m, where the arcs touch the axes");
+            return Err(ShapeError::number("dip", rule, dip, Unit::Metre));
+        }
+        Ok(Self { tip, dip, rounding, curve: Quadratic::new(FRAC_1_SQRT_2 * tip, dip) })
+    }
+
+    #[inline(always)]
+    fn solve<S: Scalar>(&self, p: Vector<S, 2>) -> (S, [S; 2]) {
+        let one = S::constant(1.0);
+        let [beside, along] = folded(p);
+        let chord = FRAC_1_SQRT_2 * self.tip;
+        let nearest = self.curve.nearest(beside, along - S::constant(chord - self.dip));
+        let end = S::constant(chord);
+        let from_tip = [beside - end, along - end];
+        let to_tip = S::norm(from_tip);
+        let inverse = one / S::select_less(S::constant(0.0), to_tip, to_tip, one);
+        let past = |tip: S, arc: S| S::select_less(one, nearest.tau, tip, arc);
+        let gradient = array!(i < 2 => past(from_tip[i] * inverse, -nearest.normal[i]));
+        (past(to_tip, -nearest.below) - S::constant(self.rounding), gradient)
+    }
+}
+
+impl Kernel<2> for BobblyCross {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        self.solve(p).0
+    }
+
+    /// The gradient is along the line from the nearest point before the growing.
+    #[inline(always)]
+    fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
+        let (distance, gradient) = self.solve(p);
+        (distance, unfolded(p, gradient))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        lipschitz_model(self, cell, CROSS_OPERATIONS, self.tip + self.rounding)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        // Of (a/√2)τ and dip·τ²: the square of the first over twice the second.
+        let curvature_radius = 0.25 * self.tip * (self.tip / self.dip);
+        let radius = self.tip + self.rounding;
+        let aabb = Aabb::centred(Vector::constant(radius));
+        let ball = BoundingBall { centre: Vector::ZERO, radius };
+        let bounds = Bounds { aabb, ball }.grown(4.0 * f64::EPSILON * radius);
+        let fills = self.rounding > curvature_radius;
+        Promise {
+            inside: if fills { Quality::Bound } else { Quality::Exact },
+            ..Promise::exact(Some(bounds), CROSS_OPERATIONS, radius).symmetric()
+        }
+    }
+}
+
+primitive! {
+    BobblyCross, "bobbly_cross", 2,
+    about: "A cross with four tips on the axes between hollow arcs of parabolas, rounded.",
+    model: Lipschitz,
+    parameters: {
+        width: Length = "the full width and height",
+        dip: Length = "how far the sides are drawn in from the line between two tips",
+        rounding: LengthOrZero = "the radius of the tips, zero for sharp ones",
+    },
+    example: (1.9, 0.2, 0.15),
+}

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The cross with hollow sides.
+
+use crate::bounds::Bounds;
+use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 5.0;
+
+/// A star with four tips on the axes, joined by arcs that are hollow. Exact.
+///
+/// # Derivation
+///
+/// Folded to x, y ≥ 0 there is one arc, from the tip (a, 0) to the tip (0, b), about
+/// a centre c on the far side of their chord: beyond its middle, along its normal, by
+/// √(r² − (a² + b²)/4). Between the two rays from c through the tips the arc is the
+/// nearest, at `r − ‖p − c‖`, positive outside; elsewhere the nearer tip is. All that
+/// is inside lies between the rays if the arc stays within its quadrant, so if c is
+/// at least as far right as a and as far up as b. At the least such r, that of a
+/// circle touching the axis of the farther tip, `a² + b² = 2r min(a, b)`.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::RoundedCross};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// // Arcs about (±2, ±2) that touch the axes.
+/// let star = Shape::from_kernel(RoundedCross::new(Vector([4.0, 4.0]), 2.0)?);
+/// assert!((star.distance(Vector([0.0, 0.0])) - (2.0 - 8.0_f64.sqrt())).abs() < 1e-15);
+/// assert!((star.distance(Vector([5.0, 0.0])) - 3.0).abs() < 1e-15); // from a tip
+/// assert!((star.distance(Vector([1.5, -1.5])) - (2.0 - 0.5_f64.sqrt())).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct RoundedCross {
+    half: [f64; 2],
+    centre: [f64; 2],
+    arc_radius: f64,
+    /// Out of the wedge of the arc's normals, across its two sides.
+    walls: [[f64; 2]; 2],
+}
+
+impl RoundedCross {
+    /// A cross of the given full `size` along x and y, from tip to tip, between arcs
+    /// of `arc_radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a length is not positive, or the arcs would leave their quadrants.
+    pub fn new(size: Vector<f64, 2>, arc_radius: f64) -> Result<Self, ShapeError> {
+        for length in size.0 {
+            positive("size", length, Unit::Metre)?;
+        }
+        positive("arc_radius", arc_radius, Unit::Metre)?;
+        let [a, b] = size.0.map(|length| 0.5 * length);
+        let least = 0.5 * (a * (a / a.min(b)) + b * (b / a.min(b)));
+        // A rounding less is meant to be as much.
+        if arc_radius < least * (1.0 - 4.0 * f64::EPSILON) {
+            let rule = format!("at least {least} m, where the arcs touch the axes");
+            return Err(ShapeError::number("arc_radius", rule, arc_radius, Unit::Metre));
+        }
+        let half_chord = 0.5 * Vector([a, b]).norm();
+        let beyond = ((arc_radius - half_chord) * (arc_radius + half_chord)).max(0.0).sqrt();
+        // Along the chord's normal (b, a).
+        let [x, y] = [b, a].map(|n| beyond * (n / (2.0 * half_chord)));
+        let centre = [(0.5 * a + x).max(a), (0.5 * b + y).max(b)];
+        let wall = |across: f64, up: f64| {
+            let unit = Vector([across, up]).normalized().unwrap_or(Vector([0.0, 1.0]));
+            unit.0
+        };
+        let walls = [wall(centre[1], a - centre[0]), wall(b - centre[1], centre[0])];
+        Ok(Self { half: [a, b], centre, arc_radius, walls })
+    }
+}
+
+impl Kernel<2> for RoundedCross {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
+        let [x, y] = p.abs().0;
+        let right = S::norm([x - S::constant(self.half[0]), y]);
+        let top = S::norm([x, y - S::constant(self.half[1])]);
+        let from_centre = Vector([x, y]) - Vector::of(&self.centre);
+        let [below, left] = &self.walls;
+        let out = from_centre.dot_constant(below).max(from_centre.dot_constant(left));
+        let arc = S::constant(self.arc_radius) - from_centre.norm();
+        S::select_less(S::constant(0.0), out, right.min(top), arc)
+    }
+
+    fn promise(&self) -> Promise<2> {
+        let radius = self.half[0].max(self.half[1]);
+        let bounds = Bounds::centred(Vector(self.half), radius);
+        Promise::exact(Some(bounds), OPERATIONS, self.arc_radius).symmetric()
+    }
+}
+
+primitive! {
+    RoundedCross, "rounded_cross", 2,
+    about: "A cross with four tips on the axes between arcs that are hollow.",
+    model: ClosedForm,
+    parameters: {
+        size: Vector = "from tip to tip along x and y",
+        arc_radius: Length = "the radius of the arcs",
+    },
+    example: (Vector([1.9, 1.5]), 1.1),
+}
