@@ -86,7 +86,7 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
     };
     let (bolt, nut) = (&world.bodies[0].shape, &world.bodies[1].shape);
     let mut both_close = 0;
-    for (i, j, k) in grid(60) {
+    for (i, j, k) in grid([60; 3]) {
         let point = [i * 0.04 - 0.02, 0.02 + j * 0.03, k * 0.04 - 0.02];
         let (a, b) = (bolt.distance(point.into()), nut.distance(point.into()));
         assert!(a.max(b) > 0.0, "{point:?} is in both: {a} m and {b} m");
@@ -104,7 +104,7 @@ fn the_gears_are_current_and_mesh_without_overlap() {
     };
     let (pinion, gear) = (&world.bodies[0].shape, &world.bodies[1].shape);
     let mut closest = f64::INFINITY;
-    for (i, j, _) in grid(400).filter(|&(_, _, k)| k == 0.0) {
+    for (i, j, _) in grid([400, 400, 1]) {
         let point = [0.02 + i * 0.02, j * 0.06 - 0.03];
         let (a, b) = (pinion.distance(point.into()), gear.distance(point.into()));
         assert!(a.max(b) > -1e-5, "{point:?} is in both: {a} m and {b} m");
@@ -113,10 +113,8 @@ fn the_gears_are_current_and_mesh_without_overlap() {
     assert!(closest < gears::BACKLASH, "the gears are {closest} m apart");
 }
 
-/// The points of a grid of the unit cube.
-fn grid(side: usize) -> impl Iterator<Item = (f64, f64, f64)> {
-    let at = move |i: usize| i as f64 / (side - 1) as f64;
-    (0..side).flat_map(move |k| {
-        (0..side).flat_map(move |j| (0..side).map(move |i| (at(i), at(j), at(k))))
-    })
+/// The points of a grid of the unit cube, so many along each axis; one is at 0.
+fn grid([x, y, z]: [usize; 3]) -> impl Iterator<Item = (f64, f64, f64)> {
+    let at = |i: usize, side: usize| i as f64 / (side - 1).max(1) as f64;
+    (0..x * y * z).map(move |i| (at(i % x, x), at(i / x % y, y), at(i / (x * y), z)))
 }

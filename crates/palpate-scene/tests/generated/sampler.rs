@@ -101,7 +101,7 @@ pub(crate) const SPACE: &[Sample] = &[
         r#"{ "from": [-0.03, -0.03, -0.01], "to": [0.03, 0.03, 0.01],
              "from_radius": 0.025, "to_radius": 0.01 }"#,
     ),
-    ("solid_angle", r#"{ "radius": 0.08, "angle_degrees": 70 }"#),
+    ("solid_angle", r#"{ "radius": 0.06, "angle_degrees": 70 }"#),
     ("cut_ball", r#"{ "radius": 0.05, "cut_height": -0.02 }"#),
     ("cut_hollow_sphere", r#"{ "radius": 0.045, "cut_height": 0.02, "thickness": 0.01 }"#),
     ("death_star", r#"{ "radius": 0.05, "cut_radius": 0.035, "distance": 0.055 }"#),
