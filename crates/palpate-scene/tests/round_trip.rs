@@ -106,7 +106,7 @@ fn every_primitive_comes_back_as_the_same_field() {
 fn the_scenes_are_finite_everywhere_on_a_grid() {
     fn grid<const D: usize>(name: &str, whole: &Shape<D>) {
         let bounds = whole.promise().bounds.expect("the scenes are bounded").aabb;
-        let side: usize = if D == 2 { 64 } else { 16 };
+        let side: usize = if D == 2 { 64 } else { 21 };
         let mut inside = 0;
         for i in 0..side.pow(D as u32) {
             let point = std::array::from_fn(|axis| {

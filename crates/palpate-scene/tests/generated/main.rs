@@ -11,7 +11,7 @@ mod thread;
 use std::path::Path;
 
 use palpate_field::kernel::Entry;
-use palpate_scene::{Scene, World};
+use palpate_scene::{Scene, World, schema};
 
 /// Set to write the scenes instead of comparing them.
 const UPDATE: &str = "PALPATE_UPDATE_SCENES";
@@ -67,8 +67,22 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
     names
 }
 
+/// Keys of a shape's object that are neither primitive nor operator.
+const OTHERS: [&str; 7] =
+    ["width", "profile", "height", "progress", "of", "shape", "description"];
+
 #[test]
-fn the_sampler_of_operators_is_current() {
+fn the_sampler_of_operators_is_current_and_has_every_operator() {
+    let schema = schema();
+    let keys = schema["$defs"]["space"]["Node"]["properties"].as_object().unwrap();
+    let known = keys.keys().map(String::as_str).filter(|key| {
+        !OTHERS.contains(key) && Entry::<3>::ALL.iter().all(|entry| entry.name != *key)
+    });
+    let names = sampler::OPERATORS.iter().map(|&(name, _)| name).collect();
+    assert_eq!(sorted(names), sorted(known.collect()));
+    for (name, shape) in sampler::OPERATORS {
+        assert!(shape.contains(&format!("\"{name}\"")), "{name} is not in its shape");
+    }
     assert_current("sampler_operators.json", &sampler::operators());
 }
 
@@ -93,6 +107,14 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
         both_close += usize::from(a.max(b) < thread::CLEARANCE);
     }
     assert!(both_close > 100, "{both_close} points are close to nut and bolt");
+    // Right-handed: from the middle of the thread, where a crest is at +x, it turns by
+    // −z to −x.
+    let out = thread::RADIUS - 1e-5;
+    for (quarters, [x, z]) in [[out, 0.0], [0.0, -out], [-out, 0.0]].into_iter().enumerate() {
+        let y = thread::MIDDLE + thread::PITCH * quarters as f64 / 4.0;
+        assert!(bolt.distance([x, y, z].into()) < 0.0, "no crest after {quarters} quarters");
+        assert!(bolt.distance([-x, y, -z].into()) > 0.0, "no root after {quarters} quarters");
+    }
 }
 
 #[test]

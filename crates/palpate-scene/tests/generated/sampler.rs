@@ -136,7 +136,7 @@ pub(crate) const SPACE: &[Sample] = &[
 const UNBOUNDED: [&str; 3] = ["half_space", "infinite_cylinder", "infinite_cone"];
 
 /// The operators on shapes of space; `bar`, `bead` and `flat` are shapes.
-const OPERATORS: &[Sample] = &[
+pub(crate) const OPERATORS: &[Sample] = &[
     ("union", r#"{ "union": ["bar", "bead"] }"#),
     ("intersection", r#"{ "intersection": ["bar", "bead"] }"#),
     ("difference", r#"{ "difference": ["bar", "bead"] }"#),

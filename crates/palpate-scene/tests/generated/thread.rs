@@ -19,16 +19,19 @@ use std::f64::consts::TAU;
 const ENLARGED: f64 = 5.0;
 
 /// From crest to crest [m].
-const PITCH: f64 = 0.001 * ENLARGED;
+pub(crate) const PITCH: f64 = 0.001 * ENLARGED;
 
 /// From the axis to the crests [m].
-const RADIUS: f64 = 0.003 * ENLARGED;
+pub(crate) const RADIUS: f64 = 0.003 * ENLARGED;
 
 /// From the axis to a corner of the hexagons [m]: 10 mm between flats.
 const HEXAGON: f64 = 0.00577 * ENLARGED;
 
 /// Between the sections of nut and bolt [m].
 pub(crate) const CLEARANCE: f64 = 0.0001;
+
+/// The height of the middle of the thread [m].
+pub(crate) const MIDDLE: f64 = 0.045;
 
 /// Points of the section, such that each corner of the profile (sixteenths of a turn)
 /// is one of them.
@@ -64,7 +67,7 @@ pub(crate) fn scene() -> String {
           {{ "name": "bolt", "shape": {{ "union": [
             {{ "translate": [0, 0.01, 0],
                "of": {{ "hexagonal_prism": {{ "radius": {HEXAGON}, "height": 0.02 }} }} }},
-            {{ "translate": [0, 0.045, 0], "of": {{ "intersection": [ "thread",
+            {{ "translate": [0, {MIDDLE}, 0], "of": {{ "intersection": [ "thread",
                {{ "description": "Rounds the thread's end off.",
                   "rounded_cylinder": {{
                     "radius": {RADIUS}, "height": 0.06, "rounding": 0.003 }} }} ] }} }} ] }} }},
@@ -72,7 +75,7 @@ pub(crate) fn scene() -> String {
             {{ "translate": [0, 0.0475, 0],
                "of": {{ "hexagonal_prism": {{ "radius": {HEXAGON}, "height": 0.025 }} }} }},
             {{ "offset": {CLEARANCE},
-               "of": {{ "translate": [0, 0.045, 0], "of": "thread" }} }} ] }} }} ],
+               "of": {{ "translate": [0, {MIDDLE}, 0], "of": "thread" }} }} ] }} }} ],
         "views": [{{ "name": "thread", "description": "The thread's profile, along the axis.",
           "plane": "xy", "center": [0.015, 0.0475], "width": 0.04, "height": 0.03,
           "spacing": 0.001 }}] }}"#,
