@@ -58,7 +58,7 @@ pub(crate) fn scene() -> String {
 fn turn(numbers: &mut Numbers) -> String {
     let [x, y] = [0; 2].map(|_| numbers.between(-3, 3, 1.0));
     let angle = numbers.between(5, 175, 1.0);
-    if numbers.bits() % 2 == 0 {
+    if numbers.bits().is_multiple_of(2) {
         return String::new();
     }
     format!(r#""rotate_degrees": {{ "axis": [{x}, {y}, 1], "angle": {angle} }},"#)
