@@ -182,7 +182,7 @@ fn a_polygon_has_the_right_normal_close_to_a_sharp_corner() -> Outcome {
     Ok(())
 }
 
-/// The issue allows 32 ulp of the largest number met.
+/// At most 32 ulp of the largest number met are allowed.
 #[test]
 fn tangent_models_are_tight_to_32_ulp() -> Outcome {
     fn ulp<K: Kernel<2>>(kernel: K, size: f64) -> f64 {
