@@ -59,6 +59,19 @@ pub(crate) const PLANE: &[Sample] = &[
     ("vesica", r#"{ "width": 0.05, "height": 0.1 }"#),
     ("oriented_vesica", r#"{ "from": [-0.035, -0.035], "to": [0.035, 0.035], "width": 0.04 }"#),
     ("moon", r#"{ "radius": 0.05, "cut_radius": 0.04, "distance": 0.025 }"#),
+    ("egg", r#"{ "bottom_radius": 0.04, "top_radius": 0.015 }"#),
+    ("heart", r#"{ "height": 0.1 }"#),
+    ("rounded_cross", r#"{ "size": [0.1, 0.1], "arc_radius": 0.06 }"#),
+    ("bobbly_cross", r#"{ "width": 0.09, "dip": 0.012, "rounding": 0.005 }"#),
+    ("parabola", r#"{ "focal_length": 0.01 }"#),
+    ("parabola_segment", r#"{ "width": 0.08, "height": 0.1 }"#),
+    (
+        "quadratic_bezier",
+        r#"{ "from": [-0.04, -0.04], "control": [0, 0.08], "to": [0.04, -0.02], "radius": 0.008 }"#,
+    ),
+    ("quadratic_circle", r#"{ "radius": 0.05 }"#),
+    ("hyperbola", r#"{ "radii": [0.02, 0.01] }"#),
+    ("circle_wave", r#"{ "ring_radius": 0.015, "angle_degrees": 200, "radius": 0.003 }"#),
 ];
 
 /// The primitives of space, each about 0.1 m wide.
@@ -133,7 +146,14 @@ pub(crate) const SPACE: &[Sample] = &[
 ];
 
 /// Those that have no end.
-const UNBOUNDED: [&str; 3] = ["half_space", "infinite_cylinder", "infinite_cone"];
+const UNBOUNDED: [&str; 6] = [
+    "half_space",
+    "infinite_cylinder",
+    "infinite_cone",
+    "parabola",
+    "hyperbola",
+    "circle_wave",
+];
 
 /// The operators on shapes of space; `bar`, `bead` and `flat` are shapes.
 pub(crate) const OPERATORS: &[Sample] = &[
