@@ -103,7 +103,7 @@ fn the_articles_exact_cone_takes_half_the_height_first() -> Outcome {
     let (radius, height) = (0.9, 1.4);
     let exact = Shape::from_kernel(Cone::new(radius, height)?);
     let tip = Vector([0.0, 0.5 * height, 0.0]);
-    assert_eq!(exact.distance(tip), 0.0);
+    assert!(exact.distance(tip).abs() < ROUNDING);
     assert_eq!(printed_cone_approximation(tip, radius, height), 0.0);
     // The full height makes a cone twice as tall, whose tip is elsewhere.
     assert!(printed_cone(tip, height, radius) < -0.1);
@@ -196,7 +196,7 @@ fn the_articles_cube_and_cylinder_are_exact_inside_and_bounds_outside() -> Outco
 
 #[test]
 fn a_scaled_distance_must_be_scaled_back() -> Outcome {
-    let unit = Shape::from_kernel(Ball::<3>::new(1.0)?);
+    let unit = Shape::<3>::from_kernel(Ball::new(1.0)?);
     // The article's local point, and the field asked there.
     let printed = |p: Point<3>, s: [f64; 3]| {
         unit.distance(Vector([p.0[0] / s[0], p.0[1] / s[1], p.0[2] / s[2]]))
@@ -221,7 +221,7 @@ fn a_scaled_distance_must_be_scaled_back() -> Outcome {
 
 #[test]
 fn the_gradient_under_a_scale_by_axes_is_divided_by_the_factors() -> Outcome {
-    let unit = Shape::from_kernel(Ball::<3>::new(1.0)?);
+    let unit = Shape::<3>::from_kernel(Ball::new(1.0)?);
     let factors = [0.5, 1.0, 2.0];
     let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, 2.0]), 0.7)?;
     let world_from_body = Pose::new(turn, Vector([0.3, -0.2, 0.1]));
@@ -244,14 +244,14 @@ fn the_gradient_under_a_scale_by_axes_is_divided_by_the_factors() -> Outcome {
 
 #[test]
 fn the_articles_difference_is_the_second_without_the_first() -> Outcome {
-    let a = Shape::from_kernel(Ball::<2>::new(1.0)?);
+    let a = Shape::<2>::from_kernel(Ball::new(1.0)?);
     let b = a.clone().translated(Vector([1.0, 0.0]))?;
     let printed = |p: Point<2>| (a.distance(p)).min(-b.distance(p)); // min(−a, b), a = −f
     let (in_a, in_b) = (Vector([-0.5, 0.0]), Vector([1.5, 0.0]));
     let without = a.clone().difference([b.clone()])?;
     assert!(printed(in_a) < 0.0 && printed(in_b) > 0.0); // positive inside
     assert!(without.distance(in_a) < 0.0 && without.distance(in_b) > 0.0); // negative
-    let swapped = b.difference([a.clone()])?;
+    let swapped = b.clone().difference([a.clone()])?;
     assert_eq!(printed(in_b), -swapped.distance(in_b));
     Ok(())
 }
@@ -335,14 +335,14 @@ fn a_gradient_is_of_length_one_only_almost_everywhere_and_of_exact_fields() -> O
     let after = square.distance_gradient(Vector([0.5, 0.5 + 1e-9])).1;
     assert_eq!((before, after), (Vector([1.0, 0.0]), Vector([0.0, 1.0])));
     // A bound is flatter.
-    let ellipse = Shape::from_kernel(Ball::<2>::new(1.0)?).stretched([1.0, 4.0])?;
+    let ellipse = Shape::<2>::from_kernel(Ball::new(1.0)?).stretched([1.0, 4.0])?;
     assert_eq!(ellipse.distance_gradient(Vector([0.0, 6.0])).1, Vector([0.0, 0.25]));
     Ok(())
 }
 
 #[test]
 fn the_length_of_the_closest_vector_has_no_sign() -> Outcome {
-    let disc = Shape::from_kernel(Ball::<2>::new(1.0)?);
+    let disc = Shape::<2>::from_kernel(Ball::new(1.0)?);
     let closest_vector = |p: Point<2>| p * (1.0 / p.norm()) - p;
     for (p, is_outside) in [(Vector([1.2, 1.6]), true), (Vector([0.3, 0.4]), false)] {
         let g = closest_vector(p);
@@ -495,8 +495,7 @@ fn a_constant_step_oscillates_across_a_ridge() -> Outcome {
     // A wedge, its tip up at the origin; and what lies above y = 0.5.
     let faces = [Vector([0.6, 0.8]), Vector([-0.6, 0.8])];
     let [right, left] = faces.map(|normal| HalfSpace::new(normal, 0.0));
-    let wedge =
-        Shape::intersection([Shape::from_kernel(right?), Shape::from_kernel(left?)])?;
+    let wedge = Shape::intersection([Shape::from_kernel(right?), Shape::from_kernel(left?)])?;
     let above = Shape::from_kernel(HalfSpace::new(Vector([0.0, -1.0]), -0.5)?);
     let rate = 0.1;
     let mut p = Vector([0.37, 2.0]);
@@ -518,7 +517,7 @@ fn a_constant_step_oscillates_across_a_ridge() -> Outcome {
 
 #[test]
 fn bodies_that_touch_have_no_point_inside_both() -> Outcome {
-    let a = Shape::from_kernel(Ball::<2>::new(1.0)?);
+    let a = Shape::<2>::from_kernel(Ball::new(1.0)?);
     let b = a.clone().translated(Vector([2.0, 0.0]))?;
     let touch = Vector([1.0, 0.0]);
     let values = [a.distance(touch), b.distance(touch)];
@@ -529,7 +528,7 @@ fn bodies_that_touch_have_no_point_inside_both() -> Outcome {
 
 #[test]
 fn a_point_inside_both_is_no_depth() -> Outcome {
-    let a = Shape::from_kernel(Ball::<2>::new(1.0)?);
+    let a = Shape::<2>::from_kernel(Ball::new(1.0)?);
     let b = a.clone().translated(Vector([1.5, 0.0]))?;
     // Where the memoir's loop may stop: inside both, by almost nothing.
     let p = Vector([0.501, 0.0]);
