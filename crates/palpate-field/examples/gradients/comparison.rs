@@ -15,13 +15,13 @@ use palpate_field::operator::Smooth;
 use palpate_field::{Point, Shape, ShapeError, Vector};
 
 /// A direction of length one; none where a method has none.
-pub type Direction = Option<Vector<f64, 2>>;
+pub(crate) type Direction = Option<Vector<f64, 2>>;
 
 /// The window of the memoir's program [pixel].
-pub const WINDOW: [f64; 2] = [1920.0, 1080.0];
+pub(crate) const WINDOW: [f64; 2] = [1920.0, 1080.0];
 
 /// The memoir's least offset [pixel].
-pub const OFFSET: f64 = 0.005;
+pub(crate) const OFFSET: f64 = 0.005;
 
 const POINTS: usize = 4000;
 const DISC: ([f64; 2], f64) = ([750.0, 680.0], 200.0);
@@ -31,12 +31,12 @@ const STAR: ([f64; 2], usize, f64) = ([1000.0, 530.0], 12, 300.0);
 const REACH: f64 = 1.0;
 
 /// A shape of the memoir, and what is known of it without a field.
-pub struct Case {
+pub(crate) struct Case {
     name: &'static str,
     /// The shape as the library builds it.
-    pub shape: Shape<2>,
+    pub(crate) shape: Shape<2>,
     /// The gradient, by geometry alone.
-    pub truth: Box<dyn Fn(Point<2>) -> Direction>,
+    pub(crate) truth: Box<dyn Fn(Point<2>) -> Direction>,
     /// Whether the memoir found vectors to the closest point for it.
     has_closest_vector: bool,
     /// Whether the memoir's program rounds its values to single precision.
@@ -44,7 +44,7 @@ pub struct Case {
 }
 
 /// The memoir's circle, rectangle, star, and smooth union of star and circle.
-pub fn cases() -> Result<[Case; 4], ShapeError> {
+pub(crate) fn cases() -> Result<[Case; 4], ShapeError> {
     let star_inner = STAR.2 * 0.5_f64.sqrt();
     let disc = Shape::from_kernel(Ball::new(DISC.1)?).translated(Vector(DISC.0))?;
     let star = RegularStar::new(STAR.1 as u32, STAR.2, star_inner)?;
@@ -131,7 +131,7 @@ fn smooth_union() -> Box<dyn Fn(Point<2>) -> Direction> {
 
 /// How a gradient is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
+pub(crate) enum Method {
     /// −g/‖g‖ of the vector g to the closest point.
     ClosestVector,
     /// Four values at a distance of [`OFFSET`].
@@ -156,7 +156,7 @@ impl Method {
     }
 
     /// The direction at `p`, where the field's values are as `value` gives them.
-    pub fn direction(
+    pub(crate) fn direction(
         self,
         case: &Case,
         value: &dyn Fn(Point<2>) -> f64,
@@ -179,14 +179,18 @@ impl Method {
 }
 
 /// The differences of values on both sides, along each axis.
-pub fn central_differences(value: &dyn Fn(Point<2>) -> f64, p: Point<2>) -> Direction {
+pub(crate) fn central_differences(value: &dyn Fn(Point<2>) -> f64, p: Point<2>) -> Direction {
     let steps = [Vector([OFFSET, 0.0]), Vector([0.0, OFFSET])];
     Vector(steps.map(|step| value(p + step) - value(p - step))).normalized()
 }
 
 /// Of three directions the better two, and then halves the angle between them nine
 /// times: 12 values, and 0.12° between the answer and the best direction at most.
-pub fn dichotomy(value: &dyn Fn(Point<2>) -> f64, p: Point<2>, offset: f64) -> Direction {
+pub(crate) fn dichotomy(
+    value: &dyn Fn(Point<2>) -> f64,
+    p: Point<2>,
+    offset: f64,
+) -> Direction {
     const HALVINGS: usize = 9;
     let direction = |degrees: f64| {
         let angle = degrees.to_radians();
@@ -215,7 +219,7 @@ pub fn dichotomy(value: &dyn Fn(Point<2>) -> f64, p: Point<2>, offset: f64) -> D
 
 /// Points spread evenly over the window: fractional parts of multiples of powers of
 /// 1/g, where g³ = g + 1.
-pub fn points() -> impl Iterator<Item = Point<2>> {
+pub(crate) fn points() -> impl Iterator<Item = Point<2>> {
     const G: f64 = 1.324_717_957_244_746;
     (1..=POINTS).map(|i| {
         let [x, y] = [i as f64 / G, i as f64 / (G * G)].map(f64::fract);
@@ -225,7 +229,7 @@ pub fn points() -> impl Iterator<Item = Point<2>> {
 
 /// Angles between a method's directions and the true ones [degree], sorted: outside
 /// and inside.
-pub fn errors(case: &Case, method: Method, is_rounded: bool) -> [Vec<f64>; 2] {
+pub(crate) fn errors(case: &Case, method: Method, is_rounded: bool) -> [Vec<f64>; 2] {
     let value = value(case, is_rounded);
     let mut errors = [Vec::new(), Vec::new()];
     for p in points() {
@@ -243,7 +247,7 @@ pub fn errors(case: &Case, method: Method, is_rounded: bool) -> [Vec<f64>; 2] {
 }
 
 /// The values of the field, as the memoir's program rounds them or not.
-pub fn value(case: &Case, is_rounded: bool) -> impl Fn(Point<2>) -> f64 {
+pub(crate) fn value(case: &Case, is_rounded: bool) -> impl Fn(Point<2>) -> f64 {
     move |p| {
         let value = case.shape.distance(p);
         if is_rounded { f64::from(value as f32) } else { value }
@@ -251,12 +255,12 @@ pub fn value(case: &Case, is_rounded: bool) -> impl Fn(Point<2>) -> f64 {
 }
 
 /// The value that a share of the sorted `errors` does not exceed.
-pub fn quantile(errors: &[f64], share: f64) -> f64 {
+pub(crate) fn quantile(errors: &[f64], share: f64) -> f64 {
     errors[((errors.len() - 1) as f64 * share) as usize]
 }
 
 /// The page's table: errors in degrees.
-pub fn table() -> Result<String, ShapeError> {
+pub(crate) fn table() -> Result<String, ShapeError> {
     let mut text = String::from(
         "| shape | method | outside: median | 99 % | max | inside: median | 99 % | max |\n\
          |---|---|---|---|---|---|---|---|\n",
