@@ -4,7 +4,6 @@
 //! The comparison of the example `gradients`, and the page that shows its table.
 
 #[path = "../examples/gradients/comparison.rs"]
-#[expect(dead_code, reason = "the example uses more of it")]
 mod comparison;
 
 use std::cell::Cell;
