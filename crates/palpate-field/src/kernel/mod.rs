@@ -31,7 +31,7 @@ pub use spatial::*;
 
 use crate::promise::Promise;
 use crate::scalar::{Dual, Float, Model, Scalar};
-use crate::vector::{Vector, array};
+use crate::vector::{Point, Vector, array};
 
 /// A closed formula for a signed distance.
 ///
@@ -100,6 +100,13 @@ pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
     S::select_less(outside, S::constant(4.0 * S::EPSILON * size), face, outside)
 }
 
+/// The distance, in a function of its own: eight copies of a formula in a loop over
+/// lanes, for each instruction set, would take minutes to compile.
+#[inline(never)]
+fn distance_apart<K: Kernel<D>, const D: usize>(kernel: &K, p: Point<D>) -> f64 {
+    kernel.distance(p)
+}
+
 /// Bounds a convex exact kernel over a cell by its tangent plane, and by its values at
 /// the corners of the cell; `operations` and `size` as for
 /// [`Rounding::of_operations`](crate::Rounding::of_operations).
@@ -113,7 +120,7 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     let centre = Vector(array!(i < D => cell.0[i].value));
     let (distance, normal) = kernel.distance_gradient(centre);
     let rounding = operations * f64::EPSILON * (size + centre.norm());
-    let distance_at = |corner: [f64; D]| kernel.distance(Vector(corner));
+    let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
     Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
