@@ -4,7 +4,7 @@
 //! Circular arcs with a radius.
 
 use crate::bounds::{Aabb, Bounds};
-use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::error::ShapeError;
 use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
@@ -46,13 +46,8 @@ impl Arc {
     /// If the circle's radius is not positive, the tube's negative, or the angle
     /// not in (0, 2π].
     pub fn new(ring_radius: f64, angle: f64, radius: f64) -> Result<Self, ShapeError> {
-        positive("ring_radius", ring_radius, Unit::Metre)?;
-        not_negative("radius", radius, Unit::Metre)?;
-        if !(angle > 0.0 && angle <= std::f64::consts::TAU) {
-            let rule = "in (0, 2π], a full turn at most";
-            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
-        }
-        Ok(Self { ring_radius, radius, half: Curve::to_angle(ring_radius, 0.5 * angle) })
+        let half = Curve::of_tube(ring_radius, angle, radius)?;
+        Ok(Self { ring_radius, radius, half })
     }
 }
 

@@ -6,6 +6,7 @@
 use super::outline::{beside, bounds_about, intersection};
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
+use crate::kernel::profile::CutDisc;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
@@ -16,12 +17,8 @@ const OPERATIONS: f64 = 6.0;
 
 /// What is above a line of a disc about the origin. Exact.
 ///
-/// # Derivation
-///
-/// Fold to `x ≥ 0`. Inside, the nearer of the circle and the line decides. Outside,
-/// the nearest point is on the straight edge, or on the arc where the direction from
-/// the centre is one of the arc's: that it is not shows in the sign of the offset
-/// from the line through the centre and the corner.
+/// Folded to `x ≥ 0`, it is the profile that a [`CutBall`](crate::kernel::CutBall)
+/// turns.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CutDisk};
@@ -39,8 +36,7 @@ const OPERATIONS: f64 = 6.0;
 pub struct CutDisk {
     radius: f64,
     cut_height: f64,
-    /// Half the straight edge.
-    half_width: f64,
+    half: CutDisc,
 }
 
 impl CutDisk {
@@ -56,23 +52,14 @@ impl CutDisk {
             let rule = format!("less than the radius, {radius} m, above or below the centre");
             return Err(ShapeError::number("cut_height", rule, cut_height, Unit::Metre));
         }
-        let half_width = (radius - cut_height).sqrt() * (radius + cut_height).sqrt();
-        Ok(Self { radius, cut_height, half_width })
+        Ok(Self { radius, cut_height, half: CutDisc::new(radius, cut_height) })
     }
 }
 
 impl Kernel<2> for CutDisk {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let folded = Vector([p.0[0].abs(), p.0[1]]);
-        let across = [self.cut_height / self.radius, -self.half_width / self.radius];
-        let past_arc = folded.dot_constant(&across);
-        let disc = p.norm() - S::constant(self.radius);
-        let line = S::constant(self.cut_height) - p.0[1];
-        let past_edge = folded.0[0] - S::constant(self.half_width);
-        let corner = S::norm([line, past_edge]);
-        let pieces = beside(disc, past_arc, beside(line, past_edge, corner));
-        intersection(disc.max(line), pieces, self.radius)
+        self.half.distance([p.0[0].abs(), p.0[1]])
     }
 
     #[inline(always)]
@@ -81,7 +68,7 @@ impl Kernel<2> for CutDisk {
     }
 
     fn promise(&self) -> Promise<2> {
-        let (radius, half_width) = (self.radius, self.half_width);
+        let (radius, half_width) = (self.radius, self.half.half_width());
         let below = self.cut_height < 0.0;
         let widest = if below { radius } else { half_width };
         let aabb =

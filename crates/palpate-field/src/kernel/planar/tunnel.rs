@@ -6,6 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
@@ -91,13 +92,8 @@ const CAPSULE_OPERATIONS: f64 = 6.0;
 /// Two discs on the y axis and all between their common tangents, centred between
 /// the discs' centres. Exact.
 ///
-/// # Derivation
-///
-/// Fold to `x ≥ 0`. The right tangent has the same distance from both centres as
-/// their discs' radii, so its normal is `(c, s)` with `s = (r_bottom − r_top)/h` and
-/// `c² + s² = 1`. Measured along it from the bottom centre, it touches the bottom disc
-/// at 0 and the top one at `ch`: before, the nearest point is on the bottom disc,
-/// past it on the top disc, between on the tangent.
+/// Folded to `x ≥ 0`, it is the profile that a [`RoundCone`](crate::kernel::RoundCone)
+/// turns.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::UnevenCapsule};
@@ -116,8 +112,7 @@ pub struct UnevenCapsule {
     bottom_radius: f64,
     top_radius: f64,
     height: f64,
-    /// Out of the right tangent, of length one.
-    normal: [f64; 2],
+    half: TwoDiscs,
 }
 
 impl UnevenCapsule {
@@ -136,10 +131,8 @@ impl UnevenCapsule {
             let rule = format!("more than the difference of the radii, {difference} m");
             return Err(ShapeError::number("height", rule, height, Unit::Metre));
         }
-        let sin = difference / height;
-        let cos =
-            ((height - difference) / height).sqrt() * ((height + difference) / height).sqrt();
-        Ok(Self { bottom_radius, top_radius, height, normal: [cos, sin] })
+        let half = TwoDiscs::new(bottom_radius, top_radius, height);
+        Ok(Self { bottom_radius, top_radius, height, half })
     }
 
     fn size(&self) -> f64 {
@@ -150,17 +143,7 @@ impl UnevenCapsule {
 impl Kernel<2> for UnevenCapsule {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let zero = S::constant(0.0);
-        let [cos, sin] = self.normal;
-        let half = S::constant(0.5 * self.height);
-        let x = p.0[0].abs();
-        let from_bottom = Vector([x, p.0[1] + half]);
-        let along = from_bottom.dot_constant(&[-sin, cos]);
-        let bottom = from_bottom.norm() - S::constant(self.bottom_radius);
-        let top = S::norm([x, p.0[1] - half]) - S::constant(self.top_radius);
-        let side = from_bottom.dot_constant(&[cos, sin]) - S::constant(self.bottom_radius);
-        let past = S::select_less(S::constant(self.height * cos), along, top, side);
-        S::select_less(along, zero, bottom, past)
+        self.half.distance([p.0[0].abs(), p.0[1]])
     }
 
     #[inline(always)]

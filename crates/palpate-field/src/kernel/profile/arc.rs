@@ -3,6 +3,7 @@
 
 //! An arc of a circle.
 
+use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::scalar::Scalar;
 use crate::vector::{Vector, array};
 
@@ -34,6 +35,27 @@ impl Curve {
         let whole = angle >= std::f64::consts::PI;
         let room = if end[1] < 0.0 && !whole { radius * end[0] } else { radius };
         Self { radius, end, room }
+    }
+
+    /// Half the arc of a tube: of a circle of `ring_radius` [m], `angle` [rad] of it, the
+    /// tube with `radius` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the circle's radius is not positive, the tube's negative, or the angle not
+    /// in (0, 2π].
+    pub(in crate::kernel) fn of_tube(
+        ring_radius: f64,
+        angle: f64,
+        radius: f64,
+    ) -> Result<Self, ShapeError> {
+        positive("ring_radius", ring_radius, Unit::Metre)?;
+        not_negative("radius", radius, Unit::Metre)?;
+        if !(angle > 0.0 && angle <= std::f64::consts::TAU) {
+            let rule = "in (0, 2π], a full turn at most";
+            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
+        }
+        Ok(Self::to_angle(ring_radius, 0.5 * angle))
     }
 
     /// The part of a circle of `radius` that is above `height` [m], which is between

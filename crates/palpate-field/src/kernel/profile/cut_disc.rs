@@ -30,6 +30,11 @@ impl CutDisc {
         Self { radius, height, half_width: half_chord(radius, height) }
     }
 
+    /// Half the straight edge [m].
+    pub(in crate::kernel) fn half_width(&self) -> f64 {
+        self.half_width
+    }
+
     /// The signed distance.
     #[inline(always)]
     pub(in crate::kernel) fn distance<S: Scalar>(&self, p: [S; 2]) -> S {

@@ -112,13 +112,8 @@ impl CappedTorus {
     /// If the circle's radius is not positive, the tube's negative, or the angle not
     /// in (0, 2π].
     pub fn new(ring_radius: f64, radius: f64, angle: f64) -> Result<Self, ShapeError> {
-        positive("ring_radius", ring_radius, Unit::Metre)?;
-        not_negative("radius", radius, Unit::Metre)?;
-        if !(angle > 0.0 && angle <= std::f64::consts::TAU) {
-            let rule = "in (0, 2π], a full turn at most";
-            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
-        }
-        Ok(Self { ring_radius, radius, half: Curve::to_angle(ring_radius, 0.5 * angle) })
+        let half = Curve::of_tube(ring_radius, angle, radius)?;
+        Ok(Self { ring_radius, radius, half })
     }
 }
 
