@@ -61,8 +61,7 @@ impl<const D: usize> Aabb<D> {
         let centre = pose.transform_point(self.centre());
         let half = self.half_extents();
         let matrix = pose.rotation.matrix();
-        let reach =
-            Vector(std::array::from_fn(|i| (0..D).map(|k| matrix[i][k].abs() * half[k]).sum()));
+        let reach = Vector(std::array::from_fn(|i| Vector(matrix[i]).abs().dot(half)));
         Self { min: centre - reach, max: centre + reach }.rounded_outwards()
     }
 

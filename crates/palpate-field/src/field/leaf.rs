@@ -52,8 +52,8 @@ impl<const D: usize> Placement<D> {
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
         let t = &self.world_from_body.translation;
         let single = &self.single;
-        let q = p - Vector(array!(i < D => S::stored(t[i], single.translation[i])));
-        Vector(array!(i < D => S::stored_sum(q.0, &self.columns[i], &single.columns[i])))
+        let q = array!(i < D => p.0[i].minus_stored(t[i], single.translation[i]));
+        Vector(array!(i < D => S::stored_sum(q, &self.columns[i], &single.columns[i])))
     }
 
     /// `R·v`: a gradient in the body's frame, back in the world's.

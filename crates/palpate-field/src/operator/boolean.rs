@@ -56,15 +56,21 @@ impl Combine for InOne {
 
 /// What every operator on two fields has in common; quality is left as of `a`.
 pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
-    Promise {
-        lipschitz: a.lipschitz.max(b.lipschitz),
-        region: common_region(a.region, b.region),
-        convex: false,
-        symmetric: std::array::from_fn(|i| a.symmetric[i] && b.symmetric[i]),
-        reach: a.reach.max(b.reach),
-        rounding: a.rounding.or(&b.rounding),
-        ..*a
+    let mut both = *a;
+    join(&mut both, b);
+    both
+}
+
+/// As [`joined`], in place: a union of many copies no promise.
+fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
+    a.lipschitz = a.lipschitz.max(b.lipschitz);
+    a.region = common_region(a.region, b.region);
+    a.convex = false;
+    for (a, b) in a.symmetric.iter_mut().zip(b.symmetric) {
+        *a &= b;
     }
+    a.reach = a.reach.max(b.reach);
+    a.rounding = a.rounding.or(&b.rounding);
 }
 
 /// A ball in which both Lipschitz constants hold.
@@ -85,18 +91,29 @@ fn both_bounds<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Option<Bounds<
 
 /// Exact outside if both are, a bound inside.
 pub(crate) fn promise_of_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
-    Promise { bounds: both_bounds(a, b), ..unbounded_union(a, b) }
+    let mut union = Promise { bounds: both_bounds(a, b), ..*a };
+    unite(&mut union, b);
+    union
 }
 
-/// The same, with bounds left as of `a`.
-fn unbounded_union<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
-    Promise {
-        outside: a.outside.and(b.outside),
-        inside: a.inside.and(b.inside).bounded(),
-        above_bounds: a.above_bounds && b.above_bounds,
-        has_interior: a.has_interior || b.has_interior,
-        ..joined(a, b)
+/// The same in place, with bounds left as of `a`.
+fn unite<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
+    join(a, b);
+    a.outside = a.outside.and(b.outside);
+    a.inside = a.inside.and(b.inside).bounded();
+    a.above_bounds &= b.above_bounds;
+    a.has_interior |= b.has_interior;
+}
+
+/// The promise of the union of `members`; `None` if there are none.
+fn promise_of_members<const D: usize>(members: &[Shape<D>]) -> Option<Promise<D>> {
+    let (first, rest) = members.split_first()?;
+    let bounds = Bounds::union_of(members.iter().map(|member| member.promise().bounds));
+    let mut promise = Promise { bounds, ..*first.promise() };
+    for member in rest {
+        unite(&mut promise, member.promise());
     }
+    Some(promise)
 }
 
 /// A bound outside, exact inside if both are. The value is at least that of
@@ -188,10 +205,7 @@ impl<const D: usize> Shape<D> {
         if members.len() == 1 {
             return Ok(members.swap_remove(0));
         }
-        let promise =
-            fold_promises(&members, unbounded_union).ok_or_else(|| nothing_in("union"))?;
-        let bounds = Bounds::union_of(members.iter().map(|member| member.promise().bounds));
-        let promise = Promise { bounds, ..promise };
+        let promise = promise_of_members(&members).ok_or_else(|| nothing_in("union"))?;
         let depth = Self::deepest(&members) + 1;
         Self::from_operator(Union::new(members, promise), depth)
     }

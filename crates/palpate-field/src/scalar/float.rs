@@ -42,8 +42,8 @@ macro_rules! float {
             }
 
             #[inline(always)]
-            fn stored($double: f64, $single: f32) -> Self {
-                $stored
+            fn minus_stored(self, $double: f64, $single: f32) -> Self {
+                self - $stored
             }
 
             #[inline(always)]

@@ -64,11 +64,11 @@ pub trait Scalar:
         sum
     }
 
-    /// The number `double`, or `single` where that is what `Self` holds: constants
+    /// `self` less `double`, or less `single` where that is what `Self` holds: constants
     /// kept in both precisions spare a conversion in every evaluation.
     #[inline(always)]
-    fn stored(double: f64, _single: f32) -> Self {
-        Self::constant(double)
+    fn minus_stored(self, double: f64, _single: f32) -> Self {
+        self - Self::constant(double)
     }
 
     /// As [`weighted_sum`](Self::weighted_sum), with weights kept in both

@@ -181,12 +181,27 @@ impl Model {
             + f64::abs(self.gradient[2] - other.gradient[2])
     }
 
-    /// Widens both remainders by `units` roundings of the largest value over the
-    /// cell and of everything in `extra`.
+    /// The largest of the numbers over the cell, remainders included.
     #[inline(always)]
-    fn rounded(self, units: f64, extra: f64) -> Self {
-        let size = f64::abs(self.value) + self.slope() + (self.lower + self.upper) + extra;
-        let error = units * UNIT * size;
+    fn size(&self) -> f64 {
+        f64::abs(self.value) + self.slope() + (self.lower + self.upper)
+    }
+
+    /// Widens both remainders by `units` roundings of the largest value over the cell.
+    #[inline(always)]
+    fn rounded(self, units: f64) -> Self {
+        self.widened(units * UNIT * self.size())
+    }
+
+    /// As [`rounded`](Self::rounded), of the largest value and `more` on top of it.
+    #[inline(always)]
+    fn rounded_with(self, units: f64, more: f64) -> Self {
+        self.widened(units * UNIT * (self.size() + more))
+    }
+
+    /// Widens both remainders by `error`.
+    #[inline(always)]
+    fn widened(self, error: f64) -> Self {
         Self { lower: self.lower + error, upper: self.upper + error, ..self }
     }
 
@@ -202,7 +217,7 @@ impl Model {
             lower: size * choose(up, self.lower, self.upper) + below,
             upper: size * choose(up, self.upper, self.lower) + above,
         }
-        .rounded(8.0, 0.0)
+        .rounded(8.0)
     }
 
     #[inline(always)]
@@ -273,7 +288,7 @@ impl Add for Model {
             lower: self.lower + other.lower,
             upper: self.upper + other.upper,
         }
-        .rounded(2.0, 0.0)
+        .rounded(2.0)
     }
 }
 
@@ -322,7 +337,7 @@ impl Mul for Model {
                 + size_b * choose(up_b, a.upper, a.lower)
                 + mixed,
         }
-        .rounded(8.0, size_a * b.slope() + size_b * a.slope())
+        .rounded_with(8.0, size_a * b.slope() + size_b * a.slope())
     }
 }
 
@@ -354,24 +369,41 @@ impl Scalar for Model {
             lower: size * choose(up, self.lower, self.upper),
             upper: size * choose(up, self.upper, self.lower),
         }
-        .rounded(2.0, 0.0)
+        .rounded(2.0)
     }
 
-    /// One remainder for the roundings of the whole sum.
+    /// Only the value is rounded.
+    #[inline(always)]
+    fn minus_stored(self, double: f64, _single: f32) -> Self {
+        let value = self.value - double;
+        Self { value, ..self }.widened(2.0 * UNIT * f64::abs(value))
+    }
+
+    /// One remainder for the roundings of the whole sum: what is rounded is at most the
+    /// sum of the absolute terms.
     #[inline(always)]
     fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
-        let mut sum = Self::constant(0.0);
-        let mut size = 0.0;
-        unrolled!(i < N => {
+        let term = |i: usize| {
             let weight = f64::abs(weights[i]);
             let up = weights[i] > 0.0;
-            sum.value += weights[i] * x[i].value;
-            unrolled!(k < 3 => sum.gradient[k] += weights[i] * x[i].gradient[k]);
-            sum.lower += weight * choose(up, x[i].lower, x[i].upper);
-            sum.upper += weight * choose(up, x[i].upper, x[i].lower);
-            size += weight * (f64::abs(x[i].value) + x[i].slope());
-        });
-        sum.rounded(N as f64 + 2.0, size)
+            let term = Self {
+                value: weights[i] * x[i].value,
+                gradient: array!(k < 3 => weights[i] * x[i].gradient[k]),
+                lower: weight * choose(up, x[i].lower, x[i].upper),
+                upper: weight * choose(up, x[i].upper, x[i].lower),
+            };
+            (term, weight * (f64::abs(x[i].value) + x[i].slope()))
+        };
+        let (mut sum, mut size) = term(0);
+        for i in 1..N {
+            let (term, its_size) = term(i);
+            sum.value += term.value;
+            unrolled!(k < 3 => sum.gradient[k] += term.gradient[k]);
+            sum.lower += term.lower;
+            sum.upper += term.upper;
+            size += its_size;
+        }
+        sum.widened((N as f64 + 2.0) * UNIT * (size + (sum.lower + sum.upper)))
     }
 
     #[inline(always)]
@@ -441,7 +473,7 @@ impl Scalar for Model {
             upper: near.upper.max_of((between + far.upper) * INFLATE + apart),
             ..near
         }
-        .rounded(2.0, f64::abs(far.value));
+        .rounded_with(2.0, f64::abs(far.value));
         Self::choose(always, if_less, Self::choose(never, otherwise, either))
     }
 
@@ -449,7 +481,8 @@ impl Scalar for Model {
     fn sin(self) -> Self {
         let deviation = self.deviation();
         let curved = 0.5 * deviation * deviation;
-        self.chain(self.value.sin(), Scalar::cos(self.value), curved, curved).rounded(1.0, 8.0)
+        self.chain(self.value.sin(), Scalar::cos(self.value), curved, curved)
+            .rounded_with(1.0, 8.0)
     }
 
     #[inline(always)]
@@ -457,7 +490,7 @@ impl Scalar for Model {
         let deviation = self.deviation();
         let curved = 0.5 * deviation * deviation;
         self.chain(Scalar::cos(self.value), -Scalar::sin(self.value), curved, curved)
-            .rounded(1.0, 8.0)
+            .rounded_with(1.0, 8.0)
     }
 
     /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
@@ -465,8 +498,9 @@ impl Scalar for Model {
     fn norm<const N: usize>(x: [Self; N]) -> Self {
         let n = <f64 as Scalar>::norm(array!(i < N => x[i].value));
         let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
+        let d = Self::radius(&x);
         let mut gradient = [0.0; 3];
-        let (mut lower, mut upper, mut deviations) = (0.0, 0.0, 0.0);
+        let (mut lower, mut upper) = (0.0, 0.0);
         unrolled!(i < N => {
             let unit = x[i].value * inverse;
             let size = f64::abs(unit);
@@ -474,10 +508,7 @@ impl Scalar for Model {
             unrolled!(k < 3 => gradient[k] += unit * x[i].gradient[k]);
             lower += size * choose(positive, x[i].lower, x[i].upper);
             upper += size * choose(positive, x[i].upper, x[i].lower);
-            let deviation = x[i].deviation();
-            deviations += deviation * deviation;
         });
-        let d = deviations.sqrt() * INFLATE;
         let error = 8.0 * UNIT * (n + d);
         Self { value: n, gradient, lower: lower + error, upper: upper + excess(n, d) + error }
     }
@@ -488,7 +519,7 @@ impl Scalar for Model {
     #[inline(always)]
     fn orthant<const N: usize>(q: [Self; N]) -> Self {
         let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
-        let (mut sum, mut deviations) = (0.0, 0.0);
+        let mut sum = 0.0;
         unrolled!(i < N => {
             let value = q[i].value;
             if i > 0 {
@@ -497,11 +528,9 @@ impl Scalar for Model {
             }
             let positive = value.max_of(0.0);
             sum += positive * positive;
-            let deviation = q[i].deviation();
-            deviations += deviation * deviation;
         });
         let n = sum.sqrt();
-        let d = deviations.sqrt() * INFLATE;
+        let d = Self::radius(&q);
         let outside = n > 0.0;
         let inverse = 1.0 / choose(outside, n, 1.0);
         let mut free = 1.0;
@@ -571,7 +600,7 @@ impl Scalar for Model {
             upper: weight * self.upper + rest * other.upper,
         }
         // The operands and the fill, whose argument is rounded, may cancel in the value.
-        .rounded(
+        .rounded_with(
             8.0,
             spread + f64::abs(self.value) + f64::abs(other.value) + 2.0 * larger * unit,
         )
