@@ -97,9 +97,9 @@ pub(crate) fn pose(
 
 /// Builds the union of `members`.
 pub(crate) fn build(members: &[Placed]) -> Result<Shape<3>, Box<dyn Error>> {
-    let shapes: Result<Vec<_>, _> = members
-        .iter()
-        .map(|member| member.entry.build(&member.arguments)?.placed(&member.pose))
-        .collect();
-    Ok(Shape::union(shapes?)?)
+    let mut shapes = Vec::with_capacity(members.len());
+    for member in members {
+        shapes.push(member.entry.build(&member.arguments)?.placed(&member.pose)?);
+    }
+    Ok(Shape::union(shapes)?)
 }

@@ -4,7 +4,7 @@
 //! Boxes and balls that bound a shape.
 
 use crate::pose::Pose;
-use crate::vector::{Point, Vector};
+use crate::vector::{Point, Vector, array};
 
 /// A box along the axes, `min ≤ p ≤ max` in each coordinate [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,21 +30,21 @@ impl<const D: usize> Aabb<D> {
     /// The centre of the box [m].
     #[must_use]
     pub fn centre(&self) -> Point<D> {
-        Vector(std::array::from_fn(|i| 0.5 * (self.min[i] + self.max[i])))
+        Vector(array!(i < D => 0.5 * (self.min[i] + self.max[i])))
     }
 
     /// Half the edge lengths [m].
     #[must_use]
     pub fn half_extents(&self) -> Vector<f64, D> {
-        Vector(std::array::from_fn(|i| 0.5 * (self.max[i] - self.min[i])))
+        Vector(array!(i < D => 0.5 * (self.max[i] - self.min[i])))
     }
 
     /// The smallest box that holds both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
-            min: Vector(std::array::from_fn(|i| self.min[i].min(other.min[i]))),
-            max: Vector(std::array::from_fn(|i| self.max[i].max(other.max[i]))),
+            min: Vector(array!(i < D => self.min[i].min(other.min[i]))),
+            max: Vector(array!(i < D => self.max[i].max(other.max[i]))),
         }
     }
 
@@ -61,7 +61,7 @@ impl<const D: usize> Aabb<D> {
         let centre = pose.transform_point(self.centre());
         let half = self.half_extents();
         let matrix = pose.rotation.matrix();
-        let reach = Vector(std::array::from_fn(|i| Vector(matrix[i]).abs().dot(half)));
+        let reach = Vector(array!(i < D => Vector(matrix[i]).abs().dot(half)));
         Self { min: centre - reach, max: centre + reach }.rounded_outwards()
     }
 
@@ -183,7 +183,7 @@ impl<const D: usize> Bounds<D> {
     /// Bounds after scaling axis `i` by `factors[i]`, all positive.
     #[must_use]
     pub fn scaled(&self, factors: [f64; D]) -> Self {
-        let scale = |p: Point<D>| Vector(std::array::from_fn(|i| p[i] * factors[i]));
+        let scale = |p: Point<D>| Vector(array!(i < D => p[i] * factors[i]));
         let largest = factors.iter().fold(0.0_f64, |m, f| m.max(*f));
         let aabb = Aabb { min: scale(self.aabb.min), max: scale(self.aabb.max) };
         let ball = BoundingBall {

@@ -9,7 +9,7 @@
 use std::ops::Mul;
 
 use crate::error::{ShapeError, Unit};
-use crate::vector::{Point, Vector};
+use crate::vector::{Point, Vector, array};
 
 /// How far the columns of a matrix may be from orthonormal to be taken as a
 /// rotation: what remains of numbers written with seven digits.
@@ -67,14 +67,18 @@ impl<const D: usize> Rotation<D> {
     /// The rotation that undoes this one.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        Self { matrix: std::array::from_fn(|i| std::array::from_fn(|k| self.matrix[k][i])) }
+        let mut matrix = self.matrix;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            *row = array!(k < D => self.matrix[k][i]);
+        }
+        Self { matrix }
     }
 
     /// Applies the rotation.
     #[inline]
     #[must_use]
     pub fn rotate(&self, v: Vector<f64, D>) -> Vector<f64, D> {
-        Vector(std::array::from_fn(|i| Vector(self.matrix[i]).dot(v)))
+        Vector(array!(i < D => Vector(self.matrix[i]).dot(v)))
     }
 }
 

@@ -33,6 +33,14 @@ struct Single<const D: usize> {
     rows: [[f32; D]; D],
 }
 
+fn in_single<const D: usize>(matrix: &[[f64; D]; D]) -> [[f32; D]; D] {
+    let mut single = [[0.0; D]; D];
+    for (single, row) in single.iter_mut().zip(matrix) {
+        *single = array!(i < D => row[i] as f32);
+    }
+    single
+}
+
 impl<const D: usize> Placement<D> {
     /// The change of coordinates to a body at `world_from_body`.
     #[must_use]
@@ -40,9 +48,9 @@ impl<const D: usize> Placement<D> {
         let columns = *world_from_body.rotation.inverse().matrix();
         let rows = world_from_body.rotation.matrix();
         let single = Single {
-            translation: world_from_body.translation.0.map(|x| x as f32),
-            columns: columns.map(|column| column.map(|x| x as f32)),
-            rows: rows.map(|row| row.map(|x| x as f32)),
+            translation: array!(i < D => world_from_body.translation[i] as f32),
+            columns: in_single(&columns),
+            rows: in_single(rows),
         };
         Self { world_from_body, columns, single }
     }
