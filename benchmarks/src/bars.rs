@@ -25,6 +25,12 @@ const BARS: &[(&str, f64)] = &[
     ("S4.distance_gradient.1024.f64_over_f32", 2.8),
     ("S4.build.scene.ns", 10_000.0),
     ("S3.model.64.ns", 60.0),
+    ("thousand.distance.point.ns", 1000.0),
+    ("thousand.distance.clustered.ns", 15.0),
+    ("S2_twisted.distance.1024.over_child", 4.0),
+    ("S3_twisted.distance.1024.over_child", 4.0),
+    ("S2_displaced.distance.1024.over_child", 4.0),
+    ("S3_displaced.distance.1024.over_child", 4.0),
 ];
 
 /// Prints all rows and how they stand against their bars, or the rows as JSON.

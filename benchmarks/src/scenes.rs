@@ -13,6 +13,7 @@ const S1: &str = include_str!("../../scenes/s1.json");
 const S2: &str = include_str!("../../scenes/s2.json");
 const S3: &str = include_str!("../../scenes/s3.json");
 const S4: &str = include_str!("../../scenes/s4.json");
+const THOUSAND: &str = include_str!("../../scenes/thousand.json");
 const WRENCH: &str = include_str!("../../scenes/wrench.json");
 
 /// A scene of `D` dimensions, and the cube that points are drawn from.
@@ -27,16 +28,20 @@ pub(crate) struct Work<const D: usize> {
 /// S1 to S4.
 pub(crate) fn spatial() -> Result<Vec<Work<3>>, Box<dyn Error>> {
     let scenes = [("S1", S1, 1.1), ("S2", S2, 1.1), ("S3", S3, 1.1), ("S4", S4, 2.6)];
-    scenes
-        .into_iter()
-        .map(|(name, text, half)| {
-            let scene = Scene::from_json(text)?;
-            match scene.build()? {
-                World::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
-                World::Planar(_) => Err(format!("{name} is not spatial").into()),
-            }
-        })
-        .collect()
+    scenes.into_iter().map(|(name, text, half)| in_space(name, text, half)).collect()
+}
+
+/// The union of a thousand placed primitives.
+pub(crate) fn thousand() -> Result<Work<3>, Box<dyn Error>> {
+    in_space("thousand", THOUSAND, 0.6)
+}
+
+fn in_space(name: &'static str, text: &str, half: f64) -> Result<Work<3>, Box<dyn Error>> {
+    let scene = Scene::from_json(text)?;
+    match scene.build()? {
+        World::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        World::Planar(_) => Err(format!("{name} is not spatial").into()),
+    }
 }
 
 /// The wrench.

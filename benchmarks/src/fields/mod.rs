@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Fields beside fidget and parry: distances and gradients of S1 to S4 and of a 2D
-//! scene.
+//! scene; operators beside their children.
 
+mod operators;
 mod ours;
 mod points;
 mod theirs;
@@ -28,10 +29,15 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     for work in scenes::spatial()? {
         eprintln!("measuring {} …", work.name);
         measure_work(&work, &mut rows)?;
+        if ["S2", "S3"].contains(&work.name) {
+            operators::beside_child(&work, &mut rows)?;
+        }
     }
     let wrench = scenes::planar()?;
     eprintln!("measuring {} …", wrench.name);
     measure_work(&wrench, &mut rows)?;
+    eprintln!("measuring a thousand …");
+    operators::thousand(&mut rows)?;
     measure_build(&mut rows)?;
     derive_ratios(&mut rows);
     Ok(rows)

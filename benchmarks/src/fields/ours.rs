@@ -121,7 +121,8 @@ fn waiting<T: Float, const D: usize>(p: Vector<T, D>, last: T) -> Vector<T, D> {
     p
 }
 
-fn blocks<'a, T, const D: usize, const W: usize>(
+/// Adds a slice of points, in blocks of `W`.
+pub(super) fn blocks<'a, T, const D: usize, const W: usize>(
     work: &str,
     (suffix, case): (&str, &str),
     (shape, points): (&'a Shape<D>, &[Vector<f32, D>]),

@@ -11,6 +11,7 @@
 mod combine;
 mod custom;
 mod leaf;
+mod nearby;
 mod remap;
 mod union;
 mod warp;

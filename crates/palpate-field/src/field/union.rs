@@ -9,20 +9,15 @@
 use std::sync::Arc;
 
 use super::combine::{GradientFold, ValueFold, placed_children};
+use super::nearby::Nearby;
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
-use crate::machine::{BLOCK, Block, Column, Gradients, Job, Lane, run};
+use crate::machine::{Block, Column, Gradients, Lane};
 use crate::operator::boolean::Smaller;
 use crate::pose::Pose;
-use crate::promise::{Promise, Quality};
+use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
 use crate::vector::{Point, Vector};
-
-/// Below this many members, asking all is faster than choosing.
-const WORTH_CHOOSING: usize = 6;
-
-/// Members looked at together.
-const GROUP: usize = BLOCK;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits
 /// of single precision: every member is asked.
@@ -32,25 +27,11 @@ const FAR: f64 = 1e15;
 #[derive(Debug)]
 pub(crate) struct Union<const D: usize> {
     members: Vec<Shape<D>>,
-    /// Empty where choosing is not worth it.
-    groups: Vec<Group<D>>,
+    /// None where asking all is faster than choosing.
+    nearby: Option<Nearby<D>>,
     slack: Slack,
     promise: Promise<D>,
 }
-
-/// The balls around up to [`GROUP`] members.
-///
-/// Single precision is enough: what it rounds is part of the [`Slack`].
-#[derive(Debug)]
-struct Group<const D: usize> {
-    centres: Block<f32, D, GROUP>,
-    /// Infinite for a member that may not be skipped; minus infinity past the
-    /// last member.
-    radii: Column<f32, GROUP>,
-}
-
-/// How far each member of a group is from a query at least.
-type Gaps = Column<f32, GROUP>;
 
 /// How much smaller than its ball's distance a member's value may come out: the
 /// rounding of the balls, and of the members themselves in single precision.
@@ -67,79 +48,10 @@ struct Query<const D: usize> {
     radius: f64,
 }
 
-impl<const D: usize> Group<D> {
-    fn new(members: &[Shape<D>]) -> Self {
-        let mut group = Self { centres: Block::zero(), radii: Column::zero() };
-        for i in 0..GROUP {
-            let (centre, radius) = match members.get(i).map(Shape::promise) {
-                None => (Vector::ZERO, f64::NEG_INFINITY),
-                Some(promise) => match promise.bounds {
-                    Some(bounds) if may_be_skipped(promise) => {
-                        (bounds.ball.centre, bounds.ball.radius)
-                    }
-                    _ => (Vector::ZERO, f64::INFINITY),
-                },
-            };
-            group.centres.set(i, Vector::of(&centre.0));
-            group.radii.set(i, radius as f32);
-        }
-        group
-    }
-}
-
-/// `true` if the values are nowhere below the signed distance to the ball.
-fn may_be_skipped<const D: usize>(promise: &Promise<D>) -> bool {
-    promise.above_bounds && promise.inside != Quality::Lipschitz
-}
-
-/// The distance of a point from balls.
-struct ToBalls<const D: usize>(Vector<f32, D>);
-
-impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
-    #[inline(always)]
-    fn lane(&self, centre: Vector<f32, D>, radius: f32) -> f32 {
-        (centre - self.0).norm() - radius
-    }
-}
-
-/// Gaps looked at together: a cache line of them.
-const LINE: usize = 16;
-
-/// The smallest gap of a line, halving it without a branch.
-#[inline(always)]
-fn smallest_of(line: &[f32; LINE]) -> f32 {
-    let mut least = *line;
-    let mut width = LINE / 2;
-    while width > 0 {
-        for i in 0..width {
-            least[i] = Scalar::min(least[i], least[i + width]);
-        }
-        width /= 2;
-    }
-    least[0]
-}
-
-/// The gaps of a line that are at most `limit`, one bit each.
-#[inline(always)]
-fn at_most(line: &[f32; LINE], limit: f32) -> u32 {
-    let mut bits = 0;
-    for (i, gap) in line.iter().enumerate() {
-        bits |= u32::from(*gap <= limit) << i;
-    }
-    bits
-}
-
-/// A word with its lowest `count` bits set, all of a line at most.
-#[inline(always)]
-fn first_bits(count: usize) -> u32 {
-    if count >= LINE { (1 << LINE) - 1 } else { (1 << count) - 1 }
-}
-
 impl<const D: usize> Union<D> {
     pub(crate) fn new(members: Vec<Shape<D>>, promise: Promise<D>) -> Self {
-        let choosing = members.len() >= WORTH_CHOOSING;
-        let groups: Vec<_> =
-            if choosing { members.chunks(GROUP).map(Group::new).collect() } else { Vec::new() };
+        let mut members = members;
+        let nearby = Nearby::new(&mut members);
         let extent = members
             .iter()
             .filter_map(|m| m.promise().bounds)
@@ -152,12 +64,12 @@ impl<const D: usize> Union<D> {
             constant: rounding.constant + balls * extent,
             per_metre: rounding.per_metre + balls,
         };
-        Self { members, groups, slack, promise }
+        Self { members, nearby, slack, promise }
     }
 
     /// How many members a block is likely to need.
     fn expected(&self) -> usize {
-        if self.groups.is_empty() { self.members.len() } else { 1 }
+        if self.nearby.is_none() { self.members.len() } else { 1 }
     }
 
     /// Calls `near` with every member that may be the smallest somewhere in the
@@ -168,49 +80,18 @@ impl<const D: usize> Union<D> {
     #[inline(always)]
     fn for_each_near(
         &self,
+        nearby: &Nearby<D>,
         query: Query<D>,
-        mut value: impl FnMut(usize) -> f64,
-        mut near: impl FnMut(usize) -> f64,
+        value: impl FnMut(usize) -> f64,
+        near: impl FnMut(usize) -> f64,
     ) {
-        let centre = Vector::<f32, D>::of(&query.centre.0);
         let from_origin = query.centre.norm() + query.radius;
         let slack = if from_origin < FAR {
             self.slack.constant + self.slack.per_metre * from_origin + query.radius
         } else {
             f64::INFINITY
         };
-        let mut gaps = Gaps::scratch();
-        let mut bound = f64::INFINITY;
-        for (g, group) in self.groups.iter().enumerate() {
-            run(&ToBalls(centre), &group.centres, &group.radii, GROUP, &mut gaps);
-            let (lines, _) = gaps.as_slice().as_chunks::<LINE>();
-            // The member whose ball is nearest gives the first bound.
-            let mut nearest = (0, f32::INFINITY);
-            for (k, line) in lines.iter().enumerate() {
-                let gap = smallest_of(line);
-                nearest = if gap < nearest.1 { (k, gap) } else { nearest };
-            }
-            let (k, gap) = nearest;
-            if f64::from(gap) <= bound + slack {
-                let first = at_most(&lines[k], gap).trailing_zeros() as usize;
-                bound = bound.min(value(g * GROUP + k * LINE + first));
-            }
-            for (k, line) in lines.iter().enumerate() {
-                // The lanes past the last member are infinitely far, but so may the
-                // limit be.
-                let members =
-                    self.members.len() - (g * GROUP + k * LINE).min(self.members.len());
-                let mut bits = at_most(line, (bound + slack) as f32) & first_bits(members);
-                while bits != 0 {
-                    let i = bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    // The bound may have fallen since the bits were found.
-                    if f64::from(line[i]) <= bound + slack {
-                        bound = bound.min(near(g * GROUP + k * LINE + i));
-                    }
-                }
-            }
-        }
+        nearby.for_each(Vector::of(&query.centre.0), slack, value, near);
     }
 
     /// The smallest value at a point, and which member has it.
@@ -220,7 +101,7 @@ impl<const D: usize> Union<D> {
         dyn Field<D>: EvaluatePoint<T, D>,
     {
         let ask = |i: usize| self.members[i].field().distance(x, y, z);
-        if self.groups.is_empty() {
+        let Some(nearby) = &self.nearby else {
             // Selects, since which of two members is nearer is hard to predict.
             let (mut smallest, mut winner) = (ask(0), 0);
             for i in 1..self.members.len() {
@@ -229,7 +110,7 @@ impl<const D: usize> Union<D> {
                 smallest = smallest.min(value);
             }
             return (smallest, winner);
-        }
+        };
         let mut best: Option<(T, usize)> = None;
         let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
         let query = Query { centre, radius: 0.0 };
@@ -239,7 +120,7 @@ impl<const D: usize> Union<D> {
             first.set((i, value));
             value.to_f64()
         };
-        self.for_each_near(query, bound, |i| {
+        self.for_each_near(nearby, query, bound, |i| {
             let known = first.get();
             let value = if known.0 == i { known.1 } else { ask(i) };
             if best.is_none_or(|(smallest, _)| value < smallest) {
@@ -272,12 +153,13 @@ impl<const D: usize> Union<D> {
         count: usize,
         mut near: impl FnMut(&Shape<D>),
     ) {
-        if self.groups.is_empty() {
+        let Some(nearby) = &self.nearby else {
             self.members.iter().for_each(near);
             return;
-        }
+        };
         let query = Self::ball_around(p, count);
         self.for_each_near(
+            nearby,
             query,
             |i| {
                 let member = &self.members[i];

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Operators beside their children, and the union of a thousand.
+
+use std::error::Error;
+
+use palpate::field::kernel::Ball;
+use palpate::field::operator::Copies;
+use palpate::field::{BLOCK, Shape, ShapeError, Vector};
+
+use super::Rows;
+use super::ours::{Ours, blocks};
+use super::points::{Points, SINGLE};
+use crate::rounds::{self, Subject};
+use crate::scenes::{self, Work};
+
+/// How fast a twisted shape turns [rad/m].
+const RATE: f64 = 1.0;
+
+/// How far a displaced surface moves at most [m].
+const HEIGHT: f64 = 0.02;
+
+/// Adds the rows of a thousand placed primitives, asked in every way.
+pub(super) fn thousand(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    let work = scenes::thousand()?;
+    let points = Points::new(work.half);
+    let mut subjects = Vec::new();
+    points.ours(work.name, &work.shape, &mut subjects);
+    for (key, time) in rounds::measure(&mut subjects) {
+        rows.insert(format!("{key}.ns"), time);
+    }
+    Ok(())
+}
+
+/// Adds the rows of a work twisted and displaced, and how they compare with the work
+/// itself.
+pub(super) fn beside_child(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    let child = &work.shape;
+    let shapes = [
+        ("child", child.clone()),
+        ("twisted", child.clone().twisted(RATE)?),
+        ("displaced", child.clone().displaced(bumps()?, HEIGHT)?),
+    ];
+    let points = Points::<3>::new(work.half);
+    let scattered = &points.scattered[..SINGLE];
+    let mut subjects: Vec<Subject<'_>> = Vec::new();
+    for (name, shape) in &shapes {
+        let name = format!("{}_{name}", work.name);
+        blocks::<f32, 3, BLOCK>(&name, ("", "1024"), (shape, scattered), &mut subjects);
+        blocks::<f64, 3, BLOCK>(&name, ("_f64", "1024"), (shape, scattered), &mut subjects);
+    }
+    let times = rounds::measure(&mut subjects);
+    let (of_child, of_others) = times.split_at(times.len() / shapes.len());
+    for (k, (key, time)) in of_others.iter().enumerate() {
+        let (_, child) = of_child[k % of_child.len()];
+        rows.insert(format!("{key}.ns"), *time);
+        rows.insert(format!("{key}.over_child"), time / child);
+    }
+    Ok(())
+}
+
+/// Bumps all over space, in a raster along the axes.
+fn bumps() -> Result<Shape<3>, ShapeError> {
+    Shape::from_kernel(Ball::new(0.05)?).repeated([Copies::Endless { spacing: 0.2 }; 3])
+}

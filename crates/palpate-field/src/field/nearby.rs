@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Which members of a union are near: the balls around them, in lines of members that
+//! are close together, and the balls around the lines.
+//!
+//! Single precision is enough: what it rounds is part of the slack that the union
+//! gives.
+
+use crate::bounds::{Aabb, BoundingBall};
+use crate::machine::{BLOCK, Block, Column, Job, run};
+use crate::promise::Quality;
+use crate::scalar::Scalar;
+use crate::shape::Shape;
+use crate::vector::Vector;
+
+/// Below this many members, asking all is faster than choosing.
+const WORTH_CHOOSING: usize = 6;
+
+/// Gaps looked at together: a cache line of them.
+const LINE: usize = 16;
+
+/// What is looked through to find the members near a place.
+#[derive(Debug)]
+pub(super) enum Nearby<const D: usize> {
+    /// The balls of up to [`BLOCK`] members.
+    Flat(Box<Balls<D, BLOCK>>),
+    /// The balls of many members, and those around each line of them.
+    Lines { around: Vec<Balls<D, BLOCK>>, lines: Vec<Balls<D, LINE>> },
+}
+
+/// Up to `W` balls.
+#[derive(Debug)]
+pub(super) struct Balls<const D: usize, const W: usize> {
+    centres: Block<f32, D, W>,
+    /// Minus infinity past the last ball.
+    radii: Column<f32, W>,
+    count: usize,
+}
+
+impl<const D: usize, const W: usize> Balls<D, W> {
+    fn new(balls: impl ExactSizeIterator<Item = BoundingBall<D>>) -> Self {
+        let count = balls.len();
+        let mut all = Self { centres: Block::zero(), radii: Column::zero(), count };
+        for i in count..W {
+            all.radii.set(i, f32::NEG_INFINITY);
+        }
+        for (i, BoundingBall { centre, radius }) in balls.enumerate() {
+            all.centres.set(i, Vector::of(&centre.0));
+            all.radii.set(i, radius as f32);
+        }
+        all
+    }
+
+    /// How far each ball is from a place; infinite past the last.
+    #[inline(always)]
+    fn gaps(&self, from: Vector<f32, D>) -> Column<f32, W> {
+        let mut gaps = Column::scratch();
+        run(&ToBalls(from), &self.centres, &self.radii, W, &mut gaps);
+        gaps
+    }
+}
+
+/// The distance of a point from balls.
+struct ToBalls<const D: usize>(Vector<f32, D>);
+
+impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
+    #[inline(always)]
+    fn lane(&self, centre: Vector<f32, D>, radius: f32) -> f32 {
+        (centre - self.0).norm() - radius
+    }
+}
+
+/// The ball that a member's values are nowhere below the signed distance to; of
+/// infinite radius if it has none, so that it is always near.
+fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
+    let promise = member.promise();
+    let skippable = promise.above_bounds && promise.inside != Quality::Lipschitz;
+    match promise.bounds {
+        Some(bounds) if skippable => bounds.ball,
+        _ => BoundingBall { centre: Vector::ZERO, radius: f64::INFINITY },
+    }
+}
+
+/// A ball around the balls of a line, about the centre of their box.
+fn ball_around<const D: usize>(line: &[Shape<D>]) -> BoundingBall<D> {
+    let boxes = line.iter().map(|member| {
+        let BoundingBall { centre, radius } = ball_of(member);
+        Aabb { min: centre, max: centre }.grown(radius)
+    });
+    let Some(whole) = boxes.reduce(|a, b| a.union(&b)) else {
+        return BoundingBall { centre: Vector::ZERO, radius: f64::NEG_INFINITY };
+    };
+    if !whole.half_extents().is_finite() {
+        return BoundingBall { centre: Vector::ZERO, radius: f64::INFINITY };
+    }
+    let centre = whole.centre();
+    let radius = line
+        .iter()
+        .map(ball_of)
+        .fold(0.0_f64, |reach, ball| reach.max((ball.centre - centre).norm() + ball.radius));
+    BoundingBall { centre, radius }
+}
+
+/// Sorts members so that each line of them is close together: halves of whole lines
+/// along the longest side of the box of their centres, again and again.
+fn gather<const D: usize>(members: &mut [Shape<D>]) {
+    if members.len() <= LINE {
+        return;
+    }
+    let centre = |member: &Shape<D>| ball_of(member).centre;
+    let Some(spread) = Aabb::around(members.iter().map(centre)) else { return };
+    let sides = spread.half_extents();
+    let longest =
+        (1..D).fold(0, |longest, i| if sides[i] > sides[longest] { i } else { longest });
+    let half = (members.len() / 2).next_multiple_of(LINE);
+    let (low, _, _) = members
+        .select_nth_unstable_by(half, |a, b| centre(a)[longest].total_cmp(&centre(b)[longest]));
+    let half = low.len();
+    let (low, high) = members.split_at_mut(half);
+    gather(low);
+    gather(high);
+}
+
+impl<const D: usize> Nearby<D> {
+    /// What finds the `members` that are near; `None` where asking all is faster.
+    ///
+    /// Where there are many, they are sorted so that neighbours come together.
+    pub(super) fn new(members: &mut [Shape<D>]) -> Option<Self> {
+        if members.len() < WORTH_CHOOSING {
+            return None;
+        }
+        if members.len() <= BLOCK {
+            return Some(Self::Flat(Box::new(Balls::new(members.iter().map(ball_of)))));
+        }
+        // Those that are always near come first, lest they make many lines so.
+        members.sort_by_key(|member| ball_of(member).radius.is_finite());
+        let endless = members.iter().take_while(|m| !ball_of(m).radius.is_finite()).count();
+        gather(&mut members[endless..]);
+        let lines: Vec<&[Shape<D>]> = members.chunks(LINE).collect();
+        let around = lines
+            .chunks(BLOCK)
+            .map(|lines| Balls::new(lines.iter().map(|line| ball_around(line))));
+        Some(Self::Lines {
+            around: around.collect(),
+            lines: lines.iter().map(|line| Balls::new(line.iter().map(ball_of))).collect(),
+        })
+    }
+
+    /// Calls `near` with the number of every member whose ball is at most as far from
+    /// a place as the smallest bound so far, and `slack` on top [m]; in their order.
+    ///
+    /// `value` gives an upper bound for a member; `near` may return a smaller one.
+    #[inline(always)]
+    pub(super) fn for_each(
+        &self,
+        from: Vector<f32, D>,
+        slack: f64,
+        mut value: impl FnMut(usize) -> f64,
+        mut near: impl FnMut(usize) -> f64,
+    ) {
+        let mut search = Search { bound: f64::INFINITY, slack };
+        match self {
+            Self::Flat(balls) => {
+                let gaps = balls.gaps(from);
+                search.lower(value(nearest(&gaps).0));
+                search.each(&gaps, balls.count, |search, i| search.lower(near(i)));
+            }
+            Self::Lines { around, lines } => {
+                for (block, around) in around.iter().enumerate() {
+                    let first = block * BLOCK;
+                    let gaps = around.gaps(from);
+                    let (line, gap) = nearest(&gaps);
+                    if search.reaches(gap) {
+                        let line = first + line;
+                        let (i, _) = nearest(&lines[line].gaps(from));
+                        search.lower(value(line * LINE + i));
+                    }
+                    search.each(&gaps, around.count, |search, line| {
+                        let line = first + line;
+                        let (balls, first) = (&lines[line], line * LINE);
+                        search.each(&balls.gaps(from), balls.count, |search, i| {
+                            search.lower(near(first + i));
+                        });
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// The smallest bound of a value so far [m].
+struct Search {
+    bound: f64,
+    slack: f64,
+}
+
+impl Search {
+    #[inline(always)]
+    fn lower(&mut self, bound: f64) {
+        self.bound = self.bound.min(bound);
+    }
+
+    #[inline(always)]
+    fn reaches(&self, gap: f32) -> bool {
+        f64::from(gap) <= self.bound + self.slack
+    }
+
+    /// Calls `visit` with each of the first `count` lanes whose gap is within reach.
+    #[inline(always)]
+    fn each<const W: usize>(
+        &mut self,
+        gaps: &Column<f32, W>,
+        count: usize,
+        mut visit: impl FnMut(&mut Self, usize),
+    ) {
+        let (lines, _) = gaps.as_slice().as_chunks::<LINE>();
+        for (k, line) in lines.iter().enumerate() {
+            // The lanes past the last ball are infinitely far, but so may the limit be.
+            let lanes = first_bits(count.saturating_sub(k * LINE));
+            let mut bits = at_most(line, (self.bound + self.slack) as f32) & lanes;
+            while bits != 0 {
+                let i = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                // The bound may have fallen since the bits were found.
+                if self.reaches(line[i]) {
+                    visit(self, k * LINE + i);
+                }
+            }
+        }
+    }
+}
+
+/// The lane with the smallest gap, and that.
+#[inline(always)]
+fn nearest<const W: usize>(gaps: &Column<f32, W>) -> (usize, f32) {
+    let (lines, _) = gaps.as_slice().as_chunks::<LINE>();
+    let mut nearest = (0, f32::INFINITY);
+    for (k, line) in lines.iter().enumerate() {
+        let gap = smallest_of(line);
+        nearest = if gap < nearest.1 { (k, gap) } else { nearest };
+    }
+    let (k, gap) = nearest;
+    (k * LINE + at_most(&lines[k], gap).trailing_zeros() as usize % LINE, gap)
+}
+
+/// The smallest gap of a line, halving it without a branch.
+#[inline(always)]
+fn smallest_of(line: &[f32; LINE]) -> f32 {
+    let mut least = *line;
+    let mut width = LINE / 2;
+    while width > 0 {
+        for i in 0..width {
+            least[i] = Scalar::min(least[i], least[i + width]);
+        }
+        width /= 2;
+    }
+    least[0]
+}
+
+/// The gaps of a line that are at most `limit`, one bit each.
+#[inline(always)]
+fn at_most(line: &[f32; LINE], limit: f32) -> u32 {
+    let mut bits = 0;
+    for (i, gap) in line.iter().enumerate() {
+        bits |= u32::from(*gap <= limit) << i;
+    }
+    bits
+}
+
+/// A word with its lowest `count` bits set, all of a line at most.
+#[inline(always)]
+fn first_bits(count: usize) -> u32 {
+    if count >= LINE { (1 << LINE) - 1 } else { (1 << count) - 1 }
+}
