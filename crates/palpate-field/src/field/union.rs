@@ -142,8 +142,19 @@ impl<const D: usize> Union<D> {
                 high[k] = Scalar::max(high[k], most);
             }
         }
+        // About the centre of their box; often much smaller than the ball around that.
         let centre = (low + high) * 0.5;
-        Query { centre, radius: (high - centre).norm() * (1.0 + 4.0 * f64::EPSILON) }
+        let mut farthest = 0.0;
+        for i in 0..count.min(W) {
+            let mut squared = 0.0;
+            for (k, x) in p.get(i).0.iter().enumerate() {
+                let (least, most) = x.range();
+                let apart = Scalar::max(most - centre[k], centre[k] - least);
+                squared += apart * apart;
+            }
+            farthest = Scalar::max(farthest, squared);
+        }
+        Query { centre, radius: farthest.sqrt() * (1.0 + 8.0 * f64::EPSILON) }
     }
 
     /// The members that matter in a block.
