@@ -7,7 +7,7 @@ use std::error::Error;
 
 use palpate::field::kernel::Ball;
 use palpate::field::operator::Copies;
-use palpate::field::{BLOCK, Shape, ShapeError, Vector};
+use palpate::field::{BLOCK, Shape, ShapeError};
 
 use super::Rows;
 use super::ours::{Ours, blocks};
