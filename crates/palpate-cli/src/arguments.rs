@@ -45,12 +45,13 @@ Examples:
 
 The points file has the header x_m,y_m,z_m (x_m,y_m in 2D).")]
     Eval(EvalOptions),
-    /// Draw the isolines of a scene on a plane, as SVG or PNG.
+    /// Draw a scene on a plane, as SVG or PNG: isolines or gradients.
     #[command(after_help = "\
 Examples:
   palpate plot scenes/memoir_star.json
   palpate plot scenes/s3.json --plane xz --at 0.1 --output s3.png
-  palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05")]
+  palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05
+  palpate plot scenes/memoir_star.json --map gradient --output gradient.png")]
     Plot(PlotOptions),
     /// Check a scene file; status 1 and the place if something is wrong.
     #[command(
@@ -178,7 +179,10 @@ pub(crate) struct PlotOptions {
     /// The third coordinate of a plane along two axes [m].
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) at: Option<f64>,
-    /// The distance between isolines [m].
+    /// What colours show.
+    #[arg(long, value_enum, default_value_t = Map::Distance)]
+    pub(crate) map: Map,
+    /// The distance between isolines [m]; for the map of distances.
     #[arg(long)]
     pub(crate) step: Option<f64>,
     /// The picture: .svg or .png; the scene's name with .svg if left out.
@@ -190,6 +194,25 @@ pub(crate) struct PlotOptions {
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What the colours of a picture show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Map {
+    /// Bands of distance with isolines.
+    Distance,
+    /// The direction of the gradient, and where its length is not one.
+    Gradient,
+}
+
+impl Map {
+    /// The name in commands and answers.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Distance => "distance",
+            Self::Gradient => "gradient",
+        }
+    }
 }
 
 /// What is checked.

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Shape, Vector};
-use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
+use palpate::field::{Aabb, BLOCK, Block, Gradients, Shape, Vector};
+use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, Slope, View};
 
 use crate::outcome::Failure;
 
@@ -20,6 +20,9 @@ pub(crate) trait Drawable<const D: usize> {
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
+
+    /// The parts of a gradient to the right, up, and towards the viewer.
+    fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
 }
 
 /// Marks the dimension of a shape.
@@ -33,6 +36,10 @@ impl Drawable<2> for Dimensions {
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
         Vector(st)
     }
+
+    fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
+        [x, y, 0.0]
+    }
 }
 
 impl Drawable<3> for Dimensions {
@@ -42,6 +49,10 @@ impl Drawable<3> for Dimensions {
 
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {
         Vector(plane.point(st))
+    }
+
+    fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
+        plane.project_gradient(gradient.0)
     }
 }
 
@@ -60,6 +71,30 @@ where
         points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
         shape.distances(&points, distances);
     })
+}
+
+/// What a picture asks for the values and gradients of `shape` on `plane`.
+pub(crate) fn slopes<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+) -> impl FnMut(&[[f64; 2]], &mut [Slope])
+where
+    Dimensions: Drawable<D>,
+{
+    let mut block = Block::<f64, D, BLOCK>::zero();
+    let mut found = Gradients::<f64, D, BLOCK>::zero();
+    move |points, slopes| {
+        for (points, slopes) in points.chunks(BLOCK).zip(slopes.chunks_mut(BLOCK)) {
+            for (i, st) in points.iter().enumerate() {
+                block.set(i, Dimensions::point(plane, *st));
+            }
+            shape.block_gradients(&block, points.len(), &mut found);
+            for (i, slope) in slopes.iter_mut().enumerate() {
+                let gradient = Dimensions::gradient(plane, found.gradient.get(i));
+                *slope = Slope { value: found.distance.get(i), gradient };
+            }
+        }
+    }
 }
 
 /// Writes `figure` to `path`, as its ending says.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate plot`: isolines on a plane.
+//! `palpate plot`: isolines and gradients on a plane.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use palpate::plot::{Figure, Slice};
 use palpate::scene::{BuiltScene, World};
 use serde_json::json;
 
-use crate::arguments::PlotOptions;
+use crate::arguments::{Map, PlotOptions};
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{self, Dimensions, Drawable};
@@ -45,11 +45,19 @@ fn draw<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
-    let mut isolines = picture::isolines(&scene.whole, plane, &view).map_err(Failure::input)?;
-    if let Some(step) = options.step {
-        isolines = isolines.with_step(step).map_err(Failure::input)?;
+    if options.step.is_some() && options.map != Map::Distance {
+        return Err(Failure::input(
+            "--step is for --map distance: other maps have no isolines",
+        ));
     }
+    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
+    let isolines = picture::isolines(&scene.whole, plane, &view).map_err(Failure::input)?;
+    let isolines = match (options.map, options.step) {
+        (Map::Distance, None) => Ok(isolines),
+        (Map::Distance, Some(step)) => isolines.with_step(step),
+        (Map::Gradient, _) => isolines.with_gradient(picture::slopes(&scene.whole, plane)),
+    }
+    .map_err(Failure::input)?;
     let (step, range) = (isolines.step(), isolines.range());
     let output = output(options);
     let figure = Figure::new(title(&options.scene))
@@ -58,16 +66,23 @@ where
     picture::save(&figure, &output, options.width)?;
     let mut out = std::io::stdout().lock();
     if options.json {
-        let answer = json!({
+        let mut answer = json!({
             "output": output,
-            "step_m": step,
+            "map": options.map.name(),
             "smallest_m": range.0,
             "largest_m": range.1,
         });
+        if options.map == Map::Distance {
+            answer["step_m"] = json!(step);
+        }
         writeln!(out, "{answer:#}")?;
-    } else {
-        writeln!(out, "{}: isolines every {step} m", output.display())?;
+        return Ok(Outcome::Yes);
     }
+    let shown = match options.map {
+        Map::Distance => format!("isolines every {step} m"),
+        Map::Gradient => "directions of the gradient".to_owned(),
+    };
+    writeln!(out, "{}: {shown}", output.display())?;
     Ok(Outcome::Yes)
 }
 

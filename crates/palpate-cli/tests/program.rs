@@ -212,6 +212,32 @@ fn plot_writes_svg_and_png() {
     assert_eq!(status(&palpate(&["plot", "scenes/s1.json", "--output", "picture.gif"])), 2);
 }
 
+#[test]
+fn plot_draws_gradients() {
+    let folder = Folder::new();
+    for (scene, plane) in [("scenes/memoir_star.json", "xy"), ("scenes/cup.json", "xz")] {
+        let svg = folder.name("gradient.svg");
+        let answer = json(&[
+            "plot", scene, "--map", "gradient", "--plane", plane, "--output", &svg, "--json",
+        ]);
+        assert_eq!(answer["map"], "gradient");
+        assert!(answer["smallest_m"].as_f64().unwrap() < 0.0 && answer["step_m"].is_null());
+        let svg = std::fs::read_to_string(&svg).unwrap();
+        let words = words(&svg);
+        assert!(words.iter().any(|word| word.starts_with("direction in which")), "{words:?}");
+        assert!(words.contains(&if plane == "xz" { "z" } else { "y" }), "{words:?}");
+    }
+}
+
+#[test]
+fn plot_refuses_maps_that_are_none() {
+    for arguments in [&["--map", "colour"][..], &["--map", "gradient", "--step", "0.1"]] {
+        let output = palpate(&[&["plot", "scenes/s1.json"], arguments].concat());
+        assert_eq!(status(&output), 2);
+        assert!(errors(&output).contains(arguments[0]) || errors(&output).contains("--step"));
+    }
+}
+
 /// The built-in scene, felt without waiting for the clock, twice the same.
 #[test]
 fn feel_reports_traces_and_draws() {

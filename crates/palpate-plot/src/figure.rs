@@ -151,7 +151,7 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Verb;
+    use crate::drawing::{Item, Verb};
     use crate::{Arrow, Arrows, Markers, Polyline, Quantity, Sampling, Series, Slice, View};
 
     /// Every coordinate of the figure lies in it, and so is finite.
@@ -159,7 +159,14 @@ mod tests {
         let drawing = figure.draw();
         assert!(drawing.height > 0.0 && drawing.height < 3000.0, "{}", drawing.height);
         let inside = Rect::new(0.0, 0.0, drawing.width, drawing.height);
-        for mark in &drawing.marks {
+        for item in &drawing.items {
+            let mark = match item {
+                Item::Mark(mark) => mark,
+                Item::Image(rect, _) => {
+                    assert!(inside.contains_rect(rect), "{rect:?}");
+                    continue;
+                }
+            };
             for verb in &mark.path.verbs {
                 let is_inside = match *verb {
                     Verb::Move(p) | Verb::Line(p) => inside.contains(p),

@@ -4,7 +4,7 @@
 //! The picture of a field in a plane: bands, isolines, and what lies over them.
 
 use crate::axis::{Axis, BELOW};
-use crate::drawing::{Drawing, Path, Stroke, TextStyle};
+use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
 use crate::error::PlotError;
 use crate::frame::Frame;
 use crate::geometry::Rect;
@@ -17,9 +17,11 @@ use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
 use crate::picture::{Picture, isoline_stroke, surface_stroke};
 use crate::sampling::{Samples, Sampling};
-use crate::slice::Slice;
+use crate::slice::{Slice, SliceAxis};
+use crate::slope::{Pixels, Slope};
 use crate::text::{Anchor, CAP_HEIGHT};
 use crate::view::View;
+use crate::wheel::{self, AxisArrow};
 
 /// Highest plot [px]; taller windows are drawn narrower.
 pub(crate) const MOST_HEIGHT: f64 = 720.0;
@@ -61,8 +63,19 @@ pub struct Isolines {
     view: View,
     samples: Samples,
     levels: Levels,
+    sampling: Sampling,
+    ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
+}
+
+/// What lies under the lines.
+#[derive(Debug, Clone)]
+enum Ground {
+    /// Bands of distance, with isolines.
+    Distance,
+    /// The direction of the gradient.
+    Gradient(Image),
 }
 
 impl Isolines {
@@ -88,6 +101,8 @@ impl Isolines {
             view: *view,
             levels: Levels::choose(low, high, view.width().min(view.height())),
             samples,
+            sampling,
+            ground: Ground::Distance,
             title: String::new(),
             overlays: Vec::new(),
         })
@@ -101,6 +116,52 @@ impl Isolines {
     pub fn with_step(self, step: f64) -> Result<Self, PlotError> {
         let (low, high) = self.samples.range();
         Ok(Self { levels: Levels::with_step(low, high, step)?, ..self })
+    }
+
+    /// With the direction of the gradient as colour in place of the bands, and the surface as
+    /// the only line.
+    ///
+    /// Lightness and hue say where the field grows in the plane, as the disc in the legend
+    /// shows; colours fade to grey where the gradient is shorter than one there, because it is
+    /// flatter or because it leans out of the plane, and darken where it is longer.
+    ///
+    /// `field` is called with the plane coordinates of some points \[m\] and a slice of the
+    /// same length for their [`Slope`]s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Sample`] for the first value that is NaN, infinite or over 1e150,
+    /// [`PlotError::Gradient`] for the first such gradient.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::{Figure, Isolines, Sampling, Slice, Slope, View};
+    ///
+    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let disc = |p: [f64; 2]| {
+    ///     let r = p[0].hypot(p[1]);
+    ///     Slope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] }
+    /// };
+    /// let values = |points: &[[f64; 2]], values: &mut [f64]| {
+    ///     points.iter().zip(values).for_each(|(p, value)| *value = disc(*p).value);
+    /// };
+    /// let slopes = |points: &[[f64; 2]], slopes: &mut [Slope]| {
+    ///     points.iter().zip(slopes).for_each(|(p, slope)| *slope = disc(*p));
+    /// };
+    /// let picture = Isolines::sample(&Slice::planar(), &view, Sampling::default(), values)?
+    ///     .with_gradient(slopes)?;
+    /// let svg = Figure::new("Disc").with_isolines(picture).to_svg();
+    /// assert!(svg.contains("direction in which the field grows"));
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn with_gradient(
+        self,
+        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+    ) -> Result<Self, PlotError> {
+        let color = |_, slope: &Slope| wheel::color([slope.gradient[0], slope.gradient[1]]);
+        let image = Pixels::of(&self.view, self.sampling).paint(field, color)?;
+        Ok(Self { ground: Ground::Gradient(image), ..self })
     }
 
     /// With a heading of its own, for figures of several parts.
@@ -184,14 +245,21 @@ impl Isolines {
         }
         let plot = self.plot(area, gutter, top);
         let frame = Frame::new(self.view, plot);
-        let picture = Picture { samples: &self.samples, levels: &self.levels, frame };
+        let levels = self.drawn_levels();
+        let picture = Picture { samples: &self.samples, levels: &levels, frame };
         let overlays = Overlays::new(frame, &self.overlays);
         let lines = picture.lines();
         let mut occupied = Occupied::default();
         lines.occupy(&mut occupied);
         overlays.occupy(&mut occupied);
         let labels = overlays.place_labels(&mut occupied);
-        picture.draw_bands(drawing);
+        match &self.ground {
+            Ground::Distance => picture.draw_bands(drawing),
+            Ground::Gradient(image) => {
+                drawing.image(plot, image.clone());
+                picture.draw_casing(drawing, &lines);
+            }
+        }
         picture.draw_lines(drawing, &lines, &mut occupied);
         overlays.draw(drawing, &labels);
         drawing.stroke(Path::rect(&plot), Stroke::new(Color::MUTED, 1.0));
@@ -217,7 +285,52 @@ impl Isolines {
         Axis::new(axis.name, ends, length, TICK_SPACING[index])
     }
 
+    /// The levels whose lines are drawn: the surface alone where colours say something else
+    /// than the distance.
+    fn drawn_levels(&self) -> Levels {
+        let mut levels = self.levels.clone();
+        if !matches!(self.ground, Ground::Distance) {
+            levels.values.retain(|level| *level == 0.0);
+        }
+        levels
+    }
+
+    fn surface_entry(&self) -> Entry {
+        let (low, high) = self.samples.range();
+        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
+            Entry::new(Key::Line(surface_stroke()), "surface")
+        } else {
+            Entry::new(Key::None, "no surface in view")
+        }
+    }
+
     fn legend(&self) -> Vec<Entry> {
+        match &self.ground {
+            Ground::Distance => self.distance_legend(),
+            Ground::Gradient(_) => self.gradient_legend(),
+        }
+    }
+
+    fn gradient_legend(&self) -> Vec<Entry> {
+        let axes = self.slice.axes().map(|SliceAxis { name, sign }| {
+            let name = name.split(' ').next().unwrap_or(name).to_owned();
+            AxisArrow { name, sign }
+        });
+        vec![
+            Entry::new(
+                Key::Wheel(axes),
+                "direction in which the field grows; at the rim its gradient is 1",
+            ),
+            self.surface_entry(),
+            Entry::new(
+                Key::Swatch(wheel::color([0.0; 2])),
+                "flat, or leaning out of the plane",
+            ),
+            Entry::new(Key::Swatch(wheel::color([0.0, -2.0])), "darker: steeper than 1"),
+        ]
+    }
+
+    fn distance_legend(&self) -> Vec<Entry> {
         let (low, high) = self.samples.range();
         let (inside, outside) = self.levels.bands();
         let bands = |side, count: usize| {
@@ -231,11 +344,7 @@ impl Isolines {
         if low < 0.0 {
             entries.push(Entry::new(bands(Side::Inside, inside), "inside"));
         }
-        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
-            entries.push(Entry::new(Key::Line(surface_stroke()), "surface"));
-        } else {
-            entries.push(Entry::new(Key::None, "no surface in view"));
-        }
+        entries.push(self.surface_entry());
         if high > 0.0 {
             entries.push(Entry::new(bands(Side::Outside, outside), "outside"));
         }

@@ -61,10 +61,12 @@ mod picture;
 mod png;
 mod sampling;
 mod slice;
+mod slope;
 mod svg;
 mod text;
 mod view;
 mod views;
+mod wheel;
 
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
@@ -74,4 +76,5 @@ pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;
 pub use slice::Slice;
+pub use slope::Slope;
 pub use view::View;

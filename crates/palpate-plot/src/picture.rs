@@ -18,9 +18,13 @@ use crate::text::Anchor;
 /// surface is drawn however small it is.
 const SPECK: f64 = 2.5;
 
+/// Width of the line of the surface [px], and of the white rim with it.
+const SURFACE: f64 = 2.8;
+const CASING: f64 = 5.6;
+
 /// The line of the surface.
 pub(crate) fn surface_stroke() -> Stroke {
-    Stroke::new(Color::INK, 2.8)
+    Stroke::new(Color::INK, SURFACE)
 }
 
 /// The other isolines.
@@ -127,6 +131,12 @@ impl Picture<'_> {
                 }
             }
         }
+    }
+
+    /// Draws a white rim under the surface, which sets it off from dark colours.
+    pub(crate) fn draw_casing(&self, drawing: &mut Drawing, lines: &Lines) {
+        drawing.stroke(path_of(&lines.surface), Stroke::new(Color::WHITE, CASING));
+        drawing.stroke(path_of(&lines.thin), Stroke::new(Color::WHITE, CASING - SURFACE));
     }
 
     /// Draws the scale bar at the right of the row of the axis name whose baseline is `y`, or

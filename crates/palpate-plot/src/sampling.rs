@@ -44,6 +44,13 @@ impl Sampling {
     }
 }
 
+impl Sampling {
+    /// Cells along the longer side.
+    pub(crate) fn cells(self) -> usize {
+        self.cells
+    }
+}
+
 impl Default for Sampling {
     /// 420 cells: two pixels each at 800 px, and isolines off by well under one.
     fn default() -> Self {
