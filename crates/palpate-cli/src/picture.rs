@@ -5,9 +5,12 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, BLOCK, Block, Gradients, Shape, Vector};
-use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, Slope, View};
+use palpate::field::{Aabb, BLOCK, Block, Gradients, Quality, Shape, Vector};
+use palpate::plot::{
+    Figure, Gauge, Isolines, PlotError, Promised, Sampling, Slice, Slope, View,
+};
 
+use crate::arguments::Map;
 use crate::outcome::Failure;
 
 /// Room around a scene, as a share of its longer side.
@@ -20,6 +23,9 @@ pub(crate) trait Drawable<const D: usize> {
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
+
+    /// What a picture measures to compare with a promise.
+    const GAUGE: Gauge;
 
     /// The parts of a gradient to the right, up, and towards the viewer.
     fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
@@ -37,6 +43,8 @@ impl Drawable<2> for Dimensions {
         Vector(st)
     }
 
+    const GAUGE: Gauge = Gauge::Distance;
+
     fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
         [x, y, 0.0]
     }
@@ -51,6 +59,9 @@ impl Drawable<3> for Dimensions {
         Vector(plane.point(st))
     }
 
+    /// The nearest surface may lie outside the slice.
+    const GAUGE: Gauge = Gauge::Steepness;
+
     fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
         plane.project_gradient(gradient.0)
     }
@@ -61,12 +72,13 @@ pub(crate) fn isolines<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
     view: &View,
+    sampling: Sampling,
 ) -> Result<Isolines, PlotError>
 where
     Dimensions: Drawable<D>,
 {
     let mut points = Vec::new();
-    Isolines::sample(plane, view, Sampling::default(), |st, distances| {
+    Isolines::sample(plane, view, sampling, |st, distances| {
         points.clear();
         points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
         shape.distances(&points, distances);
@@ -93,6 +105,32 @@ where
                 let gradient = Dimensions::gradient(plane, found.gradient.get(i));
                 *slope = Slope { value: found.distance.get(i), gradient };
             }
+        }
+    }
+}
+
+/// What colours show of `shape` on `plane`, its isolines if they show distances.
+pub(crate) fn mapped<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+    isolines: Isolines,
+    map: Map,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    match map {
+        Map::Distance => Ok(isolines),
+        Map::Gradient => isolines.with_gradient(slopes(shape, plane)),
+        Map::Promise => {
+            let promise = shape.promise();
+            let promised = [promise.outside, promise.inside].map(|quality| match quality {
+                Quality::Exact => Promised::Exact,
+                Quality::Bound => Promised::Bound,
+                Quality::Lipschitz => Promised::Lipschitz(promise.lipschitz),
+            });
+            let gauge = <Dimensions as Drawable<D>>::GAUGE;
+            isolines.with_promise(promised, gauge, slopes(shape, plane))
         }
     }
 }

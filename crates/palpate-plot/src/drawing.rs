@@ -219,6 +219,7 @@ impl TextStyle {
     pub(crate) const CAPTION: Self = Self::new(13.0, Weight::Regular, Color::MUTED);
     pub(crate) const AXIS: Self = Self::new(13.0, Weight::Regular, Color::INK);
     pub(crate) const TICK: Self = Self::new(12.0, Weight::Regular, Color::MUTED);
+    pub(crate) const TILE: Self = Self::new(11.8, Weight::SemiBold, Color::INK);
     pub(crate) const LEGEND: Self = Self::new(13.0, Weight::Regular, Color::INK);
 
     const fn new(size: f64, weight: Weight, color: Color) -> Self {

@@ -7,6 +7,7 @@ use crate::drawing::{Drawing, Path, Stroke, TextStyle};
 use crate::geometry::{Point, Rect, distance};
 use crate::palette::Color;
 use crate::text::{Anchor, CAP_HEIGHT, shorten};
+use crate::trust::{self, Promised};
 use crate::wheel::{self, AxisArrow};
 
 /// Width of a key [px].
@@ -33,6 +34,10 @@ pub(crate) enum Key {
     Wheel([AxisArrow; 2]),
     /// A colour.
     Swatch(Color),
+    /// The tint and hatching of a promise.
+    Promised(Promised),
+    /// The colours of what is measured, between two numbers.
+    Scale(Promised, [f64; 2]),
     /// Words only.
     None,
 }
@@ -55,6 +60,7 @@ impl Key {
     fn height(&self) -> f64 {
         match self {
             Self::Wheel(_) => wheel::SIZE,
+            Self::Scale(..) => trust::SCALE[1],
             _ => ROW,
         }
     }
@@ -62,7 +68,8 @@ impl Key {
     fn width(&self) -> f64 {
         match self {
             Self::Wheel(_) => wheel::SIZE,
-            Self::Bands(_) | Self::Line(_) | Self::Swatch(_) => KEY,
+            Self::Scale(..) => trust::SCALE[0],
+            Self::Bands(_) | Self::Line(_) | Self::Swatch(_) | Self::Promised(_) => KEY,
             Self::Arrow(_, length) => length.max(12.0),
             Self::Point(..) => 12.0,
             Self::None => -GAP,
@@ -90,14 +97,33 @@ impl Key {
             }
             Self::Point(symbol, color) => symbol.draw(drawing, [x + 6.0, y], *color),
             Self::Wheel(axes) => wheel::draw(drawing, [x + wheel::SIZE / 2.0, y], axes),
-            Self::Swatch(color) => {
-                let rect = Path::rect(&Rect::new(x, y - 6.0, KEY, 12.0));
-                drawing.fill(rect.clone(), *color);
-                drawing.stroke(rect, Stroke::new(Color::MUTED, 0.75));
+            Self::Swatch(color) => draw_swatch(drawing, x, y, *color, |_, _| {}),
+            Self::Promised(promised) => {
+                let hatch = |drawing: &mut Drawing, rect: &Rect| {
+                    promised.hatch(drawing, rect, |_| true);
+                };
+                draw_swatch(drawing, x, y, promised.tint(), hatch);
+            }
+            Self::Scale(promised, ends) => {
+                trust::draw_scale(drawing, [x, y], *promised, *ends);
             }
             Self::None => {}
         }
     }
+}
+
+/// Draws a framed rectangle of `color` with its left end at `x`, centred on `y` [px].
+fn draw_swatch(
+    drawing: &mut Drawing,
+    x: f64,
+    y: f64,
+    color: Color,
+    inner: impl FnOnce(&mut Drawing, &Rect),
+) {
+    let rect = Rect::new(x, y - 6.0, KEY, 12.0);
+    drawing.fill(Path::rect(&rect), color);
+    inner(drawing, &rect);
+    drawing.stroke(Path::rect(&rect), Stroke::new(Color::MUTED, 0.75));
 }
 
 /// Draws entries in rows of at most `width` from `[x, y]` down, all [px]; returns the height.

@@ -98,13 +98,8 @@ impl Picture<'_> {
         lines
     }
 
-    /// Draws the isolines with their labels, the surface over the others.
-    pub(crate) fn draw_lines(
-        &self,
-        drawing: &mut Drawing,
-        lines: &Lines,
-        occupied: &mut Occupied,
-    ) {
+    /// Draws the isolines, the surface over the others.
+    pub(crate) fn draw_lines(&self, drawing: &mut Drawing, lines: &Lines) {
         for (level, lines) in &lines.rest {
             drawing.stroke(path_of(lines), isoline_stroke(side_of(*level)));
         }
@@ -112,6 +107,15 @@ impl Picture<'_> {
         let mut thin = Path::default();
         lines.thin.iter().for_each(|ring| thin.add_ring(ring));
         drawing.fill_rings(thin, Color::INK);
+    }
+
+    /// Draws the labels of the isolines where there is room.
+    pub(crate) fn draw_labels(
+        &self,
+        drawing: &mut Drawing,
+        lines: &Lines,
+        occupied: &mut Occupied,
+    ) {
         // From the surface outwards on each side, so that labels line up.
         let (inside, outside): (Vec<_>, Vec<_>) =
             lines.rest.iter().partition(|(level, _)| *level < 0.0);

@@ -106,6 +106,14 @@ impl Samples {
         Ok(Self { columns, rows, cell, origin, values })
     }
 
+    /// The value of the sample nearest to `p` [m].
+    pub(crate) fn value_near(&self, p: Point) -> f64 {
+        let index = |i: usize, count: usize| {
+            (((p[i] - self.origin[i]) / self.cell) as usize).min(count - 1)
+        };
+        self.values[index(1, self.rows) * self.columns + index(0, self.columns)]
+    }
+
     /// Whether the field is nowhere negative, but zero somewhere as far as samples can tell.
     ///
     /// Where a distance is zero, the nearest sample is at most half a cell's diagonal away.
