@@ -362,8 +362,13 @@ impl Isolines {
     /// What [`draw_tile`](Self::draw_tile) draws.
     pub(crate) fn tile_legend(&self) -> Vec<Entry> {
         let mut entries = self.legend();
-        // Tiles have steps of their own.
+        // Tiles have steps of their own, and promises for either side.
         entries.retain(|entry| !matches!(&entry.key, Key::Line(line) if line.width < 1.0));
+        for entry in &mut entries {
+            if let Key::Promised(promised) = entry.key {
+                *entry = promised.entry();
+            }
+        }
         let [right, up] = self.axis_arrows();
         let way = if up.sign > 0.0 { "up" } else { "down" };
         let text = format!("axes through the origin: {} right, {} {way}", right.name, up.name);

@@ -6,7 +6,7 @@
 use crate::geometry::{Point, distance_to_segment};
 
 /// Buckets along the longer side: few segments in each, and few empty ones to cross.
-const BUCKETS: f64 = 64.0;
+const BUCKETS: f64 = 24.0;
 
 /// Segments, sorted into square buckets.
 #[derive(Debug, Clone)]
@@ -21,17 +21,19 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Sorts `segments`; a point is a segment of no length.
-    pub(crate) fn new(segments: Vec<[Point; 2]>) -> Self {
+    /// Sorts `segments`; a point is a segment of no length. Points asked for are within `size`
+    /// of each other, more or less: without it, small sets of segments have buckets so small
+    /// that there are too many to cross.
+    pub(crate) fn new(segments: Vec<[Point; 2]>, size: f64) -> Self {
         let ends = || segments.iter().flatten();
         let bound = |i: usize, start: f64, pick: fn(f64, f64) -> f64| {
             ends().map(|p| p[i]).fold(start, pick)
         };
         let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
         let min = [0, 1].map(|i| bound(i, low, f64::min));
-        let size = [0, 1].map(|i| bound(i, high, f64::max) - min[i]);
-        let edge = (size[0].max(size[1]) / BUCKETS).max(f64::MIN_POSITIVE);
-        let count = size.map(|side| (side.max(0.0) / edge) as i64 + 1);
+        let extent = [0, 1].map(|i| bound(i, high, f64::max) - min[i]);
+        let edge = extent[0].max(extent[1]).max(size) / BUCKETS;
+        let count = extent.map(|side| (side.max(0.0) / edge) as i64 + 1);
         let empty = vec![Vec::new(); (count[0] * count[1]) as usize];
         let mut nearest = Self { segments: Vec::new(), min, edge, count, buckets: empty };
         for (index, &[a, b]) in segments.iter().enumerate() {
@@ -108,7 +110,7 @@ mod tests {
             let a = [3.0 * at(i, 0.618), at(i, 0.414)];
             [a, [a[0] + 0.1 * at(i, 0.732), a[1] - 0.05 * at(i, 0.236)]]
         }));
-        let nearest = Nearest::new(segments.clone());
+        let nearest = Nearest::new(segments.clone(), 1.0);
         for i in 0..400 {
             let p = [6.0 * at(i, 0.302) - 2.0, 5.0 * at(i, 0.791) - 2.0];
             let expected = segments
@@ -123,7 +125,7 @@ mod tests {
 
     #[test]
     fn one_point_and_none_have_distances() {
-        assert_eq!(Nearest::new(vec![[[1.0, 2.0]; 2]]).distance([4.0, 6.0], 0.0), 5.0);
-        assert_eq!(Nearest::new(Vec::new()).distance([4.0, 6.0], 0.0), f64::INFINITY);
+        assert_eq!(Nearest::new(vec![[[1.0, 2.0]; 2]], 5.0).distance([4.0, 6.0], 0.0), 5.0);
+        assert_eq!(Nearest::new(Vec::new(), 5.0).distance([4.0, 6.0], 0.0), f64::INFINITY);
     }
 }

@@ -81,6 +81,15 @@ impl Promised {
         }
     }
 
+    /// The legend of a side of any field.
+    pub(crate) fn entry(self) -> Entry {
+        let text = match self {
+            Self::Lipschitz(_) => "Lipschitz: value at most L times the distance".to_owned(),
+            _ => self.in_words(),
+        };
+        Entry::new(Key::Promised(self), text)
+    }
+
     /// The slopes of the lines that hatch the side, with y down.
     fn hatching(self) -> &'static [f64] {
         match self {
