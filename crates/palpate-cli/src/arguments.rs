@@ -45,13 +45,22 @@ Examples:
 
 The points file has the header x_m,y_m,z_m (x_m,y_m in 2D).")]
     Eval(EvalOptions),
-    /// Draw the isolines of a scene on a plane, as SVG or PNG.
+    /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
     #[command(after_help = "\
 Examples:
   palpate plot scenes/memoir_star.json
   palpate plot scenes/s3.json --plane xz --at 0.1 --output s3.png
-  palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05")]
+  palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05
+  palpate plot scenes/memoir_star.json --map gradient --output gradient.png
+  palpate plot scenes/memoir_star.json --map promise --output promise.png")]
     Plot(PlotOptions),
+    /// Draw every primitive and operator, many small pictures on a few sheets.
+    #[command(after_help = "\
+Examples:
+  palpate gallery
+  palpate gallery --output pictures --map promise --plane xy
+  palpate gallery --each --format svg --json")]
+    Gallery(GalleryOptions),
     /// Check a scene file; status 1 and the place if something is wrong.
     #[command(
         after_help = "Examples:\n  palpate check scenes/cup.json\n  palpate check scenes/cup.json --json"
@@ -178,7 +187,10 @@ pub(crate) struct PlotOptions {
     /// The third coordinate of a plane along two axes [m].
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) at: Option<f64>,
-    /// The distance between isolines [m].
+    /// What colours show.
+    #[arg(long, value_enum, default_value_t = Map::Distance)]
+    pub(crate) map: Map,
+    /// The distance between isolines [m]; for the map of distances.
     #[arg(long)]
     pub(crate) step: Option<f64>,
     /// The picture: .svg or .png; the scene's name with .svg if left out.
@@ -190,6 +202,109 @@ pub(crate) struct PlotOptions {
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What the gallery shows.
+#[derive(Args, Debug)]
+pub(crate) struct GalleryOptions {
+    /// The folder that the pictures go to; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "gallery")]
+    pub(crate) output: PathBuf,
+    /// What colours show.
+    #[arg(long, value_enum, default_value_t = Map::Distance)]
+    pub(crate) map: Map,
+    /// The plane through the middle of shapes of space; xy and xz if left out. May be
+    /// given more than once.
+    #[arg(long, value_enum)]
+    pub(crate) plane: Vec<Plane>,
+    /// Draw a picture of each shape too, in a folder beside its sheet.
+    #[arg(long)]
+    pub(crate) each: bool,
+    /// The kind of the pictures.
+    #[arg(long, value_enum, default_value_t = Format::Png)]
+    pub(crate) format: Format,
+    /// The width of a PNG [pixels].
+    #[arg(long, default_value_t = 1200)]
+    pub(crate) width: u32,
+    /// Print what was drawn as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl GalleryOptions {
+    /// The planes asked for, each once.
+    pub(crate) fn planes(&self) -> Vec<Plane> {
+        let all = [Plane::Xy, Plane::Xz, Plane::Yz];
+        let asked = |plane: &Plane| match self.plane[..] {
+            [] => *plane != Plane::Yz,
+            _ => self.plane.contains(plane),
+        };
+        all.into_iter().filter(asked).collect()
+    }
+}
+
+/// A plane along two axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Plane {
+    /// Seen from the front.
+    Xy,
+    /// Seen from above.
+    Xz,
+    /// Seen from the side.
+    Yz,
+}
+
+impl Plane {
+    /// The name in commands and files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Xy => "xy",
+            Self::Xz => "xz",
+            Self::Yz => "yz",
+        }
+    }
+}
+
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Pixels.
+    Png,
+    /// Lines and curves.
+    Svg,
+}
+
+impl Format {
+    /// The ending of its files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+        }
+    }
+}
+
+/// What the colours of a picture show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Map {
+    /// Bands of distance with isolines.
+    Distance,
+    /// The direction of the gradient, and where its length is not one.
+    Gradient,
+    /// What values promise on each side, and how they compare with it: in the plane, the
+    /// value over the true distance; in space, the length of the gradient.
+    Promise,
+}
+
+impl Map {
+    /// The name in commands and answers.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Distance => "distance",
+            Self::Gradient => "gradient",
+            Self::Promise => "promise",
+        }
+    }
 }
 
 /// What is checked.

@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod eval;
 mod feel;
+mod gallery;
 mod hand_csv;
 mod input;
 mod mass;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Command::Feel(options) => feel::run(&options),
         Command::Eval(options) => eval::run(&options),
         Command::Plot(options) => plot::run(&options),
+        Command::Gallery(options) => gallery::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Mass(options) => mass::run(&options),
         Command::Schema => schema::run(),

@@ -5,9 +5,12 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Shape, Vector};
-use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
+use palpate::field::{Aabb, BLOCK, Block, Gradients, Quality, Shape, Vector};
+use palpate::plot::{
+    Figure, Gauge, Isolines, PlotError, Promised, Sampling, Slice, Slope, View,
+};
 
+use crate::arguments::Map;
 use crate::outcome::Failure;
 
 /// Room around a scene, as a share of its longer side.
@@ -20,6 +23,12 @@ pub(crate) trait Drawable<const D: usize> {
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
+
+    /// What a picture measures to compare with a promise.
+    const GAUGE: Gauge;
+
+    /// The parts of a gradient to the right, up, and towards the viewer.
+    fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
 }
 
 /// Marks the dimension of a shape.
@@ -33,6 +42,12 @@ impl Drawable<2> for Dimensions {
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
         Vector(st)
     }
+
+    const GAUGE: Gauge = Gauge::Distance;
+
+    fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
+        [x, y, 0.0]
+    }
 }
 
 impl Drawable<3> for Dimensions {
@@ -43,6 +58,13 @@ impl Drawable<3> for Dimensions {
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {
         Vector(plane.point(st))
     }
+
+    /// The nearest surface may lie outside the slice.
+    const GAUGE: Gauge = Gauge::Steepness;
+
+    fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
+        plane.project_gradient(gradient.0)
+    }
 }
 
 /// The isolines of `shape` on `plane`.
@@ -50,16 +72,67 @@ pub(crate) fn isolines<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
     view: &View,
+    sampling: Sampling,
 ) -> Result<Isolines, PlotError>
 where
     Dimensions: Drawable<D>,
 {
     let mut points = Vec::new();
-    Isolines::sample(plane, view, Sampling::default(), |st, distances| {
+    Isolines::sample(plane, view, sampling, |st, distances| {
         points.clear();
         points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
         shape.distances(&points, distances);
     })
+}
+
+/// What a picture asks for the values and gradients of `shape` on `plane`.
+pub(crate) fn slopes<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+) -> impl FnMut(&[[f64; 2]], &mut [Slope])
+where
+    Dimensions: Drawable<D>,
+{
+    let mut block = Block::<f64, D, BLOCK>::zero();
+    let mut found = Gradients::<f64, D, BLOCK>::zero();
+    move |points, slopes| {
+        for (points, slopes) in points.chunks(BLOCK).zip(slopes.chunks_mut(BLOCK)) {
+            for (i, st) in points.iter().enumerate() {
+                block.set(i, Dimensions::point(plane, *st));
+            }
+            shape.block_gradients(&block, points.len(), &mut found);
+            for (i, slope) in slopes.iter_mut().enumerate() {
+                let gradient = Dimensions::gradient(plane, found.gradient.get(i));
+                *slope = Slope { value: found.distance.get(i), gradient };
+            }
+        }
+    }
+}
+
+/// What colours show of `shape` on `plane`, its isolines if they show distances.
+pub(crate) fn mapped<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+    isolines: Isolines,
+    map: Map,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    match map {
+        Map::Distance => Ok(isolines),
+        Map::Gradient => isolines.with_gradient(slopes(shape, plane)),
+        Map::Promise => {
+            let promise = shape.promise();
+            let promised = [promise.outside, promise.inside].map(|quality| match quality {
+                Quality::Exact => Promised::Exact,
+                Quality::Bound => Promised::Bound,
+                Quality::Lipschitz => Promised::Lipschitz(promise.lipschitz),
+            });
+            let gauge = <Dimensions as Drawable<D>>::GAUGE;
+            isolines.with_promise(promised, gauge, slopes(shape, plane))
+        }
+    }
 }
 
 /// Writes `figure` to `path`, as its ending says.

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate plot`: isolines on a plane.
+//! `palpate plot`: isolines, gradients and promises on a plane.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, Vector};
-use palpate::plot::{Figure, Slice};
+use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
 use palpate::scene::{BuiltScene, World};
 use serde_json::json;
 
-use crate::arguments::PlotOptions;
+use crate::arguments::{Map, PlotOptions};
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{self, Dimensions, Drawable};
@@ -45,29 +45,63 @@ fn draw<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
-    let mut isolines = picture::isolines(&scene.whole, plane, &view).map_err(Failure::input)?;
-    if let Some(step) = options.step {
-        isolines = isolines.with_step(step).map_err(Failure::input)?;
+    if options.step.is_some() && options.map != Map::Distance {
+        return Err(Failure::input(
+            "--step is for --map distance: other maps have no isolines",
+        ));
     }
-    let (step, range) = (isolines.step(), isolines.range());
+    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
+    let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
+        .map_err(Failure::input)?;
+    let isolines = match options.step {
+        Some(step) => isolines.with_step(step).map_err(Failure::input)?,
+        None => picture::mapped(&scene.whole, plane, isolines, options.map)
+            .map_err(Failure::input)?,
+    };
+    let (step, range, measured) = (isolines.step(), isolines.range(), isolines.measured());
     let output = output(options);
     let figure = Figure::new(title(&options.scene))
         .with_caption(promise_in_words(scene.whole.promise()))
         .with_isolines(isolines);
     picture::save(&figure, &output, options.width)?;
+    let gauge = match <Dimensions as Drawable<D>>::GAUGE {
+        Gauge::Distance => "value_over_distance",
+        Gauge::Steepness => "steepness",
+    };
+    let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
     let mut out = std::io::stdout().lock();
     if options.json {
-        let answer = json!({
+        let mut answer = json!({
             "output": output,
-            "step_m": step,
+            "map": options.map.name(),
             "smallest_m": range.0,
             "largest_m": range.1,
         });
+        if options.map == Map::Distance {
+            answer["step_m"] = json!(step);
+        }
+        if let Some(measured) = measured {
+            answer[gauge] = json!({
+                "smallest": measured.smallest,
+                "smallest_at_m": point(measured.smallest_at),
+                "largest": measured.largest,
+                "largest_at_m": point(measured.largest_at),
+            });
+        }
         writeln!(out, "{answer:#}")?;
-    } else {
-        writeln!(out, "{}: isolines every {step} m", output.display())?;
+        return Ok(Outcome::Yes);
     }
+    let shown = match options.map {
+        Map::Distance => format!("isolines every {step} m"),
+        Map::Gradient => "directions of the gradient".to_owned(),
+        Map::Promise => match measured {
+            None => "promises".to_owned(),
+            Some(Measured { smallest, largest, .. }) => {
+                format!("promises; {gauge} from {smallest:.3} to {largest:.3}")
+            }
+        },
+    };
+    writeln!(out, "{}: {shown}", output.display())?;
     Ok(Outcome::Yes)
 }
 

@@ -212,6 +212,145 @@ fn plot_writes_svg_and_png() {
     assert_eq!(status(&palpate(&["plot", "scenes/s1.json", "--output", "picture.gif"])), 2);
 }
 
+#[test]
+fn plot_draws_gradients() {
+    let folder = Folder::new();
+    for (scene, plane) in [("scenes/memoir_star.json", "xy"), ("scenes/cup.json", "xz")] {
+        let svg = folder.name("gradient.svg");
+        let answer = json(&[
+            "plot", scene, "--map", "gradient", "--plane", plane, "--output", &svg, "--json",
+        ]);
+        assert_eq!(answer["map"], "gradient");
+        assert!(answer["smallest_m"].as_f64().unwrap() < 0.0 && answer["step_m"].is_null());
+        let svg = std::fs::read_to_string(&svg).unwrap();
+        let words = words(&svg);
+        assert!(words.iter().any(|word| word.starts_with("direction in which")), "{words:?}");
+        assert!(words.contains(&if plane == "xz" { "z" } else { "y" }), "{words:?}");
+    }
+}
+
+/// Two discs that overlap: the union is exact outside and a bound inside, loosest between the
+/// two points where they cross.
+#[test]
+fn plot_shows_where_a_union_is_loose() {
+    let folder = Folder::new();
+    let scene = folder.write(
+        "union.json",
+        r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "union", "shape": { "union": [
+            { "ball": { "radius": 0.3 } },
+            { "translate": [0.4, 0], "of": { "ball": { "radius": 0.3 } } } ] } } ] }"#,
+    );
+    let svg = folder.name("promise.svg");
+    let answer = json(&["plot", &scene, "--map", "promise", "--output", &svg, "--json"]);
+    let measured = &answer["value_over_distance"];
+    let number = |value: &Value| value.as_f64().unwrap();
+    // At (0.2, 0) the value is 0.1 and the distance that to the crossings, √(0.3² − 0.2²).
+    let expected = 0.1 / (0.09_f64 - 0.04).sqrt();
+    let smallest = number(&measured["smallest"]);
+    assert!(smallest >= expected && smallest < 1.03 * expected, "{smallest}");
+    assert!((number(&measured["smallest_at_m"][0]) - 0.2).abs() < 0.01, "{measured}");
+    assert!(number(&measured["smallest_at_m"][1]).abs() < 0.01, "{measured}");
+    assert_eq!(number(&measured["largest"]), 1.0);
+    let svg = std::fs::read_to_string(&svg).unwrap();
+    let words = words(&svg);
+    for expected in [
+        "outside exact: the value is the distance",
+        "inside bound: true distance may be larger",
+        "measured: value over true distance",
+    ] {
+        assert!(words.contains(&expected), "{expected} in {words:?}");
+    }
+}
+
+/// Of a slice through space nothing but the gradient's length can be known.
+#[test]
+fn plot_shows_promises_of_a_slice() {
+    let folder = Folder::new();
+    let png = folder.name("terrain.png");
+    let answer =
+        json(&["plot", "scenes/terrain.json", "--map", "promise", "--output", &png, "--json"]);
+    assert!(answer["value_over_distance"].is_null());
+    let [smallest, largest] =
+        ["smallest", "largest"].map(|key| answer["steepness"][key].as_f64().unwrap());
+    assert!(smallest < 1.0 && largest > 1.5 && largest <= 2.0, "{smallest} {largest}");
+    assert_eq!(answer["steepness"]["largest_at_m"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn the_gallery_shows_every_primitive_on_every_plane() {
+    let folder = Folder::new();
+    for (map, plane) in [("distance", "yz"), ("gradient", "xy"), ("promise", "xz")] {
+        let answer = json(&[
+            "gallery",
+            "--output",
+            &folder.name(map),
+            "--map",
+            map,
+            "--plane",
+            plane,
+            "--format",
+            "svg",
+            "--json",
+        ]);
+        assert_eq!(answer["map"], map);
+        let pictures = answer["pictures"].as_array().unwrap();
+        let stems = ["shapes-of-the-plane", "shapes-of-space-", "operators-"];
+        assert_eq!(pictures.len(), stems.len());
+        for (picture, stem) in pictures.iter().zip(stems) {
+            let file = picture["output"].as_str().unwrap();
+            let end = if stem.ends_with('-') { plane } else { "" };
+            assert!(file.ends_with(&format!("{stem}{end}.svg")), "{file}");
+            let svg = std::fs::read_to_string(file).unwrap();
+            let words = words(&svg);
+            for shape in picture["shapes"].as_array().unwrap() {
+                assert!(words.contains(&shape.as_str().unwrap()), "{shape} in {words:?}");
+            }
+        }
+        let [planar, spatial] = [0, 1].map(|i| pictures[i]["shapes"].as_array().unwrap().len());
+        assert_eq!(planar, palpate::field::kernel::Entry::<2>::ALL.len());
+        assert_eq!(spatial, palpate::field::kernel::Entry::<3>::ALL.len());
+    }
+}
+
+#[test]
+fn the_gallery_draws_each_shape_and_refuses_bad_input() {
+    let folder = Folder::new();
+    let output = folder.name("pictures");
+    let arguments =
+        ["gallery", "--output", &output, "--plane", "xy", "--each", "--width", "200", "--json"];
+    let answer = json(&arguments);
+    let pictures = answer["pictures"].as_array().unwrap();
+    let count = palpate::field::kernel::Entry::<2>::ALL.len()
+        + palpate::field::kernel::Entry::<3>::ALL.len();
+    assert!(pictures.len() > count + 3);
+    for picture in pictures {
+        let bytes = std::fs::read(picture["output"].as_str().unwrap()).unwrap();
+        assert_eq!(&bytes[1..4], b"PNG");
+    }
+    assert!(folder.path("pictures/shapes-of-space-xy/torus.png").exists());
+    let file = folder.write("file", "");
+    for arguments in [
+        &["--output", &file][..],
+        &["--plane", "ab"],
+        &["--map", "colour"],
+        &["--format", "gif"],
+        &["--output", &output, "--width", "3"],
+    ] {
+        let output = palpate(&[&["gallery"], arguments].concat());
+        assert_eq!(status(&output), 2, "{arguments:?}");
+        assert!(!errors(&output).is_empty());
+    }
+}
+
+#[test]
+fn plot_refuses_maps_that_are_none() {
+    for arguments in [&["--map", "colour"][..], &["--map", "gradient", "--step", "0.1"]] {
+        let output = palpate(&[&["plot", "scenes/s1.json"], arguments].concat());
+        assert_eq!(status(&output), 2);
+        assert!(errors(&output).contains(arguments[0]) || errors(&output).contains("--step"));
+    }
+}
+
 /// The built-in scene, felt without waiting for the clock, twice the same.
 #[test]
 fn feel_reports_traces_and_draws() {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a picture consists of: filled and stroked paths, in order.
+//! What a picture consists of: filled and stroked paths and images, in order.
 //!
 //! A [`Drawing`] is made once and written by [`svg`](crate::svg) or [`png`](crate::png), so the
 //! two formats show the same picture.
@@ -116,6 +116,33 @@ pub(crate) struct Mark {
     pub(crate) text: Option<String>,
 }
 
+impl Mark {
+    fn new(path: Path, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
+        Self { path, is_even_odd: false, fill, stroke, text: None }
+    }
+}
+
+/// Coloured pixels, row by row from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Image {
+    pub(crate) width: usize,
+    pub(crate) pixels: Vec<Color>,
+}
+
+impl Image {
+    pub(crate) fn height(&self) -> usize {
+        self.pixels.len() / self.width.max(1)
+    }
+}
+
+/// A part of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Item {
+    Mark(Mark),
+    /// An image, stretched over a rectangle [px].
+    Image(Rect, Image),
+}
+
 /// A picture [px].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Drawing {
@@ -123,7 +150,7 @@ pub(crate) struct Drawing {
     pub(crate) height: f64,
     pub(crate) title: String,
     pub(crate) description: String,
-    pub(crate) marks: Vec<Mark>,
+    pub(crate) items: Vec<Item>,
 }
 
 /// How a text is painted.
@@ -136,28 +163,32 @@ pub(crate) struct TextPaint {
 
 impl Drawing {
     pub(crate) fn fill(&mut self, path: Path, color: Color) {
-        self.add(path, Some(color), None, None);
+        self.push(Mark::new(path, Some(color), None));
     }
 
     pub(crate) fn stroke(&mut self, path: Path, stroke: Stroke) {
-        self.add(path, None, Some(stroke), None);
+        self.push(Mark::new(path, None, Some(stroke)));
     }
 
     /// Fills `path` by the even-odd rule.
     pub(crate) fn fill_rings(&mut self, path: Path, color: Color) {
-        let added = self.marks.len();
-        self.add(path, Some(color), None, None);
-        self.marks[added..].iter_mut().for_each(|mark| mark.is_even_odd = true);
+        self.push(Mark { is_even_odd: true, ..Mark::new(path, Some(color), None) });
+    }
+
+    /// Draws `image` over `rect`.
+    pub(crate) fn image(&mut self, rect: Rect, image: Image) {
+        self.items.push(Item::Image(rect, image));
     }
 
     /// Fills `path` over its own `rim`.
     pub(crate) fn fill_with_rim(&mut self, path: Path, color: Color, rim: Stroke) {
-        self.add(path, Some(color), Some(rim), None);
+        self.push(Mark::new(path, Some(color), Some(rim)));
     }
 
     pub(crate) fn text(&mut self, text: &Text<'_>, paint: TextPaint) {
         let halo = paint.halo.map(|(color, width)| Stroke::new(color, width));
-        self.add(text.outline(), Some(paint.color), halo, Some(text.text.to_owned()));
+        let mark = Mark::new(text.outline(), Some(paint.color), halo);
+        self.push(Mark { text: Some(text.text.to_owned()), ..mark });
     }
 
     /// A horizontal line of text.
@@ -167,15 +198,9 @@ impl Drawing {
         self.text(&text, TextPaint { color, halo: None });
     }
 
-    fn add(
-        &mut self,
-        path: Path,
-        fill: Option<Color>,
-        stroke: Option<Stroke>,
-        text: Option<String>,
-    ) {
-        if !path.verbs.is_empty() {
-            self.marks.push(Mark { path, is_even_odd: false, fill, stroke, text });
+    fn push(&mut self, mark: Mark) {
+        if !mark.path.verbs.is_empty() {
+            self.items.push(Item::Mark(mark));
         }
     }
 }
@@ -194,6 +219,7 @@ impl TextStyle {
     pub(crate) const CAPTION: Self = Self::new(13.0, Weight::Regular, Color::MUTED);
     pub(crate) const AXIS: Self = Self::new(13.0, Weight::Regular, Color::INK);
     pub(crate) const TICK: Self = Self::new(12.0, Weight::Regular, Color::MUTED);
+    pub(crate) const TILE: Self = Self::new(11.8, Weight::SemiBold, Color::INK);
     pub(crate) const LEGEND: Self = Self::new(13.0, Weight::Regular, Color::INK);
 
     const fn new(size: f64, weight: Weight, color: Color) -> Self {

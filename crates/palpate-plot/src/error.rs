@@ -71,6 +71,14 @@ pub enum PlotError {
         /// The value \[m\].
         value: f64,
     },
+    /// The field gave a gradient that is NaN, infinite, or beyond any number.
+    #[error("the gradient is {gradient:?} at ({s}, {t}) m of the plane; it must be finite", s = at[0], t = at[1])]
+    Gradient {
+        /// Plane coordinates of the sample \[m\].
+        at: [f64; 2],
+        /// Its parts to the right, up, and towards the viewer.
+        gradient: [f64; 3],
+    },
     /// The distance between isolines is not a positive number.
     #[error("the step between isolines must be positive, got {step} m")]
     Step {

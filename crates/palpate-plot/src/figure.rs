@@ -8,6 +8,7 @@ use crate::drawing::{Drawing, TextStyle};
 use crate::error::PlotError;
 use crate::geometry::Rect;
 use crate::isolines::Isolines;
+use crate::sheet::Sheet;
 use crate::text::{Anchor, CAP_HEIGHT, LINE_HEIGHT, wrap};
 use crate::views::Views;
 use crate::{png, svg};
@@ -44,6 +45,7 @@ pub struct Figure {
 enum Part {
     Isolines(Box<Isolines>),
     Views(Views),
+    Sheet(Sheet),
     Chart(Chart),
 }
 
@@ -75,6 +77,19 @@ impl Figure {
     #[must_use]
     pub fn with_views(mut self, views: impl IntoIterator<Item = Isolines>) -> Self {
         self.parts.push(Part::Views(Views::new(views.into_iter().collect())));
+        self
+    }
+
+    /// With many small pictures in rows of `columns` (1 to 8), each with its
+    /// [title](Isolines::with_title), a scale bar and thin lines where the plane's axes lie,
+    /// and with one legend. Labels and overlays are left out: there is no room for them.
+    #[must_use]
+    pub fn with_sheet(
+        mut self,
+        columns: usize,
+        tiles: impl IntoIterator<Item = Isolines>,
+    ) -> Self {
+        self.parts.push(Part::Sheet(Sheet::new(tiles.into_iter().collect(), columns)));
         self
     }
 
@@ -113,6 +128,7 @@ impl Figure {
         let gutters = self.parts.iter().map(|part| match part {
             Part::Isolines(isolines) => isolines.gutter(room),
             Part::Views(views) => views.gutter(room),
+            Part::Sheet(_) => 0.0,
             Part::Chart(chart) => chart.gutter(),
         });
         // Parts share their left edge; absurdly wide labels may not push them out.
@@ -125,6 +141,7 @@ impl Figure {
             y += match part {
                 Part::Isolines(isolines) => isolines.draw(&mut drawing, &area, gutter),
                 Part::Views(views) => views.draw(&mut drawing, &area, gutter),
+                Part::Sheet(sheet) => sheet.draw(&mut drawing, &area),
                 Part::Chart(chart) => chart.draw(&mut drawing, &area, gutter),
             };
         }
@@ -151,7 +168,7 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Verb;
+    use crate::drawing::{Item, Verb};
     use crate::{Arrow, Arrows, Markers, Polyline, Quantity, Sampling, Series, Slice, View};
 
     /// Every coordinate of the figure lies in it, and so is finite.
@@ -159,7 +176,14 @@ mod tests {
         let drawing = figure.draw();
         assert!(drawing.height > 0.0 && drawing.height < 3000.0, "{}", drawing.height);
         let inside = Rect::new(0.0, 0.0, drawing.width, drawing.height);
-        for mark in &drawing.marks {
+        for item in &drawing.items {
+            let mark = match item {
+                Item::Mark(mark) => mark,
+                Item::Image(rect, _) => {
+                    assert!(inside.contains_rect(rect), "{rect:?}");
+                    continue;
+                }
+            };
             for verb in &mark.path.verbs {
                 let is_inside = match *verb {
                     Verb::Move(p) | Verb::Line(p) => inside.contains(p),
@@ -253,6 +277,7 @@ mod tests {
                 Isolines::sample(&Slice::planar(), &view, Sampling::default(), sample).unwrap();
             for count in 1..5 {
                 check(&Figure::new("Views").with_views(vec![isolines.clone(); count]));
+                check(&Figure::new("Sheet").with_sheet(3, vec![isolines.clone(); count]));
             }
         }
     }

@@ -38,6 +38,15 @@ impl Frame {
         ]
     }
 
+    /// The plane coordinates [m] of a place [px].
+    pub(crate) fn point(&self, pixel: Point) -> Point {
+        let min = self.view.min();
+        [
+            min[0] + (pixel[0] - self.plot.min[0]) / self.scale(),
+            min[1] + (self.plot.max[1] - pixel[1]) / self.scale(),
+        ]
+    }
+
     /// Where the points of a line [m] lie [px].
     pub(crate) fn pixels(&self, line: &[Point]) -> Vec<Point> {
         line.iter().map(|&p| self.pixel(p)).collect()

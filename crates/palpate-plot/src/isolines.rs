@@ -4,7 +4,7 @@
 //! The picture of a field in a plane: bands, isolines, and what lies over them.
 
 use crate::axis::{Axis, BELOW};
-use crate::drawing::{Drawing, Path, Stroke, TextStyle};
+use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
 use crate::error::PlotError;
 use crate::frame::Frame;
 use crate::geometry::Rect;
@@ -15,11 +15,15 @@ use crate::numbers::write;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
 use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
-use crate::picture::{Picture, isoline_stroke, surface_stroke};
+use crate::picture::{Lines, Picture, isoline_stroke, surface_stroke};
 use crate::sampling::{Samples, Sampling};
-use crate::slice::Slice;
+use crate::slice::{Slice, SliceAxis};
+use crate::slope::{Pixels, Slope};
+use crate::surface::Surface;
 use crate::text::{Anchor, CAP_HEIGHT};
+use crate::trust::{Gauge, Measured, Promised, Trust};
 use crate::view::View;
+use crate::wheel::{self, AxisArrow};
 
 /// Highest plot [px]; taller windows are drawn narrower.
 pub(crate) const MOST_HEIGHT: f64 = 720.0;
@@ -27,6 +31,11 @@ pub(crate) const MOST_HEIGHT: f64 = 720.0;
 pub(crate) const ABOVE_LEGEND: f64 = 10.0;
 /// Distance of ticks aimed at, across and up [px].
 const TICK_SPACING: [f64; 2] = [80.0, 70.0];
+
+/// The axes of the plane in a small picture.
+fn axis_stroke() -> Stroke {
+    Stroke::new(Color::INK, 1.0).with_dash(vec![1.5, 3.0])
+}
 
 /// Bands and isolines of a field in a window of a plane, with overlays.
 ///
@@ -61,8 +70,21 @@ pub struct Isolines {
     view: View,
     samples: Samples,
     levels: Levels,
+    sampling: Sampling,
+    ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
+}
+
+/// What lies under the lines.
+#[derive(Debug, Clone)]
+enum Ground {
+    /// Bands of distance, with isolines.
+    Distance,
+    /// The direction of the gradient.
+    Gradient(Image),
+    /// What values promise, and what they are.
+    Promise(Box<Trust>),
 }
 
 impl Isolines {
@@ -88,6 +110,8 @@ impl Isolines {
             view: *view,
             levels: Levels::choose(low, high, view.width().min(view.height())),
             samples,
+            sampling,
+            ground: Ground::Distance,
             title: String::new(),
             overlays: Vec::new(),
         })
@@ -101,6 +125,121 @@ impl Isolines {
     pub fn with_step(self, step: f64) -> Result<Self, PlotError> {
         let (low, high) = self.samples.range();
         Ok(Self { levels: Levels::with_step(low, high, step)?, ..self })
+    }
+
+    /// With the direction of the gradient as colour in place of the bands, and the surface as
+    /// the only line.
+    ///
+    /// Lightness and hue say where the field grows in the plane, as the disc in the legend
+    /// shows; colours fade to grey where the gradient is shorter than one there, because it is
+    /// flatter or because it leans out of the plane, and darken where it is longer.
+    ///
+    /// `field` is called with the plane coordinates of some points \[m\] and a slice of the
+    /// same length for their [`Slope`]s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Sample`] for the first value that is NaN, infinite or over 1e150,
+    /// [`PlotError::Gradient`] for the first such gradient.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::{Figure, Isolines, Sampling, Slice, Slope, View};
+    ///
+    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let disc = |p: [f64; 2]| {
+    ///     let r = p[0].hypot(p[1]);
+    ///     Slope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] }
+    /// };
+    /// let values = |points: &[[f64; 2]], values: &mut [f64]| {
+    ///     points.iter().zip(values).for_each(|(p, value)| *value = disc(*p).value);
+    /// };
+    /// let slopes = |points: &[[f64; 2]], slopes: &mut [Slope]| {
+    ///     points.iter().zip(slopes).for_each(|(p, slope)| *slope = disc(*p));
+    /// };
+    /// let picture = Isolines::sample(&Slice::planar(), &view, Sampling::default(), values)?
+    ///     .with_gradient(slopes)?;
+    /// let svg = Figure::new("Disc").with_isolines(picture).to_svg();
+    /// assert!(svg.contains("direction in which the field grows"));
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn with_gradient(
+        self,
+        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+    ) -> Result<Self, PlotError> {
+        let color = |_, slope: &Slope| wheel::color([slope.gradient[0], slope.gradient[1]]);
+        let image = Pixels::of(&self.view, self.sampling).paint(field, color)?;
+        Ok(Self { ground: Ground::Gradient(image), ..self })
+    }
+
+    /// With what values promise in place of the bands, and the surface as the only line.
+    ///
+    /// Each side of the surface has the tint and hatching of what is `promised` outside and
+    /// inside. Over it, what `gauge` measures: the tint itself is one, darker is less (the
+    /// value falls short of the distance), redder more. Of [`Gauge::Distance`] only what the
+    /// picture's accuracy, a cell of the grid, leaves no doubt of is shown; nothing where
+    /// a nearer surface may lie more than a window's size outside the window.
+    ///
+    /// `field` is called as in [`with_gradient`](Self::with_gradient), and for
+    /// [`Gauge::Distance`] up to a window's size outside the window.
+    ///
+    /// # Errors
+    ///
+    /// As [`with_gradient`](Self::with_gradient).
+    ///
+    /// # Examples
+    ///
+    /// Half the distance to a disc is a bound of it:
+    ///
+    /// ```
+    /// use palpate_plot::{Gauge, Isolines, Promised, Sampling, Slice, Slope, View};
+    ///
+    /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
+    /// let half = |p: &[f64; 2]| 0.5 * (p[0].hypot(p[1]) - 0.03);
+    /// let values = |points: &[[f64; 2]], values: &mut [f64]| {
+    ///     points.iter().zip(values).for_each(|(p, value)| *value = half(p));
+    /// };
+    /// let slopes = |points: &[[f64; 2]], slopes: &mut [Slope]| {
+    ///     points.iter().zip(slopes).for_each(|(p, slope)| slope.value = half(p));
+    /// };
+    /// let promised = [Promised::Bound, Promised::Bound];
+    /// let picture = Isolines::sample(&Slice::planar(), &view, Sampling::default(), values)?
+    ///     .with_promise(promised, Gauge::Distance, slopes)?;
+    /// let measured = picture.measured().unwrap();
+    /// assert!(measured.smallest > 0.5 && measured.smallest < 0.51);
+    /// assert_eq!(measured.largest, 1.0); // so close to the surface that it may be
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    pub fn with_promise(
+        self,
+        promised: [Promised; 2],
+        gauge: Gauge,
+        mut field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+    ) -> Result<Self, PlotError> {
+        let pixels = Pixels::of(&self.view, self.sampling);
+        let trust = match gauge {
+            Gauge::Distance => {
+                let Self { view, samples, sampling, .. } = &self;
+                let mut surface = Surface::find(view, samples, *sampling, &mut field)?;
+                let ratio = |at, slope: &Slope| surface.ratio(at, slope.value);
+                Trust::paint(&pixels, promised, gauge, field, ratio)
+            }
+            Gauge::Steepness => {
+                let steepness = |_, slope: &Slope| Some(slope.steepness());
+                Trust::paint(&pixels, promised, gauge, field, steepness)
+            }
+        }?;
+        Ok(Self { ground: Ground::Promise(Box::new(trust)), ..self })
+    }
+
+    /// The extremes of what [`with_promise`](Self::with_promise) measured.
+    #[must_use]
+    pub fn measured(&self) -> Option<Measured> {
+        match &self.ground {
+            Ground::Promise(trust) => trust.measured,
+            _ => None,
+        }
     }
 
     /// With a heading of its own, for figures of several parts.
@@ -184,15 +323,17 @@ impl Isolines {
         }
         let plot = self.plot(area, gutter, top);
         let frame = Frame::new(self.view, plot);
-        let picture = Picture { samples: &self.samples, levels: &self.levels, frame };
+        let levels = self.drawn_levels();
+        let picture = Picture { samples: &self.samples, levels: &levels, frame };
         let overlays = Overlays::new(frame, &self.overlays);
         let lines = picture.lines();
         let mut occupied = Occupied::default();
         lines.occupy(&mut occupied);
         overlays.occupy(&mut occupied);
         let labels = overlays.place_labels(&mut occupied);
-        picture.draw_bands(drawing);
-        picture.draw_lines(drawing, &lines, &mut occupied);
+        self.draw_ground(drawing, &picture, &lines);
+        picture.draw_lines(drawing, &lines);
+        picture.draw_labels(drawing, &lines, &mut occupied);
         overlays.draw(drawing, &labels);
         drawing.stroke(Path::rect(&plot), Stroke::new(Color::MUTED, 1.0));
         self.axis(0, plot.width()).draw_below(drawing, &plot);
@@ -200,6 +341,59 @@ impl Isolines {
         let mut bottom = plot.max[1] + BELOW;
         bottom += picture.draw_scale_bar(drawing, bottom);
         (bottom - area.min[1], [self.legend(), overlays.entries].concat())
+    }
+
+    /// Draws the field alone into `plot` [px], with the axes of the plane.
+    pub(crate) fn draw_tile(&self, drawing: &mut Drawing, plot: Rect) {
+        let frame = Frame::new(self.view, plot);
+        let levels = self.drawn_levels();
+        let picture = Picture { samples: &self.samples, levels: &levels, frame };
+        let lines = picture.lines();
+        self.draw_ground(drawing, &picture, &lines);
+        let [x, y] = frame.pixel([0.0; 2]);
+        let axes = [[[x, plot.min[1]], [x, plot.max[1]]], [[plot.min[0], y], [plot.max[0], y]]];
+        for axis in axes.iter().filter(|axis| plot.contains(axis[0])) {
+            drawing.stroke(Path::line(axis), axis_stroke());
+        }
+        picture.draw_lines(drawing, &lines);
+        drawing.stroke(Path::rect(&plot), Stroke::new(Color::MUTED, 0.75));
+    }
+
+    /// What [`draw_tile`](Self::draw_tile) draws.
+    pub(crate) fn tile_legend(&self) -> Vec<Entry> {
+        let mut entries = self.legend();
+        // Tiles have steps of their own, and promises for either side.
+        entries.retain(|entry| !matches!(&entry.key, Key::Line(line) if line.width < 1.0));
+        for entry in &mut entries {
+            if let Key::Promised(promised) = entry.key {
+                *entry = promised.entry();
+            }
+        }
+        let [right, up] = self.axis_arrows();
+        let way = if up.sign > 0.0 { "up" } else { "down" };
+        let text = format!("axes through the origin: {} right, {} {way}", right.name, up.name);
+        entries.push(Entry::new(Key::Line(axis_stroke()), text));
+        entries
+    }
+
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn draw_ground(&self, drawing: &mut Drawing, picture: &Picture<'_>, lines: &Lines) {
+        let frame = picture.frame;
+        match &self.ground {
+            Ground::Distance => picture.draw_bands(drawing),
+            Ground::Gradient(image) => {
+                drawing.image(frame.plot, image.clone());
+                picture.draw_casing(drawing, lines);
+            }
+            Ground::Promise(trust) => {
+                drawing.image(frame.plot, trust.image.clone());
+                trust.hatch(drawing, &frame.plot, |p| self.samples.value_near(frame.point(p)));
+                picture.draw_casing(drawing, lines);
+            }
+        }
     }
 
     /// The largest rectangle of the window's shape, centred.
@@ -217,7 +411,62 @@ impl Isolines {
         Axis::new(axis.name, ends, length, TICK_SPACING[index])
     }
 
+    /// The levels whose lines are drawn: the surface alone where colours say something else
+    /// than the distance.
+    fn drawn_levels(&self) -> Levels {
+        let mut levels = self.levels.clone();
+        if !matches!(self.ground, Ground::Distance) {
+            levels.values.retain(|level| *level == 0.0);
+        }
+        levels
+    }
+
+    fn surface_entry(&self) -> Entry {
+        let (low, high) = self.samples.range();
+        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
+            Entry::new(Key::Line(surface_stroke()), "surface")
+        } else {
+            Entry::new(Key::None, "no surface in view")
+        }
+    }
+
     fn legend(&self) -> Vec<Entry> {
+        match &self.ground {
+            Ground::Distance => self.distance_legend(),
+            Ground::Gradient(_) => self.gradient_legend(),
+            Ground::Promise(trust) => {
+                let (low, high) = self.samples.range();
+                let mut entries = trust.entries([high > 0.0, low < 0.0]);
+                entries.push(self.surface_entry());
+                entries
+            }
+        }
+    }
+
+    /// The axes of the picture without their units.
+    fn axis_arrows(&self) -> [AxisArrow; 2] {
+        self.slice.axes().map(|SliceAxis { name, sign }| {
+            let name = name.split(' ').next().unwrap_or(name).to_owned();
+            AxisArrow { name, sign }
+        })
+    }
+
+    fn gradient_legend(&self) -> Vec<Entry> {
+        vec![
+            Entry::new(
+                Key::Wheel(self.axis_arrows()),
+                "direction in which the field grows; at the rim its gradient is 1",
+            ),
+            self.surface_entry(),
+            Entry::new(
+                Key::Swatch(wheel::color([0.0; 2])),
+                "flat, or leaning out of the plane",
+            ),
+            Entry::new(Key::Swatch(wheel::color([0.0, -2.0])), "darker: steeper than 1"),
+        ]
+    }
+
+    fn distance_legend(&self) -> Vec<Entry> {
         let (low, high) = self.samples.range();
         let (inside, outside) = self.levels.bands();
         let bands = |side, count: usize| {
@@ -231,11 +480,7 @@ impl Isolines {
         if low < 0.0 {
             entries.push(Entry::new(bands(Side::Inside, inside), "inside"));
         }
-        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
-            entries.push(Entry::new(Key::Line(surface_stroke()), "surface"));
-        } else {
-            entries.push(Entry::new(Key::None, "no surface in view"));
-        }
+        entries.push(self.surface_entry());
         if high > 0.0 {
             entries.push(Entry::new(bands(Side::Outside, outside), "outside"));
         }

@@ -7,6 +7,8 @@ use crate::drawing::{Drawing, Path, Stroke, TextStyle};
 use crate::geometry::{Point, Rect, distance};
 use crate::palette::Color;
 use crate::text::{Anchor, CAP_HEIGHT, shorten};
+use crate::trust::{self, Promised};
+use crate::wheel::{self, AxisArrow};
 
 /// Width of a key [px].
 const KEY: f64 = 30.0;
@@ -28,6 +30,14 @@ pub(crate) enum Key {
     Arrow(Color, f64),
     /// A point.
     Point(Symbol, Color),
+    /// The disc of directions, with the names of the two axes.
+    Wheel([AxisArrow; 2]),
+    /// A colour.
+    Swatch(Color),
+    /// The tint and hatching of a promise.
+    Promised(Promised),
+    /// The colours of what is measured, between two numbers.
+    Scale(Promised, [f64; 2]),
     /// Words only.
     None,
 }
@@ -46,9 +56,20 @@ impl Entry {
 }
 
 impl Key {
+    /// Height of a row that holds the key [px].
+    fn height(&self) -> f64 {
+        match self {
+            Self::Wheel(_) => wheel::SIZE,
+            Self::Scale(..) => trust::SCALE[1],
+            _ => ROW,
+        }
+    }
+
     fn width(&self) -> f64 {
         match self {
-            Self::Bands(_) | Self::Line(_) => KEY,
+            Self::Wheel(_) => wheel::SIZE,
+            Self::Scale(..) => trust::SCALE[0],
+            Self::Bands(_) | Self::Line(_) | Self::Swatch(_) | Self::Promised(_) => KEY,
             Self::Arrow(_, length) => length.max(12.0),
             Self::Point(..) => 12.0,
             Self::None => -GAP,
@@ -75,29 +96,74 @@ impl Key {
                 draw_arrow(drawing, [x, y], [x + length, y], *color);
             }
             Self::Point(symbol, color) => symbol.draw(drawing, [x + 6.0, y], *color),
+            Self::Wheel(axes) => wheel::draw(drawing, [x + wheel::SIZE / 2.0, y], axes),
+            Self::Swatch(color) => draw_swatch(drawing, x, y, *color, |_, _| {}),
+            Self::Promised(promised) => {
+                let hatch = |drawing: &mut Drawing, rect: &Rect| {
+                    promised.hatch(drawing, rect, |_| true);
+                };
+                draw_swatch(drawing, x, y, promised.tint(), hatch);
+            }
+            Self::Scale(promised, ends) => {
+                trust::draw_scale(drawing, [x, y], *promised, *ends);
+            }
             Self::None => {}
         }
     }
 }
 
+/// Draws a framed rectangle of `color` with its left end at `x`, centred on `y` [px].
+fn draw_swatch(
+    drawing: &mut Drawing,
+    x: f64,
+    y: f64,
+    color: Color,
+    inner: impl FnOnce(&mut Drawing, &Rect),
+) {
+    let rect = Rect::new(x, y - 6.0, KEY, 12.0);
+    drawing.fill(Path::rect(&rect), color);
+    inner(drawing, &rect);
+    drawing.stroke(Path::rect(&rect), Stroke::new(Color::MUTED, 0.75));
+}
+
 /// Draws entries in rows of at most `width` from `[x, y]` down, all [px]; returns the height.
 pub(crate) fn draw(drawing: &mut Drawing, entries: &[Entry], [x, y]: Point, width: f64) -> f64 {
     let style = TextStyle::LEGEND;
-    let (mut left, mut row) = (x, 0);
+    let mut top = y;
+    for row in rows(entries, width) {
+        let height = row.iter().map(|(entry, _)| entry.key.height()).fold(ROW, f64::max);
+        let (mut left, middle) = (x, top + height / 2.0);
+        for (entry, text) in row {
+            entry.key.draw(drawing, left, middle);
+            left += entry.key.width() + GAP;
+            let at = [left, middle + CAP_HEIGHT * style.size / 2.0];
+            drawing.label(&text, at, Anchor::Start, style);
+            left += style.width(&text) + BETWEEN;
+        }
+        top += height;
+    }
+    top - y
+}
+
+/// The entries of each row of `width` [px], with their texts, shortened to it.
+fn rows(entries: &[Entry], width: f64) -> Vec<Vec<(&Entry, String)>> {
+    let style = TextStyle::LEGEND;
+    let mut rows: Vec<Vec<_>> = Vec::new();
+    let mut left = 0.0;
     for entry in entries {
         let before = entry.key.width() + GAP;
         let text = shorten(&entry.text, style.size, style.weight, width - before);
         let needed = before + style.width(&text);
-        if left > x && left + needed > x + width {
-            (left, row) = (x, row + 1);
+        match rows.last_mut() {
+            Some(row) if left + needed <= width => row.push((entry, text)),
+            _ => {
+                left = 0.0;
+                rows.push(vec![(entry, text)]);
+            }
         }
-        let middle = y + ROW * (f64::from(row) + 0.5);
-        entry.key.draw(drawing, left, middle);
-        let at = [left + before, middle + CAP_HEIGHT * style.size / 2.0];
-        drawing.label(&text, at, Anchor::Start, style);
         left += needed + BETWEEN;
     }
-    if entries.is_empty() { 0.0 } else { ROW * f64::from(row + 1) }
+    rows
 }
 
 /// The shape of a point.

@@ -70,7 +70,7 @@ impl Color {
     }
 
     /// Björn Ottosson, "A perceptual color space for image processing" (2020).
-    fn to_oklab(self) -> [f64; 3] {
+    pub(crate) fn to_oklab(self) -> [f64; 3] {
         let [r, g, b] = [self.red, self.green, self.blue].map(|c| {
             let c = f64::from(c) / 255.0;
             if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
@@ -85,7 +85,7 @@ impl Color {
         ]
     }
 
-    fn from_oklab([lightness, a, b]: [f64; 3]) -> Self {
+    pub(crate) fn from_oklab([lightness, a, b]: [f64; 3]) -> Self {
         let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
         let m = (lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b).powi(3);
         let s = (lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b).powi(3);

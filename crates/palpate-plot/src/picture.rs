@@ -18,9 +18,13 @@ use crate::text::Anchor;
 /// surface is drawn however small it is.
 const SPECK: f64 = 2.5;
 
+/// Width of the line of the surface [px], and of the white rim with it.
+const SURFACE: f64 = 2.8;
+const CASING: f64 = 5.6;
+
 /// The line of the surface.
 pub(crate) fn surface_stroke() -> Stroke {
-    Stroke::new(Color::INK, 2.8)
+    Stroke::new(Color::INK, SURFACE)
 }
 
 /// The other isolines.
@@ -94,13 +98,8 @@ impl Picture<'_> {
         lines
     }
 
-    /// Draws the isolines with their labels, the surface over the others.
-    pub(crate) fn draw_lines(
-        &self,
-        drawing: &mut Drawing,
-        lines: &Lines,
-        occupied: &mut Occupied,
-    ) {
+    /// Draws the isolines, the surface over the others.
+    pub(crate) fn draw_lines(&self, drawing: &mut Drawing, lines: &Lines) {
         for (level, lines) in &lines.rest {
             drawing.stroke(path_of(lines), isoline_stroke(side_of(*level)));
         }
@@ -108,6 +107,15 @@ impl Picture<'_> {
         let mut thin = Path::default();
         lines.thin.iter().for_each(|ring| thin.add_ring(ring));
         drawing.fill_rings(thin, Color::INK);
+    }
+
+    /// Draws the labels of the isolines where there is room.
+    pub(crate) fn draw_labels(
+        &self,
+        drawing: &mut Drawing,
+        lines: &Lines,
+        occupied: &mut Occupied,
+    ) {
         // From the surface outwards on each side, so that labels line up.
         let (inside, outside): (Vec<_>, Vec<_>) =
             lines.rest.iter().partition(|(level, _)| *level < 0.0);
@@ -127,6 +135,12 @@ impl Picture<'_> {
                 }
             }
         }
+    }
+
+    /// Draws a white rim under the surface, which sets it off from dark colours.
+    pub(crate) fn draw_casing(&self, drawing: &mut Drawing, lines: &Lines) {
+        drawing.stroke(path_of(&lines.surface), Stroke::new(Color::WHITE, CASING));
+        drawing.stroke(path_of(&lines.thin), Stroke::new(Color::WHITE, CASING - SURFACE));
     }
 
     /// Draws the scale bar at the right of the row of the axis name whose baseline is `y`, or

@@ -4,12 +4,13 @@
 //! Draws a drawing as PNG.
 
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, StrokeDash, Transform,
+    FillRule, FilterQuality, LineCap, LineJoin, Paint, PathBuilder, Pattern, Pixmap,
+    PremultipliedColorU8, SpreadMode, StrokeDash, Transform,
 };
 
-use crate::drawing::{Drawing, Mark, Path, Stroke, Verb};
+use crate::drawing::{Drawing, Image, Item, Mark, Path, Stroke, Verb};
 use crate::error::PlotError;
-use crate::geometry::Point;
+use crate::geometry::{Point, Rect};
 use crate::palette::Color;
 
 /// Smallest width [px]: below it no label can be read.
@@ -32,10 +33,62 @@ pub(crate) fn write(drawing: &Drawing, width: u32) -> Result<Vec<u8>, PlotError>
     let mut pixels = Pixmap::new(width, height as u32).ok_or(size_error)?;
     pixels.fill(tiny_skia::Color::WHITE);
     let transform = Transform::from_scale(scale as f32, scale as f32);
-    for mark in &drawing.marks {
-        paint_mark(&mut pixels, mark, transform);
+    for item in &drawing.items {
+        match item {
+            Item::Mark(mark) => paint_mark(&mut pixels, mark, transform),
+            Item::Image(rect, image) => paint_image(&mut pixels, rect, image, transform),
+        }
     }
+    encode(&pixels)
+}
+
+/// The image as a PNG file of its own size.
+///
+/// # Errors
+///
+/// [`PlotError::Png`].
+pub(crate) fn write_image(image: &Image) -> Result<Vec<u8>, PlotError> {
+    match pixmap(image) {
+        Some(pixels) => encode(&pixels),
+        None => Err(PlotError::Png { reason: "an image without pixels".to_owned() }),
+    }
+}
+
+fn encode(pixels: &Pixmap) -> Result<Vec<u8>, PlotError> {
     pixels.encode_png().map_err(|error| PlotError::Png { reason: error.to_string() })
+}
+
+fn pixmap(image: &Image) -> Option<Pixmap> {
+    let [width, height] =
+        [image.width, image.height()].map(|side| u32::try_from(side).unwrap_or(0));
+    let mut pixmap = Pixmap::new(width, height)?;
+    for (pixel, color) in pixmap.pixels_mut().iter_mut().zip(&image.pixels) {
+        let Color { red, green, blue } = *color;
+        *pixel = PremultipliedColorU8::from_rgba(red, green, blue, u8::MAX)?;
+    }
+    Some(pixmap)
+}
+
+/// Paints `image` over `rect`, its pixels blended where they are enlarged.
+fn paint_image(pixels: &mut Pixmap, rect: &Rect, image: &Image, transform: Transform) {
+    let (Some(source), Some(path)) = (pixmap(image), build(&Path::rect(rect))) else {
+        return;
+    };
+    let scale = |size: f64, count: usize| (size / count as f64) as f32;
+    let to_rect = Transform::from_row(
+        scale(rect.width(), image.width),
+        0.0,
+        0.0,
+        scale(rect.height(), image.height()),
+        rect.min[0] as f32,
+        rect.min[1] as f32,
+    );
+    let quality = FilterQuality::Bilinear;
+    let paint = Paint {
+        shader: Pattern::new(source.as_ref(), SpreadMode::Pad, quality, 1.0, to_rect),
+        ..Paint::default()
+    };
+    pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
 }
 
 fn paint_mark(pixels: &mut Pixmap, mark: &Mark, transform: Transform) {

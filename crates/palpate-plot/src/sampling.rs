@@ -44,6 +44,13 @@ impl Sampling {
     }
 }
 
+impl Sampling {
+    /// Cells along the longer side.
+    pub(crate) fn cells(self) -> usize {
+        self.cells
+    }
+}
+
 impl Default for Sampling {
     /// 420 cells: two pixels each at 800 px, and isolines off by well under one.
     fn default() -> Self {
@@ -97,6 +104,14 @@ impl Samples {
             }
         }
         Ok(Self { columns, rows, cell, origin, values })
+    }
+
+    /// The value of the sample nearest to `p` [m].
+    pub(crate) fn value_near(&self, p: Point) -> f64 {
+        let index = |i: usize, count: usize| {
+            (((p[i] - self.origin[i]) / self.cell) as usize).min(count - 1)
+        };
+        self.values[index(1, self.rows) * self.columns + index(0, self.columns)]
     }
 
     /// Whether the field is nowhere negative, but zero somewhere as far as samples can tell.

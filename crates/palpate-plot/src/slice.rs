@@ -185,6 +185,21 @@ impl Slice {
         [dot(vector, self.right), dot(vector, self.up)]
     }
 
+    /// The parts of `gradient` to the right, up, and towards the viewer.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::Slice;
+    ///
+    /// assert_eq!(Slice::xz(0.0)?.project_gradient([0.6, 0.8, 0.0]), [0.6, 0.0, 0.8]);
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub fn project_gradient(&self, gradient: [f64; 3]) -> [f64; 3] {
+        [self.right, self.up, self.normal()].map(|axis| dot(gradient, axis) + 0.0) // no −0
+    }
+
     /// Signed distance of `point` from the plane \[m\], positive towards the viewer.
     #[must_use]
     pub fn elevation(&self, point: [f64; 3]) -> f64 {

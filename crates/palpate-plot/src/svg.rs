@@ -5,9 +5,10 @@
 
 use std::fmt::Write;
 
-use crate::drawing::{Drawing, Mark, Path, Stroke, Verb};
-use crate::geometry::Point;
+use crate::drawing::{Drawing, Image, Item, Mark, Path, Stroke, Verb};
+use crate::geometry::{Point, Rect};
 use crate::palette::Color;
+use crate::png;
 
 /// The drawing as an SVG document, the same bytes for the same drawing.
 pub(crate) fn write(drawing: &Drawing) -> String {
@@ -24,8 +25,11 @@ pub(crate) fn write(drawing: &Drawing) -> String {
     }
     let white = Color::WHITE.hex();
     svg.push_str(&format!("<path fill=\"{white}\" d=\"M0 0H{width}V{height}H0z\"/>\n"));
-    for mark in &drawing.marks {
-        write_mark(&mut svg, mark);
+    for item in &drawing.items {
+        match item {
+            Item::Mark(mark) => write_mark(&mut svg, mark),
+            Item::Image(rect, image) => write_image(&mut svg, rect, image),
+        }
     }
     svg.push_str("</svg>\n");
     svg
@@ -50,6 +54,35 @@ fn write_mark(svg: &mut String, mark: &Mark) {
     svg.push_str(" d=\"");
     write_path(svg, &mark.path);
     svg.push_str("\"/>\n");
+}
+
+/// Writes an image as PNG within the document, as a data URL (RFC 2397).
+fn write_image(svg: &mut String, rect: &Rect, image: &Image) {
+    // An image without pixels shows nothing; writing to memory cannot fail otherwise.
+    let Ok(png) = png::write_image(image) else { return };
+    let [x, y] = rect.min.map(Number);
+    let (width, height) = (Number(rect.width()), Number(rect.height()));
+    svg.push_str(&format!(
+        "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+         preserveAspectRatio=\"none\" href=\"data:image/png;base64,"
+    ));
+    write_base64(svg, &png);
+    svg.push_str("\"/>\n");
+}
+
+/// Writes bytes in base 64 (RFC 4648).
+fn write_base64(text: &mut String, bytes: &[u8]) {
+    const DIGITS: &[u8; 64] =
+        b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for three in bytes.chunks(3) {
+        let byte = |i: usize| three.get(i).map_or(0, |&byte| u32::from(byte));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for digit in 0..4 {
+            let is_filled = digit <= three.len();
+            let index = (bits >> (18 - 6 * digit) & 63) as usize;
+            text.push(if is_filled { char::from(DIGITS[index]) } else { '=' });
+        }
+    }
 }
 
 fn write_stroke(svg: &mut String, stroke: &Stroke) {
@@ -177,6 +210,18 @@ mod tests {
         let mut svg = String::new();
         write_path(&mut svg, &path);
         assert_eq!(svg, "m1 2l.33 0 .34-.5 .33 0zm4 3l1 0");
+    }
+
+    /// The examples of RFC 4648, section 10.
+    #[test]
+    fn bytes_are_written_in_base_64() {
+        for (bytes, expected) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg==")]
+        {
+            let mut text = String::new();
+            write_base64(&mut text, bytes.as_bytes());
+            assert_eq!(text, expected);
+        }
     }
 
     #[test]

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Whole figures: their bytes, their pixels, their words.
+#![allow(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_plot::{
     Chart, Figure, Isolines, Markers, PlotError, Polyline, Quantity, Sampling, Series, Slice,
-    View,
+    Slope, View,
 };
 
 fn disc(points: &[[f64; 2]], values: &mut [f64]) {
@@ -123,6 +124,42 @@ fn svg_and_png_are_the_same_picture() {
     let largest = differences.clone().max().unwrap();
     let mean = differences.map(f64::from).sum::<f64>() / ours.data().len() as f64;
     assert!(largest <= 48 && mean < 0.05, "{largest} {mean}");
+}
+
+/// A disc with its gradients.
+fn slopes(points: &[[f64; 2]], slopes: &mut [Slope]) {
+    for (p, slope) in points.iter().zip(slopes) {
+        let r = p[0].hypot(p[1]);
+        *slope = Slope { value: r - 0.03, gradient: [p[0] / r, p[1] / r, 0.0] };
+    }
+}
+
+#[test]
+fn a_gradient_has_the_colour_of_its_direction() {
+    let gradient = isolines(200).unwrap().with_gradient(slopes).unwrap();
+    let figure = Figure::new("").with_isolines(gradient);
+    let pixels = resvg::tiny_skia::Pixmap::decode_png(&figure.to_png(800).unwrap()).unwrap();
+    // The plot spans 0.12 m, right of the ticks; its middle is the disc's.
+    let svg = figure.to_svg();
+    let number = |key: &str| -> f64 {
+        let rest = svg.split("<image ").nth(1).unwrap().split(&format!("{key}=\"")).nth(1);
+        rest.unwrap().split('"').next().unwrap().parse().unwrap()
+    };
+    let [x, y, width, height] = ["x", "y", "width", "height"].map(number);
+    let at = |right: f64, up: f64| {
+        let place = [x + width * (0.5 + right), y + height * 0.5 - width * up];
+        let pixel = pixels.pixel(place[0] as u32, place[1] as u32).unwrap();
+        [pixel.red(), pixel.green(), pixel.blue()].map(i32::from)
+    };
+    let ([r, g, b], [left_r, left_g, left_b]) = (at(0.4, 0.0), at(-0.4, 0.0));
+    assert!(r + g + b > left_r + left_g + left_b + 150, "lighter to the right");
+    assert!(g > r && left_r > left_g, "green to the right, red to the left");
+    let ([r, _, b], [down_r, _, down_b]) = (at(0.0, 0.3), at(0.0, -0.3));
+    assert!(r > b + 100 && down_b > down_r + 100, "yellow upwards, blue downwards");
+    assert_eq!(at(0.3, 0.0), at(0.42, 0.0), "the same for the same direction");
+    let words = words(&svg);
+    assert!(words.contains(&"x") && words.contains(&"y"), "{words:?}");
+    assert!(!words.contains(&"inside") && words.contains(&"surface"), "{words:?}");
 }
 
 #[test]

@@ -9,7 +9,8 @@ use std::path::Path;
 use palpate::field::{Aabb, Vector};
 use palpate::haptics::{Recorder, TraceRow};
 use palpate::plot::{
-    Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Series,
+    Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Sampling,
+    Series,
 };
 use palpate::scene::BuiltScene;
 
@@ -69,7 +70,8 @@ where
     let mut views = Vec::new();
     for slice in &slices {
         let view = Dimensions::view(&slice.plane, &bounds)?;
-        let isolines = picture::isolines(&scene.whole, &slice.plane, &view)?;
+        let isolines =
+            picture::isolines(&scene.whole, &slice.plane, &view, Sampling::default())?;
         let isolines = isolines.with_title(&slice.heading);
         let spacing = ARROW_SPACING * (view.width() * view.height()).sqrt();
         views.push(overlaid(isolines, slice, &contacts, spacing)?);

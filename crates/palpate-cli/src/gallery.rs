@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate gallery`: every primitive and operator, in small pictures.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use palpate::field::kernel::Entry;
+use palpate::field::{Aabb, Shape, Vector};
+use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
+use palpate::scene::{Scene, World};
+use rayon::prelude::*;
+use serde_json::json;
+
+use crate::arguments::{GalleryOptions, Map, Plane};
+use crate::input::promise_in_words;
+use crate::outcome::{Failure, Outcome};
+use crate::picture::{self, Dimensions, Drawable};
+
+/// Every operator on a simple example, a body each.
+const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
+/// Tiles in a row: longer names than those of the catalogue would not fit in six.
+const COLUMNS: usize = 5;
+/// Cells along a tile, two to a pixel of the figure.
+const TILE_CELLS: usize = 140;
+/// Room around a shape, as a share of its longest edge.
+const MARGIN: f64 = 0.2;
+/// What is shown of a shape without bounds, along each axis: about what the examples measure,
+/// and more of what is below, where the infinite cone is [m].
+const UNBOUNDED: [f64; 2] = [-1.2, 0.8];
+
+/// A shape with its name.
+struct Specimen<const D: usize> {
+    name: String,
+    shape: Shape<D>,
+}
+
+/// What is drawn, and where it goes.
+struct Work<'a> {
+    options: &'a GalleryOptions,
+    bar: ProgressBar,
+}
+
+pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
+    let planar = catalogue(Entry::<2>::ALL)?;
+    let spatial = catalogue(Entry::<3>::ALL)?;
+    let operators = operators()?;
+    let planes = options.planes();
+    let in_space = planes.len() * (spatial.len() + operators.len());
+    let bar = ProgressBar::new((planar.len() + in_space) as u64).with_style(
+        ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}").map_err(Failure::input)?,
+    );
+    let work = Work { options, bar };
+    let mut written =
+        work.draw("shapes-of-the-plane", "Shapes of the plane", &planar, |_| {
+            Ok(Slice::planar())
+        })?;
+    for plane in planes {
+        let through = |bounds: &Aabb<3>| plane.through(bounds.centre());
+        let name = plane.name();
+        for (stem, title, specimens) in [
+            ("shapes-of-space", "Shapes of space", &spatial),
+            ("operators", "Operators", &operators),
+        ] {
+            let title =
+                format!("{title}, cut along {} through their middle", name.to_uppercase());
+            written.extend(work.draw(&format!("{stem}-{name}"), &title, specimens, through)?);
+        }
+    }
+    work.bar.finish_and_clear();
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        let pictures = written
+            .iter()
+            .map(|picture| json!({ "output": picture.path, "shapes": picture.shapes }));
+        let answer = json!({
+            "map": options.map.name(),
+            "pictures": pictures.collect::<Vec<_>>(),
+        });
+        writeln!(out, "{answer:#}")?;
+        return Ok(Outcome::Yes);
+    }
+    for picture in &written {
+        match &picture.shapes[..] {
+            [name] => writeln!(out, "{}: {name}", picture.path.display())?,
+            names => writeln!(out, "{}: {} pictures", picture.path.display(), names.len())?,
+        }
+    }
+    Ok(Outcome::Yes)
+}
+
+/// A picture that was written.
+struct Written {
+    path: PathBuf,
+    shapes: Vec<String>,
+}
+
+impl Work<'_> {
+    /// Draws `specimens` on one sheet, and on a picture each if that is asked for.
+    fn draw<const D: usize>(
+        &self,
+        stem: &str,
+        title: &str,
+        specimens: &[Specimen<D>],
+        plane: impl Fn(&Aabb<D>) -> Result<Slice, PlotError> + Sync,
+    ) -> Result<Vec<Written>, Failure>
+    where
+        Dimensions: Drawable<D>,
+    {
+        self.bar.set_message(stem.to_owned());
+        let folder = &self.options.output;
+        let each = folder.join(stem);
+        let last = if self.options.each { &each } else { folder };
+        std::fs::create_dir_all(last).map_err(|error| Failure::file(last, error))?;
+        let map = self.options.map;
+        let drawn: Vec<(Isolines, Option<Written>)> = specimens
+            .par_iter()
+            .map(|specimen| {
+                let cells = Sampling::new(TILE_CELLS).map_err(Failure::input)?;
+                let tile = specimen.picture(&plane, cells, map).map_err(Failure::input)?;
+                let tile = tile.with_title(&specimen.name);
+                let written = if self.options.each {
+                    let file = specimen.name.replace(' ', "_");
+                    Some(self.draw_one(specimen, &plane, &each.join(file))?)
+                } else {
+                    None
+                };
+                self.bar.inc(1);
+                Ok((tile, written))
+            })
+            .collect::<Result<_, Failure>>()?;
+        let (tiles, single): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
+        let figure = Figure::new(title).with_caption(caption(map)).with_sheet(COLUMNS, tiles);
+        let shapes = specimens.iter().map(|specimen| specimen.name.clone()).collect();
+        let mut written = vec![self.save(&figure, &folder.join(stem), shapes)?];
+        written.extend(single.into_iter().flatten());
+        Ok(written)
+    }
+
+    fn draw_one<const D: usize>(
+        &self,
+        specimen: &Specimen<D>,
+        plane: impl Fn(&Aabb<D>) -> Result<Slice, PlotError>,
+        path: &Path,
+    ) -> Result<Written, Failure>
+    where
+        Dimensions: Drawable<D>,
+    {
+        let isolines = specimen
+            .picture(plane, Sampling::default(), self.options.map)
+            .map_err(Failure::input)?;
+        let figure = Figure::new(specimen.name.replace('_', " "))
+            .with_caption(promise_in_words(specimen.shape.promise()))
+            .with_isolines(isolines);
+        self.save(&figure, path, vec![specimen.name.clone()])
+    }
+
+    fn save(
+        &self,
+        figure: &Figure,
+        path: &Path,
+        shapes: Vec<String>,
+    ) -> Result<Written, Failure> {
+        let path = path.with_extension(self.options.format.name());
+        picture::save(figure, &path, self.options.width)?;
+        Ok(Written { path, shapes })
+    }
+}
+
+impl<const D: usize> Specimen<D> {
+    /// The shape in a square window around it.
+    fn picture(
+        &self,
+        plane: impl Fn(&Aabb<D>) -> Result<Slice, PlotError>,
+        sampling: Sampling,
+        map: Map,
+    ) -> Result<Isolines, PlotError>
+    where
+        Dimensions: Drawable<D>,
+    {
+        let [min, max] = UNBOUNDED.map(Vector::constant);
+        let unbounded = || Aabb { min, max };
+        let bounds = self.shape.promise().bounds.map_or_else(unbounded, |bounds| bounds.aabb);
+        let plane = plane(&bounds)?;
+        let view = Dimensions::view(&plane, &bounds)?;
+        let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max);
+        let side = 2.0 * (1.0 + 2.0 * MARGIN) * longest;
+        let view = View::new(view.center(), side, side)?;
+        let isolines = picture::isolines(&self.shape, &plane, &view, sampling)?;
+        picture::mapped(&self.shape, &plane, isolines, map)
+    }
+}
+
+fn catalogue<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Specimen<D>>, Failure> {
+    let specimen = |entry: &Entry<D>| {
+        let shape = entry.example().map_err(Failure::input)?;
+        Ok(Specimen { name: entry.name.to_owned(), shape })
+    };
+    entries.iter().map(specimen).collect()
+}
+
+fn operators() -> Result<Vec<Specimen<3>>, Failure> {
+    let world = Scene::from_json(OPERATORS).and_then(|scene| scene.build());
+    match world.map_err(Failure::input)? {
+        World::Spatial(scene) => Ok(scene
+            .bodies
+            .into_iter()
+            .map(|body| Specimen { name: body.name, shape: body.shape_in_body })
+            .collect()),
+        World::Planar(_) => Ok(Vec::new()),
+    }
+}
+
+fn caption(map: Map) -> &'static str {
+    match map {
+        Map::Distance => "Distances; each shape at a scale of its own, its bar below",
+        Map::Gradient => "Directions of gradients; each shape at a scale of its own",
+        Map::Promise => "What values promise, and what they are; each at a scale of its own",
+    }
+}
+
+impl Plane {
+    fn through(self, Vector([x, y, z]): Vector<f64, 3>) -> Result<Slice, PlotError> {
+        match self {
+            Self::Xy => Slice::xy(z),
+            Self::Xz => Slice::xz(y),
+            Self::Yz => Slice::yz(x),
+        }
+    }
+}
