@@ -21,8 +21,8 @@ use crate::vector::Vector;
 ///
 /// A norm is convex, and by the triangle inequality changes from `p` to `q` by at most
 /// `‖p − q‖_P ≤ ‖p − q‖`. So `f` has the Lipschitz constant 1, and its zero is at least
-/// as far as its value. It is the distance on the axes; on the diagonals it is
-/// `D^(1/P − 1/2)` times as much, in space 0.66 for `P` = 8.
+/// as far as its value. On the axes it is the distance outside; along the diagonals it
+/// has the slope `D^(1/P − 1/2)`, in space 0.66 for `P` = 8.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::PowerBall};
