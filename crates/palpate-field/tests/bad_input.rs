@@ -9,9 +9,10 @@ use palpate_field::kernel::{
     ChamferedRectangle, Cross, Cuboid, CuboidFrame, CutBall, CutDisk, CutHollowSphere,
     Cylinder, CylinderBetween, DeathStar, Ellipsoid, Entry, HalfSpace, Horseshoe, InfiniteCone,
     IsoscelesTrapezoid, Link, Moon, OrientedRectangle, OrientedVesica, Parameter,
-    ParameterKind, Pie, Polygon, RegularPolygon, RegularStar, RhombusPrism, Ring, RingSector,
-    RoundCone, RoundConeBetween, RoundedCuboid, RoundedCylinder, RoundedRectangle, RoundedX,
-    Sheet, Simplex, SolidAngle, Stairs, Torus, Tunnel, UnevenCapsule, Vesica, VesicaSegment,
+    ParameterKind, Pie, Polygon, PowerBall, PowerCuboid, PowerTorus, RegularPolygon,
+    RegularStar, RhombusPrism, Ring, RingSector, RoundCone, RoundConeBetween, RoundedCuboid,
+    RoundedCylinder, RoundedRectangle, RoundedX, Sheet, Simplex, SolidAngle, Stairs, Torus,
+    Tunnel, UnevenCapsule, Vesica, VesicaSegment,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::Model;
@@ -169,6 +170,21 @@ fn messages_of_curves_name_the_number_and_its_unit() {
 }
 
 #[test]
+fn messages_of_other_norms_name_the_exponents_that_there_are() {
+    let size = Vector([1.0, 0.5]);
+    let messages = [
+        message(PowerBall::new(-0.5, 4)),
+        message(PowerBall::new(0.5, 2)),
+        message(PowerCuboid::new(size, 0.3, 4)),
+        message(PowerCuboid::new(size, 0.1, 7)),
+        message(PowerTorus::new(0.1, 0.25, 8, 8)),
+        message(PowerTorus::new(0.5, 0.25, 3, 8)),
+        message(PowerTorus::new(0.5, 0.25, 2, 10)),
+    ];
+    insta::assert_snapshot!("other_norms", messages.join("\n"));
+}
+
+#[test]
 fn messages_of_operators_name_the_number_and_its_unit() -> Outcome {
     let far = Pose::translation(Vector([0.0, 1e300, 0.0]));
     let none: [Shape<3>; 0] = [];
@@ -225,7 +241,7 @@ fn bad(parameter: &Parameter, dimension: usize) -> Vec<Argument> {
         ParameterKind::Count => {
             let mut list = vec![0, 1_000_000, u32::MAX];
             // A polygon needs three sides, a star three branches.
-            if parameter.name != "steps" {
+            if !matches!(parameter.name, "steps" | "ring_exponent" | "tube_exponent") {
                 list.push(2);
             }
             list.into_iter().map(Argument::Count).collect()

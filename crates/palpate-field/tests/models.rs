@@ -202,6 +202,17 @@ operations! {
     norm_of_one: one, |x| Scalar::norm(x);
     norm_of_two: two, |x| Scalar::norm(x);
     norm_of_three: three, |x| Scalar::norm(x);
+    power_norm_of_one: one, |x| Scalar::power_norm::<8, 1>(x);
+    fourth_power_norm_of_two: two, |x| Scalar::power_norm::<4, 2>(x);
+    sixth_power_norm_of_two: two, |x| Scalar::power_norm::<6, 2>(x);
+    fourth_power_norm_of_three: three, |x| Scalar::power_norm::<4, 3>(x);
+    sixth_power_norm_of_three: three, |x| Scalar::power_norm::<6, 3>(x);
+    eighth_power_norm_of_three: three, |x| Scalar::power_norm::<8, 3>(x);
+    power_orthant_of_one: one, |x| Scalar::power_orthant::<4, 1>(x);
+    fourth_power_orthant_of_three: three, |x| Scalar::power_orthant::<4, 3>(x);
+    sixth_power_orthant_of_three: three, |x| Scalar::power_orthant::<6, 3>(x);
+    eighth_power_orthant_of_two: two, |x| Scalar::power_orthant::<8, 2>(x);
+    eighth_power_orthant_of_three: three, |x| Scalar::power_orthant::<8, 3>(x);
     orthant_of_one: one, |x| Scalar::orthant(x);
     orthant_of_two: two, |x| Scalar::orthant(x);
     orthant_of_three: three, |x| Scalar::orthant(x);

@@ -109,6 +109,10 @@ fn argument<const D: usize>(
             1 => std::f64::consts::PI,
             _ => within(u, 0.01, std::f64::consts::TAU)?,
         }),
+        // Two is an exponent of some, which refuse it or not.
+        ParameterKind::Count if what.name.ends_with("exponent") => {
+            Argument::Count(*u.choose(&[2, 4, 6, 8])?)
+        }
         ParameterKind::Count => Argument::Count(match u.int_in_range(0..=3_u8)? {
             0 => u.int_in_range(3..=256)?,
             // Polygons and stars have at least three.

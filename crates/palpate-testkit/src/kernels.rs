@@ -72,6 +72,7 @@ dimension! { 2:
     kernel::Egg, kernel::Heart, kernel::RoundedCross, kernel::BobblyCross,
     kernel::Parabola, kernel::ParabolaSegment, kernel::QuadraticBezier,
     kernel::QuadraticCircle, kernel::Hyperbola, kernel::CircleWave,
+    kernel::PowerBall, kernel::PowerCuboid<2>,
 }
 
 dimension! { 3:
@@ -83,6 +84,7 @@ dimension! { 3:
     kernel::CuboidFrame, kernel::CappedTorus, kernel::Link, kernel::InfiniteCone, kernel::CylinderBetween, kernel::CappedConeBetween, kernel::SolidAngle, kernel::CutBall, kernel::CutHollowSphere, kernel::DeathStar, kernel::RoundCone, kernel::RoundConeBetween, kernel::VesicaSegment, kernel::RhombusPrism, kernel::Sheet<3>, kernel::Sheet<4>,
     kernel::CubeApproximation, kernel::CylinderApproximation,
     kernel::ConeApproximation, kernel::PyramidApproximation,
+    kernel::PowerBall, kernel::PowerCuboid<3>, kernel::PowerTorus,
 }
 
 /// A kernel as a shape.

@@ -50,7 +50,10 @@ impl<const D: usize> Cuboid<D> {
 
 /// `|pᵢ| − hᵢ`: the signed distances to the faces of a box.
 #[inline(always)]
-fn faces<S: Scalar, const D: usize>(p: Vector<S, D>, half_extents: &[f64; D]) -> [S; D] {
+pub(super) fn faces<S: Scalar, const D: usize>(
+    p: Vector<S, D>,
+    half_extents: &[f64; D],
+) -> [S; D] {
     (p.abs() - Vector::of(half_extents)).0
 }
 
@@ -91,8 +94,8 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RoundedCuboid<const D: usize> {
-    core: [f64; D],
-    rounding: f64,
+    pub(super) core: [f64; D],
+    pub(super) rounding: f64,
 }
 
 impl<const D: usize> RoundedCuboid<D> {

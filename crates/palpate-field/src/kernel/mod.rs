@@ -10,8 +10,11 @@ mod between;
 mod capsule;
 mod cuboid;
 mod ellipsoid;
+mod exponent;
 mod half_space;
 pub mod planar;
+mod power_ball;
+mod power_cuboid;
 mod profile;
 mod simplex;
 pub mod spatial;
@@ -24,6 +27,8 @@ pub use cuboid::{Cuboid, RoundedCuboid};
 pub use ellipsoid::Ellipsoid;
 pub use half_space::HalfSpace;
 pub use planar::*;
+pub use power_ball::PowerBall;
+pub use power_cuboid::PowerCuboid;
 pub(crate) use primitive::primitive;
 pub use primitive::{Argument, Entry, ModelRule, Parameter, ParameterKind, Primitive};
 pub use simplex::Simplex;
@@ -141,7 +146,7 @@ pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
 
 // Statics, and not constants, so that the code of all primitives is in this crate
 // once and not in every crate that looks at the lists.
-static PLANAR: [Entry<2>; 43] = [
+static PLANAR: [Entry<2>; 45] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<2>>(),
     Entry::of::<RoundedCuboid<2>>(),
@@ -185,9 +190,11 @@ static PLANAR: [Entry<2>; 43] = [
     Entry::of::<QuadraticCircle>(),
     Entry::of::<Hyperbola>(),
     Entry::of::<CircleWave>(),
+    Entry::of::<PowerBall>(),
+    Entry::of::<PowerCuboid<2>>(),
 ];
 
-static SPATIAL: [Entry<3>; 38] = [
+static SPATIAL: [Entry<3>; 41] = [
     Entry::of::<Ball>(),
     Entry::of::<Cuboid<3>>(),
     Entry::of::<RoundedCuboid<3>>(),
@@ -226,6 +233,9 @@ static SPATIAL: [Entry<3>; 38] = [
     Entry::of::<CylinderApproximation>(),
     Entry::of::<ConeApproximation>(),
     Entry::of::<PyramidApproximation>(),
+    Entry::of::<PowerBall>(),
+    Entry::of::<PowerCuboid<3>>(),
+    Entry::of::<PowerTorus>(),
 ];
 
 impl Entry<2> {

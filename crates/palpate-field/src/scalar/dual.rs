@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Blend, Float, Scalar};
+use super::{Blend, Float, Scalar, power};
 use crate::vector::{array, unrolled};
 
 /// A value and its gradient with respect to `D` coordinates (forward-mode
@@ -191,6 +191,18 @@ impl<T: Float, const D: usize> Scalar for Dual<T, D> {
             unrolled!(k < D => gradient[k] = gradient[k] + weight * x[i].gradient[k]);
         });
         Self { value, gradient }
+    }
+
+    #[inline(always)]
+    fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
+        let values = array!(i < N => x[i].value);
+        let split = power::split::<T, P, N>(values);
+        let weights = split.gradient::<P>(values);
+        let mut gradient = [T::constant(0.0); D];
+        unrolled!(i < N => {
+            unrolled!(k < D => gradient[k] = gradient[k] + weights[i] * x[i].gradient[k]);
+        });
+        Self { value: split.largest * split.root, gradient }
     }
 
     #[inline(always)]

@@ -18,6 +18,7 @@ mod dual;
 mod exponential;
 mod float;
 mod model;
+mod power;
 mod trigonometry;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -26,6 +27,8 @@ pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use float::Float;
 pub use model::Model;
+
+use crate::vector::array;
 
 /// A number that the formulas of this crate can be evaluated with.
 ///
@@ -104,11 +107,44 @@ pub trait Scalar:
     /// The Euclidean norm `√Σxᵢ²`.
     fn norm<const N: usize>(x: [Self; N]) -> Self;
 
+    /// The norm `(Σ|xᵢ|^P)^(1/P)` of the powers `P`, one of 4, 6 and 8.
+    ///
+    /// From the largest `|xᵢ|` to the Euclidean norm, and no steeper than one. With a
+    /// relative error of at most 2 ulp (measured: 1.5); exact where all but one
+    /// component are zero. No power leaves the range, in single precision either.
+    ///
+    /// ```
+    /// use palpate_field::scalar::Scalar;
+    ///
+    /// // The smallest three fourth powers whose sum is a fourth power (Frye, 1988).
+    /// let n = f64::power_norm::<4, 3>([95_800.0, -217_519.0, 414_560.0]);
+    /// assert_eq!(n, 422_481.0);
+    /// ```
+    #[inline(always)]
+    fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
+        let split = power::split::<Self, P, N>(x);
+        split.largest * split.root
+    }
+
     /// The signed distance from `q` to the orthant `qᵢ ≤ 0`:
     /// `‖max(q, 0)‖ + min(max qᵢ, 0)`.
     ///
     /// Every box, cylinder and extrusion ends in this form.
     fn orthant<const N: usize>(q: [Self; N]) -> Self;
+
+    /// As [`orthant`](Self::orthant), with the norm of the powers `P` past edges and
+    /// corners: `‖max(q, 0)‖_P + min(max qᵢ, 0)`, no more than the distance.
+    #[inline(always)]
+    fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
+        // Zero first in one and last in the other, so that on a face just one of the
+        // two has a slope.
+        let zero = Self::constant(0.0);
+        let mut largest = q[0];
+        for i in 1..N {
+            largest = largest.max(q[i]);
+        }
+        Self::power_norm::<P, N>(array!(i < N => zero.max(q[i]))) + largest.min(zero)
+    }
 
     /// The smaller of the two, the crease between them filled by `B`, whose length
     /// unit is `unit` [m].

@@ -3,6 +3,8 @@
 
 //! Numbers that bound a formula over a whole cell.
 
+mod norms;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Blend, Scalar};
@@ -269,14 +271,6 @@ impl MaxOf for f64 {
     }
 }
 
-/// How far a norm or orthant distance of value `n` may exceed its tangent plane
-/// when its arguments move by at most `d`: `d²/2(n − d)`, or `2d` close by.
-#[inline(always)]
-fn excess(n: f64, d: f64) -> f64 {
-    let far = n > 1.25 * d;
-    choose(far, 0.5 * d * d / choose(far, n - d, 1.0), d + d) * INFLATE
-}
-
 impl Add for Model {
     type Output = Self;
 
@@ -493,67 +487,24 @@ impl Scalar for Model {
             .rounded_with(1.0, 8.0)
     }
 
-    /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
     #[inline(always)]
     fn norm<const N: usize>(x: [Self; N]) -> Self {
-        let n = <f64 as Scalar>::norm(array!(i < N => x[i].value));
-        let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
-        let d = Self::radius(&x);
-        let mut gradient = [0.0; 3];
-        let (mut lower, mut upper) = (0.0, 0.0);
-        unrolled!(i < N => {
-            let unit = x[i].value * inverse;
-            let size = f64::abs(unit);
-            let positive = unit > 0.0;
-            unrolled!(k < 3 => gradient[k] += unit * x[i].gradient[k]);
-            lower += size * choose(positive, x[i].lower, x[i].upper);
-            upper += size * choose(positive, x[i].upper, x[i].lower);
-        });
-        let error = 8.0 * UNIT * (n + d);
-        Self { value: n, gradient, lower: lower + error, upper: upper + excess(n, d) + error }
+        norms::norm(x)
     }
 
-    /// The orthant distance is convex and grows with each `qᵢ`: below, its
-    /// subgradient is a bound. Above, nothing is added where one face rules the
-    /// whole cell.
+    #[inline(always)]
+    fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
+        norms::power_norm::<P, N>(x)
+    }
+
     #[inline(always)]
     fn orthant<const N: usize>(q: [Self; N]) -> Self {
-        let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
-        let mut sum = 0.0;
-        unrolled!(i < N => {
-            let value = q[i].value;
-            if i > 0 {
-                second = choose(value > largest, largest, second.max_of(value));
-                largest = largest.max_of(value);
-            }
-            let positive = value.max_of(0.0);
-            sum += positive * positive;
-        });
-        let n = sum.sqrt();
-        let d = Self::radius(&q);
-        let outside = n > 0.0;
-        let inverse = 1.0 / choose(outside, n, 1.0);
-        let mut free = 1.0;
-        let mut gradient = [0.0; 3];
-        let (mut lower, mut upper) = (0.0, 0.0);
-        unrolled!(i < N => {
-            let face = choose(q[i].value < largest, 0.0, free);
-            free -= face;
-            let weight = choose(outside, q[i].value.max_of(0.0) * inverse, face);
-            unrolled!(k < 3 => gradient[k] += weight * q[i].gradient[k]);
-            lower += weight * q[i].lower;
-            upper += weight * q[i].upper;
-        });
-        debug_assert!(free <= 0.0, "some face has the largest value");
-        let one_face = second + d < 0.0 && largest - second > d + d;
-        let curved = choose(one_face, 0.0, excess(n, d));
-        let error = 8.0 * UNIT * (n + f64::abs(largest) + d);
-        Self {
-            value: n + Scalar::min(largest, 0.0),
-            gradient,
-            lower: lower + error,
-            upper: upper + curved + error,
-        }
+        norms::orthant(q)
+    }
+
+    #[inline(always)]
+    fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
+        norms::power_orthant::<P, N>(q)
     }
 
     /// That of the value, for the whole cell: who crosses a step says by how much that

@@ -72,6 +72,8 @@ pub(crate) const PLANE: &[Sample] = &[
     ("quadratic_circle", r#"{ "radius": 0.05 }"#),
     ("hyperbola", r#"{ "radii": [0.02, 0.01] }"#),
     ("circle_wave", r#"{ "ring_radius": 0.015, "angle_degrees": 200, "radius": 0.003 }"#),
+    ("power_ball", r#"{ "radius": 0.045, "exponent": 4 }"#),
+    ("power_cuboid", r#"{ "size": [0.1, 0.07], "rounding": 0.03, "exponent": 8 }"#),
 ];
 
 /// The primitives of space, each about 0.1 m wide.
@@ -143,6 +145,12 @@ pub(crate) const SPACE: &[Sample] = &[
     ("cylinder_approximation", r#"{ "radius": 0.035, "height": 0.1 }"#),
     ("cone_approximation", r#"{ "radius": 0.04, "height": 0.1 }"#),
     ("pyramid_approximation", r#"{ "side": 0.08, "height": 0.1 }"#),
+    ("power_ball", r#"{ "radius": 0.04, "exponent": 6 }"#),
+    ("power_cuboid", r#"{ "size": [0.1, 0.07, 0.05], "rounding": 0.025, "exponent": 4 }"#),
+    (
+        "power_torus",
+        r#"{ "ring_radius": 0.035, "radius": 0.015, "ring_exponent": 2, "tube_exponent": 8 }"#,
+    ),
 ];
 
 /// Those that have no end.

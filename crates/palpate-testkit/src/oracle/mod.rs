@@ -11,6 +11,7 @@ mod curves;
 mod outlines;
 mod patch;
 mod planar;
+mod power;
 mod revolved;
 mod slab;
 mod spatial;

@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 use palpate_field::kernel::Argument;
 use palpate_field::{Point, Vector};
 
+use super::power::{norm, on_ball, speed};
 use super::{Definition, Patch, number, points, vector};
 
 /// How far test points and the sampled part of unbounded shapes reach [m].
@@ -79,15 +80,16 @@ pub(super) fn from_segment<const D: usize>(a: Point<D>, b: Point<D>, p: Point<D>
     (p - (a + along * t)).norm()
 }
 
-/// The profile of a box with rounded corners.
-pub(super) fn rounded_rectangle(half: Point<2>, r: f64) -> Vec<Patch<2>> {
+/// The profile of a box with corners rounded in the norm of an exponent.
+pub(super) fn rounded_rectangle(half: Point<2>, r: f64, exponent: f64) -> Vec<Patch<2>> {
     let mut boundary = Vec::new();
-    for (i, [sx, sy]) in
-        [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].into_iter().enumerate()
-    {
-        let centre = [sx * (half[0] - r), sy * (half[1] - r)];
-        let from = 0.5 * PI * i as f64;
-        boundary.push(arc(centre, r, [from, from + 0.5 * PI]));
+    for signs in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
+        let speed = 0.5 * PI * r * speed::<2>(exponent);
+        boundary.push(Patch::curve(speed, move |t| {
+            let (sin, cos) = (0.5 * PI * t).sin_cos();
+            let out = on_ball(Vector([cos, sin]), exponent);
+            Vector(std::array::from_fn(|i| signs[i] * (half[i] - r + r * out[i])))
+        }));
     }
     for s in [1.0, -1.0] {
         let (x, y) = (half[0] - r, half[1] - r);
@@ -97,13 +99,22 @@ pub(super) fn rounded_rectangle(half: Point<2>, r: f64) -> Vec<Patch<2>> {
     boundary
 }
 
-/// `true` in a box with corners rounded by `r`.
-pub(super) fn in_rounded_box<const D: usize>(half: Point<D>, r: f64, p: Point<D>) -> bool {
+/// `true` in a box with corners rounded by `r` in the norm of an exponent.
+pub(super) fn in_rounded_box<const D: usize>(
+    half: Point<D>,
+    r: f64,
+    exponent: f64,
+    p: Point<D>,
+) -> bool {
     let nearest = Vector(std::array::from_fn(|i| {
         let core = half[i] - r;
         p[i].clamp(-core, core)
     }));
-    if r == 0.0 { (0..D).all(|i| p[i].abs() < half[i]) } else { (p - nearest).norm() < r }
+    if r == 0.0 {
+        (0..D).all(|i| p[i].abs() < half[i])
+    } else {
+        norm(p - nearest, exponent) < r
+    }
 }
 
 /// The fourteen strokes of the Cool S, two units high, from paper: three lines
@@ -186,7 +197,9 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
         "cuboid" | "rounded_cuboid" => {
             let half = vector::<2>(a, 0) * 0.5;
             let r = if name == "cuboid" { 0.0 } else { n(1) };
-            Definition::new(rounded_rectangle(half, r), move |p| in_rounded_box(half, r, p))
+            Definition::new(rounded_rectangle(half, r, 2.0), move |p| {
+                in_rounded_box(half, r, 2.0, p)
+            })
         }
         "capsule" => {
             let end = Vector([0.0, 0.5 * n(1) - n(0)]);
@@ -230,7 +243,8 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<2>> {
         "cool_s" => cool_s(n(0)),
         _ => {
             return super::outlines::definition(name, a)
-                .or_else(|| super::curves::definition(name, a));
+                .or_else(|| super::curves::definition(name, a))
+                .or_else(|| super::power::planar(name, a));
         }
     })
 }

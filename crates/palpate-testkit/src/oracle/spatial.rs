@@ -9,7 +9,8 @@ use palpate_field::kernel::Argument;
 use palpate_field::{Point, Vector};
 
 use super::planar::{FAR, corners, edges, even_odd, from_segment, in_rounded_box};
-use super::{Definition, Outside, Patch, number, points, revolved, slab, tube, vector};
+use super::power::{on_ball, speed};
+use super::{Definition, Outside, Patch, number, points, power, revolved, slab, tube, vector};
 
 /// A solid of revolution from the corners of its profile in (ρ, y).
 fn turned(
@@ -40,7 +41,8 @@ pub(super) fn capped_cone(bottom: f64, top: f64, height: f64) -> Definition<3> {
     })
 }
 
-fn box_of(half: Point<3>, r: f64) -> Definition<3> {
+/// A box with edges and corners rounded by `r` in the norm of an exponent.
+pub(super) fn rounded_box(half: Point<3>, r: f64, exponent: f64) -> Definition<3> {
     let core = half - Vector([r; 3]);
     let signs = [-1.0, 1.0];
     let mut boundary = Vec::new();
@@ -60,13 +62,14 @@ fn box_of(half: Point<3>, r: f64) -> Definition<3> {
                     continue;
                 }
                 boundary.push(Patch::surface(
-                    [2.0 * core[axis], r * FRAC_PI_2],
+                    [2.0 * core[axis], r * FRAC_PI_2 * speed::<2>(exponent)],
                     move |u, v| {
-                        let angle = v * FRAC_PI_2;
+                        let (sin, cos) = (v * FRAC_PI_2).sin_cos();
+                        let out = on_ball(Vector([cos, sin]), exponent);
                         let mut p = Vector::ZERO;
                         p[axis] = core[axis] * (2.0 * u - 1.0);
-                        p[j] = s * (core[j] + r * angle.cos());
-                        p[k] = t * (core[k] + r * angle.sin());
+                        p[j] = s * (core[j] + r * out[0]);
+                        p[k] = t * (core[k] + r * out[1]);
                         p
                     },
                 ));
@@ -76,13 +79,15 @@ fn box_of(half: Point<3>, r: f64) -> Definition<3> {
     for corner in 0..8_u8 {
         let sign = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
         let signs = [sign(0), sign(1), sign(2)];
-        boundary.push(Patch::surface([r * FRAC_PI_2; 2], move |u, v| {
+        let speed = r * FRAC_PI_2 * speed::<3>(exponent);
+        boundary.push(Patch::surface([speed; 2], move |u, v| {
             let (up, turn) = (u * FRAC_PI_2, v * FRAC_PI_2);
-            let out = [up.cos() * turn.cos(), up.sin(), up.cos() * turn.sin()];
+            let out = Vector([up.cos() * turn.cos(), up.sin(), up.cos() * turn.sin()]);
+            let out = on_ball(out, exponent);
             Vector(std::array::from_fn(|i| signs[i] * (core[i] + r * out[i])))
         }));
     }
-    Definition::new(boundary, move |p| in_rounded_box(half, r, p))
+    Definition::new(boundary, move |p| in_rounded_box(half, r, exponent, p))
 }
 
 /// The bars along the edges of a box: of each octant the four rectangles at which
@@ -204,11 +209,12 @@ fn ellipsoid(r: Point<3>) -> Definition<3> {
 }
 
 fn rounded_cylinder(r: f64, half: f64, rounding: f64) -> Definition<3> {
-    let profile = super::planar::rounded_rectangle(Vector([r, half]), rounding);
+    let profile = super::planar::rounded_rectangle(Vector([r, half]), rounding, 2.0);
     // Turning the whole cross-section covers the surface twice.
     let boundary = profile.into_iter().map(|piece| piece.turned(r)).collect();
     Definition::new(boundary, move |p| {
-        in_rounded_box(Vector([r, half]), rounding, Vector([p[0].hypot(p[2]), p[1]]))
+        let q = Vector([p[0].hypot(p[2]), p[1]]);
+        in_rounded_box(Vector([r, half]), rounding, 2.0, q)
     })
 }
 
@@ -241,8 +247,8 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<3>> {
     let bound = |d: Definition<3>| Definition { outside: Outside::Bound, ..d };
     Some(match name {
         "ball" => ellipsoid(Vector([n(0); 3])),
-        "cuboid" => box_of(vector::<3>(a, 0) * 0.5, 0.0),
-        "rounded_cuboid" => box_of(vector::<3>(a, 0) * 0.5, n(1)),
+        "cuboid" => rounded_box(vector::<3>(a, 0) * 0.5, 0.0, 2.0),
+        "rounded_cuboid" => rounded_box(vector::<3>(a, 0) * 0.5, n(1), 2.0),
         "capsule" => {
             let end = Vector([0.0, 0.5 * n(1) - n(0), 0.0]);
             rod(-end, end, n(0))
@@ -276,7 +282,7 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<3>> {
         "hexagonal_prism" => prism(6.0, n(0), n(1)),
         "triangular_prism" => prism(3.0, n(0) / 3.0_f64.sqrt(), n(1)),
         "octahedron" => octahedron(n(0)),
-        "cube_approximation" => bound(box_of(Vector([0.5 * n(0); 3]), 0.0)),
+        "cube_approximation" => bound(rounded_box(Vector([0.5 * n(0); 3]), 0.0, 2.0)),
         "cylinder_approximation" => bound(cylinder(n(0), 0.5 * n(1))),
         "cone_approximation" => bound(capped_cone(n(0), 0.0, n(1))),
         "pyramid_approximation" => bound(pyramid(n(0), n(1))),
@@ -284,7 +290,8 @@ pub(super) fn definition(name: &str, a: &[Argument]) -> Option<Definition<3>> {
         _ => {
             return revolved::definition(name, a)
                 .or_else(|| slab::definition(name, a))
-                .or_else(|| tube::definition(name, a));
+                .or_else(|| tube::definition(name, a))
+                .or_else(|| power::spatial(name, a));
         }
     })
 }

@@ -28,8 +28,8 @@ use crate::vector::Vector;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Torus {
-    ring_radius: f64,
-    radius: f64,
+    pub(super) ring_radius: f64,
+    pub(super) radius: f64,
 }
 
 impl Torus {

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The torus of other norms.
+
+use super::torus::Torus;
+use crate::bounds::Bounds;
+use crate::error::ShapeError;
+use crate::kernel::exponent::{Exponent, in_another_norm};
+use crate::kernel::{Kernel, primitive};
+use crate::promise::Promise;
+use crate::scalar::Scalar;
+use crate::vector::Vector;
+
+/// A torus about the y axis, its ring and its tube each a circle of another norm: from
+/// a round ring of square wire to a frame with rounded corners. A bound on both sides,
+/// exact where both exponents are 2.
+///
+/// `f = ‖(‖(x, z)‖_A − R, y)‖_B − r`, after Quilez, whose `torus82` has a round ring and
+/// eighth powers across the tube, and `torus88` eighth powers in both.
+///
+/// # Derivation
+///
+/// Both gradients are at most one long, since both norms are at most the Euclidean. The
+/// outer one's is `(a, b)`, and the whole `(a·g, b)` with a `g` in the plane of x and z:
+/// its length is at most that of `(a, b)`. So the Lipschitz constant is 1, and values
+/// are bounds.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::PowerTorus};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let ring = Shape::from_kernel(PowerTorus::new(5.0, 1.0, 2, 8)?);
+/// assert_eq!(ring.distance(Vector([0.0, 0.0, 0.0])), 4.0); // in the hole
+/// assert_eq!(ring.distance(Vector([3.0, 12.0, 4.0])), 11.0); // above
+/// // 7 from the axis, so 2 out of the ring, and 2 up
+/// let f = ring.distance(Vector([4.2, 2.0, 5.6]));
+/// assert!((f - (2.0_f64.powf(1.125) - 1.0)).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct PowerTorus {
+    round: Torus,
+    ring: Option<Exponent>,
+    tube: Option<Exponent>,
+}
+
+impl PowerTorus {
+    /// A torus around a circle of `ring_radius` [m] in the norm of `ring_exponent`, its
+    /// tube of `radius` [m] in that of `tube_exponent`, each of 2, 4, 6 or 8.
+    ///
+    /// # Errors
+    ///
+    /// If a radius is not positive, the tube's is the larger, or an exponent is another.
+    pub fn new(
+        ring_radius: f64,
+        radius: f64,
+        ring_exponent: u32,
+        tube_exponent: u32,
+    ) -> Result<Self, ShapeError> {
+        Ok(Self {
+            round: Torus::new(ring_radius, radius)?,
+            ring: Exponent::or_euclidean("ring_exponent", ring_exponent)?,
+            tube: Exponent::or_euclidean("tube_exponent", tube_exponent)?,
+        })
+    }
+}
+
+/// The norm in the plane, Euclidean without an exponent.
+#[inline(always)]
+fn norm<S: Scalar>(exponent: Option<Exponent>, x: [S; 2]) -> S {
+    match exponent {
+        None => S::norm(x),
+        Some(exponent) => exponent.norm(x),
+    }
+}
+
+impl Kernel<3> for PowerTorus {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        let [x, y, z] = p.0;
+        let from_ring = norm(self.ring, [x, z]) - S::constant(self.round.ring_radius);
+        norm(self.tube, [from_ring, y]) - S::constant(self.round.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        let (ring, tube) = (self.round.ring_radius, self.round.radius);
+        let [along, across] =
+            [self.ring, self.tube].map(|exponent| exponent.map_or(1.0, Exponent::reach::<2>));
+        let half = Vector([ring + tube, tube, ring + tube]);
+        let bounds = Bounds::centred(half, along * (ring + across * tube));
+        let exact = Promise::exact(Some(bounds), 10.0, ring + tube).symmetric();
+        if self.ring.or(self.tube).is_none() { exact } else { in_another_norm(exact) }
+    }
+}
+
+primitive! {
+    PowerTorus, "power_torus", 3,
+    about: "A torus about the y axis, its ring and its tube circles in norms of higher powers.",
+    model: ClosedForm,
+    parameters: {
+        ring_radius: Length = "the radius of the ring along the axes",
+        radius: Length = "the radius of the tube along the axes",
+        ring_exponent: Count = "the power that the ring's norm adds up, 2, 4, 6 or 8",
+        tube_exponent: Count = "the power that the tube's norm adds up, 2, 4, 6 or 8",
+    },
+    example: (0.6, 0.25, 4, 8),
+}
