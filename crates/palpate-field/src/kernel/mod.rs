@@ -88,6 +88,28 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     fn promise(&self) -> Promise<D>;
 }
 
+/// Makes a newtype the kernel that is in it: what differs are the parameters.
+macro_rules! answered_by_inner {
+    ($kernel:ty, $dimension:literal) => {
+        impl Kernel<$dimension> for $kernel {
+            #[inline(always)]
+            fn distance<S: Scalar>(&self, p: Vector<S, $dimension>) -> S {
+                self.0.distance(p)
+            }
+
+            #[inline(always)]
+            fn model(&self, cell: Vector<Model, $dimension>) -> Model {
+                self.0.model(cell)
+            }
+
+            fn promise(&self) -> Promise<$dimension> {
+                self.0.promise()
+            }
+        }
+    };
+}
+pub(crate) use answered_by_inner;
+
 /// `outside`, or on the surface of a convex shape the distance of its nearest
 /// face's plane.
 ///

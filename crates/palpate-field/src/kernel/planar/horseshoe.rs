@@ -3,9 +3,10 @@
 
 //! The horseshoe.
 
-use super::outline::{bounds_about, half_of_less_than_a_turn};
+use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::profile::half_of_less_than_a_turn;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;

@@ -5,7 +5,9 @@
 
 use super::cylinder::{from_axis, in_profile, turned_bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::kernel::{
+    Kernel, answered_by_inner, face_if_on_it, primitive, tangent_model,
+};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -151,21 +153,7 @@ impl Cone {
     }
 }
 
-impl Kernel<3> for Cone {
-    #[inline(always)]
-    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.0.distance(p)
-    }
-
-    #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
-        self.0.model(cell)
-    }
-
-    fn promise(&self) -> Promise<3> {
-        self.0.promise()
-    }
-}
+answered_by_inner!(Cone, 3);
 
 primitive! {
     Cone, "cone", 3,
