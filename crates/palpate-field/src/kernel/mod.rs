@@ -225,6 +225,26 @@ pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
     Model::lipschitz(kernel.distance(centre), 1.0, &cell.0, rounding)
 }
 
+/// Bounds an exact kernel that is not convex over a cell by its formula or, where that
+/// says less, as [`lipschitz_model`] does: over cells that are large or hold parts of the
+/// medial axis, a choice between far values has wide remainders; `operations` and `size`
+/// as for [`tangent_model`].
+#[inline(always)]
+pub(crate) fn formula_model<K: Kernel<D>, const D: usize>(
+    kernel: &K,
+    cell: Vector<Model, D>,
+    operations: f64,
+    size: f64,
+) -> Model {
+    let formula = kernel.distance(cell);
+    let centre = Vector(array!(i < D => cell.0[i].value));
+    let far = size + centre.norm() + Model::radius(&cell.0);
+    let rounding = operations * f64::EPSILON * far;
+    let by_steepness = Model::lipschitz(formula.value, 1.0, &cell.0, rounding);
+    let width = |model: &Model| model.maximum() - model.minimum();
+    if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
+}
+
 // Statics, and not constants, so that the code of all primitives is in this crate
 // once and not in every crate that looks at the lists.
 static PLANAR: [Entry<2>; 43] = [

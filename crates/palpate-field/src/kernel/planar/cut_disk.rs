@@ -7,7 +7,7 @@ use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::kernel::profile::{self, CutDisc};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -149,6 +149,11 @@ impl Kernel<2> for Moon {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         self.half.distance([p.0[0].abs(), p.0[1]])
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, MOON_OPERATIONS, self.half.size())
     }
 
     fn promise(&self) -> Promise<2> {

@@ -7,7 +7,7 @@ use super::outline::bounds_about;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::profile::Wedge;
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -76,7 +76,7 @@ impl Kernel<2> for Pie {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            self.distance(cell)
+            formula_model(self, cell, OPERATIONS, self.0.outer())
         }
     }
 
@@ -156,6 +156,11 @@ impl Kernel<2> for RingSector {
         // y first: from the centre, the +y axis leads to the ring.
         let ring = (S::norm([p.0[1], p.0[0]]) - S::constant(self.mean_radius)).abs();
         self.wedge.cut([p.0[0].abs(), p.0[1]], ring - S::constant(self.half_width))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.wedge.outer())
     }
 
     fn promise(&self) -> Promise<2> {

@@ -7,7 +7,7 @@ use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::profile::{Curve, CutDisc, Moon, Wedge, bounds_of_zone};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -60,7 +60,7 @@ impl Kernel<3> for SolidAngle {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            self.distance(cell)
+            formula_model(self, cell, OPERATIONS, self.0.outer())
         }
     }
 
@@ -234,13 +234,18 @@ impl Kernel<3> for CutHollowSphere {
         self.wall.distance([rho, -y]) - S::constant(self.half_thickness)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.radius + self.half_thickness)
+    }
+
     fn promise(&self) -> Promise<3> {
         let sheet = bounds_of_zone(self.radius, [-self.radius, self.cut_height]);
         let size = self.radius + self.half_thickness;
         Promise {
             has_interior: self.half_thickness > 0.0,
             symmetric: [true, false, true],
-            ..Promise::exact(Some(sheet.grown(self.half_thickness)), 8.0, size)
+            ..Promise::exact(Some(sheet.grown(self.half_thickness)), OPERATIONS, size)
         }
     }
 }
@@ -302,6 +307,11 @@ impl Kernel<3> for DeathStar {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
         self.0.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.0.size())
     }
 
     fn promise(&self) -> Promise<3> {
