@@ -5,7 +5,7 @@
 
 use palpate_field::kernel::{
     Arc, Ball, CoolS, CuboidFrame, CylinderApproximation, DeathStar, Ellipsoid, HexagonalPrism,
-    Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
+    Moon, Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
 };
 use palpate_field::operator::Smooth;
 use palpate_field::scalar::{Cubic, Model, Scalar};
@@ -311,5 +311,41 @@ fn a_bite_as_shallow_as_a_rounding_is_no_deeper() -> Outcome {
             assert!(f.abs() < 1e-14, "{f} at {x}, {y}");
         }
     }
+    Ok(())
+}
+
+/// At 19 fm from a corner the direction from it was rounding and no normal of the
+/// triangle: over a cell of 17 m, its plane was 0.2 mm too high.
+#[test]
+fn models_next_to_corners_enclose() -> Outcome {
+    let corners = [
+        [-0.991_961_624_706_164, -0.25],
+        [-1.311_968_057_183_548_8, -1.337_630_979_716_777_8],
+        [-0.5, 0.480_630_857_404_321_43],
+    ];
+    let triangle = Shape::from_kernel(Simplex::new(corners.map(Vector).to_vec())?);
+    let half = 8.417_800_482_118_864;
+    for ulp in -8..=8 {
+        let ulp = f64::from(ulp) * f64::EPSILON;
+        let centre = Vector([-0.500_000_000_000_015_4, 0.480_630_857_404_331_8 + ulp]);
+        let model = model(&triangle, centre, [half; 2]);
+        for u in [[-0.505, 0.283], [-0.5, -0.2], [0.1, -0.5], [0.9, 0.4]] {
+            let f = triangle.distance(centre + Vector(u) * half);
+            let plane = model.value + model.gradient[0] * u[0] + model.gradient[1] * u[1];
+            assert!(plane - model.lower <= f + 1e-13, "{f} below {model:?}");
+        }
+        assert!(model.lower < 1e-13, "{model:?}");
+    }
+    Ok(())
+}
+
+/// Over cells with parts of the medial axis, choices between far values added up: the
+/// model was 145 m wide.
+#[test]
+fn models_of_a_moon_over_large_cells_say_as_much_as_its_steepness() -> Outcome {
+    let moon = Shape::from_kernel(Moon::new(1.0, 0.25, 1.0)?);
+    let over = model(&moon, Vector([0.92, 0.0]), [4.5, 1.5]);
+    let width = over.maximum() - over.minimum();
+    assert!(width < 2.0 * 4.5_f64.hypot(1.5) + 1e-12, "{width} m: {over:?}");
     Ok(())
 }

@@ -93,6 +93,28 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     fn promise(&self) -> Promise<D>;
 }
 
+/// Makes a newtype the kernel that is in it: what differs are the parameters.
+macro_rules! answered_by_inner {
+    ($kernel:ty, $dimension:literal) => {
+        impl Kernel<$dimension> for $kernel {
+            #[inline(always)]
+            fn distance<S: Scalar>(&self, p: Vector<S, $dimension>) -> S {
+                self.0.distance(p)
+            }
+
+            #[inline(always)]
+            fn model(&self, cell: Vector<Model, $dimension>) -> Model {
+                self.0.model(cell)
+            }
+
+            fn promise(&self) -> Promise<$dimension> {
+                self.0.promise()
+            }
+        }
+    };
+}
+pub(crate) use answered_by_inner;
+
 /// `outside`, or on the surface of a convex shape the distance of its nearest
 /// face's plane.
 ///
@@ -112,6 +134,61 @@ fn distance_apart<K: Kernel<D>, const D: usize>(kernel: &K, p: Point<D>) -> f64 
     kernel.distance(p)
 }
 
+/// As [`distance_apart`], with the gradient.
+#[inline(never)]
+fn gradient_apart<K: Kernel<D>, const D: usize>(
+    kernel: &K,
+    p: Point<D>,
+) -> (f64, Vector<f64, D>) {
+    kernel.distance_gradient(p)
+}
+
+/// Directions that differ by less are the same but for rounding: over a length `t`, the
+/// distance along them by `t·NEARLY²/2`, which is less than a rounding.
+const NEARLY: f64 = 1e-8;
+
+/// A normal of a convex exact kernel next to `centre`, and by how much its plane through
+/// the `centre` may be too high [m].
+///
+/// Next to an edge, at the distance d, the direction from the nearest point is off by as
+/// much as the rounding is of d, and then may be no normal of the shape: over a large cell
+/// its plane is too high by far more than a rounding.
+///
+/// Out along a normal of the nearest point, the gradient stays the same. So it is asked
+/// again where a rounding matters little, a step t out along the `direction`. If this
+/// was none of the normals, but off by τ from one, the nearest point moves along the face
+/// it comes over, and what is found is a normal there. Its plane is a bound everywhere,
+/// and at the centre too low by no more than `t·τ²/2`. Far out at once, that is less than
+/// a rounding if `direction` is confirmed. If not, the steps grow from t to `t²/ρ`, with ρ
+/// the `unit` of rounding: at the last, τ was `ρ/t`, so that each loses about `ρ/2` and
+/// that few are needed. How much is lost in all, the distances at the steps tell.
+#[inline(never)]
+fn sure_normal<K: Kernel<D>, const D: usize>(
+    kernel: &K,
+    centre: Point<D>,
+    (distance, direction): (f64, Vector<f64, D>),
+    unit: f64,
+    far: f64,
+) -> (Vector<f64, D>, f64) {
+    // The normal a step out, and how far its plane is below the distance at the centre.
+    let out = |step: f64, direction: Vector<f64, D>| {
+        let (f, normal) = gradient_apart(kernel, centre + direction * step);
+        (normal, distance + step * normal.dot(direction) - f)
+    };
+    let (normal, lost) = out(far, direction);
+    if (normal - direction).norm() < NEARLY && lost < NEARLY * far {
+        return (normal, 0.0);
+    }
+    let (mut normal, mut lost) = (direction, 0.0_f64);
+    let mut step = 4.0 * unit;
+    while step < far {
+        let (next, below) = out(step, normal);
+        (normal, lost) = (next, lost.max(below));
+        step *= step / unit;
+    }
+    (out(far, normal).0, lost)
+}
+
 /// Bounds a convex exact kernel over a cell by its tangent plane, and by its values at
 /// the corners of the cell; `operations` and `size` as for
 /// [`Rounding::of_operations`](crate::Rounding::of_operations).
@@ -123,8 +200,17 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
     size: f64,
 ) -> Model {
     let centre = Vector(array!(i < D => cell.0[i].value));
-    let (distance, normal) = kernel.distance_gradient(centre);
-    let rounding = operations * f64::EPSILON * (size + centre.norm());
+    let (distance, mut normal) = gradient_apart(kernel, centre);
+    let mut rounding = operations * f64::EPSILON * (size + centre.norm());
+    let radius = Model::radius(&cell.0);
+    // Else what is nearest is far enough for its direction to be known over the cell.
+    if distance < radius {
+        let far = 4.0 * (size + centre.norm() + radius);
+        let unit = rounding.max(f64::EPSILON * far);
+        let lost;
+        (normal, lost) = sure_normal(kernel, centre, (distance, normal), unit, far);
+        rounding += lost;
+    }
     let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
     Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
@@ -142,6 +228,26 @@ pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
     let far = size + centre.norm() + Model::radius(&cell.0);
     let rounding = operations * f64::EPSILON * far;
     Model::lipschitz(kernel.distance(centre), 1.0, &cell.0, rounding)
+}
+
+/// Bounds an exact kernel that is not convex over a cell by its formula or, where that
+/// says less, as [`lipschitz_model`] does: over cells that are large or hold parts of the
+/// medial axis, a choice between far values has wide remainders; `operations` and `size`
+/// as for [`tangent_model`].
+#[inline(always)]
+pub(crate) fn formula_model<K: Kernel<D>, const D: usize>(
+    kernel: &K,
+    cell: Vector<Model, D>,
+    operations: f64,
+    size: f64,
+) -> Model {
+    let formula = kernel.distance(cell);
+    let centre = Vector(array!(i < D => cell.0[i].value));
+    let far = size + centre.norm() + Model::radius(&cell.0);
+    let rounding = operations * f64::EPSILON * far;
+    let by_steepness = Model::lipschitz(formula.value, 1.0, &cell.0, rounding);
+    let width = |model: &Model| model.maximum() - model.minimum();
+    if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
 }
 
 // Statics, and not constants, so that the code of all primitives is in this crate

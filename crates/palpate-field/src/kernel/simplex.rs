@@ -22,9 +22,11 @@ const OPERATIONS: f64 = 18.0;
 ///
 /// Inside, the nearest facet is the one with the largest signed distance to its
 /// plane. Outside, the nearest point lies in the relative interior of exactly
-/// one face (facet, edge or corner). So the distance is the least over all faces
-/// whose span's nearest point to `p` lies in the face: by its plane for a facet,
-/// by the norm of what remains for lower faces.
+/// one face (facet, edge or corner): the one whose span's nearest point to `p` lies
+/// in the face and has all other corners behind it. The distance is that from its plane
+/// for a facet, the norm of what remains for lower faces. The least of all distances
+/// would not do: next to the end of a face those of both differ by less than their
+/// rounding, but not their directions.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Simplex};
@@ -63,10 +65,17 @@ struct Face<const D: usize> {
     /// `duals[i]·edges[j]` is one for `i = j`, else zero: they give the
     /// barycentric coordinates.
     duals: Vec<[f64; D]>,
+    /// From the first corner to each corner of the simplex that is not the face's.
+    others: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Face<D> {
-    fn new(corners: &[Point<D>]) -> Self {
+    /// The hull of those `points` of which `is_corner` says so.
+    fn new(points: &[Point<D>], is_corner: impl Fn(usize) -> bool) -> Self {
+        let (mut corners, mut others) = (Vec::new(), Vec::new());
+        for (i, point) in points.iter().enumerate() {
+            if is_corner(i) { corners.push(*point) } else { others.push(*point) }
+        }
         let origin = corners[0];
         let edges: Vec<_> = corners[1..].iter().map(|c| *c - origin).collect();
         // Each dual is its edge less its projection on all other edges, scaled.
@@ -81,7 +90,9 @@ impl<const D: usize> Face<D> {
                 (across * (1.0 / across.dot(edges[i]))).0
             })
             .collect();
-        Self { origin: origin.0, edges: edges.iter().map(|e| e.0).collect(), duals }
+        let edges = edges.iter().map(|e| e.0).collect();
+        let others = others.iter().map(|c| (*c - origin).0).collect();
+        Self { origin: origin.0, edges, duals, others }
     }
 
     /// What remains of `p` beside the face's span, and the least barycentric
@@ -99,6 +110,17 @@ impl<const D: usize> Face<D> {
             rest = Vector(array!(k < D => rest.0[k] - share.scale(edge[k])));
         }
         (rest, least.min(first))
+    }
+
+    /// Not negative if no other corner is before the face, seen from the point beside
+    /// whose nearest point of the span `rest` remains.
+    #[inline(always)]
+    fn before_others<S: Scalar>(&self, rest: Vector<S, D>) -> S {
+        let mut least = S::constant(1.0);
+        for other in &self.others {
+            least = least.min(-rest.dot_constant(other));
+        }
+        least
     }
 }
 
@@ -141,15 +163,12 @@ impl<const D: usize> Simplex<D> {
                 return Err(ShapeError::number("points", rule, height, Unit::Metre));
             };
             let offset = normal.dot(corners[0]);
-            facets.push(Facet { normal: normal.0, offset, face: Face::new(&corners) });
+            let face = Face::new(&points, |j| j != i);
+            facets.push(Facet { normal: normal.0, offset, face });
         }
         let faces = (1..(1_usize << (D + 1)) - 1)
             .filter(|set| (set.count_ones() as usize) < D)
-            .map(|set| {
-                let corners: Vec<_> =
-                    (0..=D).filter(|j| set >> j & 1 == 1).map(|j| points[j]).collect();
-                Face::new(&corners)
-            })
+            .map(|set| Face::new(&points, |j| set >> j & 1 == 1))
             .collect();
         let bounds = Aabb::around(points).map(Bounds::of_box);
         let bounds = bounds.unwrap_or_else(|| Bounds::centred(Vector::ZERO, 0.0));
@@ -163,19 +182,25 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
         let zero = S::constant(0.0);
         let mut inside = S::constant(-1e30);
-        let mut outside = S::constant(1e30);
+        let none = S::constant(1e30);
+        let (mut nearest, mut least_of_all) = (none, none);
         for facet in self.facets.iter() {
             let height = p.dot_constant(&facet.normal) - S::constant(facet.offset);
             inside = inside.max(height);
             let (_, least) = facet.face.rest(p);
-            let here = S::select_less(least, zero, outside, height.abs());
-            outside = outside.min(here);
+            let here = S::select_less(least, zero, none, height.abs());
+            least_of_all = least_of_all.min(here);
+            nearest = nearest.min(S::select_less(height, zero, none, here));
         }
         for face in self.faces.iter() {
             let (rest, least) = face.rest(p);
-            let here = S::select_less(least, zero, outside, rest.norm());
-            outside = outside.min(here);
+            let here = S::select_less(least, zero, none, rest.norm());
+            least_of_all = least_of_all.min(here);
+            let is_nearest = face.before_others(rest);
+            nearest = nearest.min(S::select_less(is_nearest, zero, none, here));
         }
+        // Between two faces rounding may let neither be the nearest.
+        let outside = S::select_less(nearest, none, nearest, least_of_all);
         let outside = face_if_on_it(outside, inside, self.size);
         S::select_less(inside, zero, inside, outside)
     }

@@ -137,39 +137,33 @@ where
     baseline(job, a, b, count, out);
 }
 
-#[inline(never)]
-fn baseline<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
-where
-    A: Rows,
-    B: Rows,
-    Out: RowsMut,
-    J: Job<A::Item, B::Item, Out::Item>,
-{
-    for_each_lane(job, a, b, count, out);
+/// The loop, in functions compiled with the instructions that the attributes enable.
+macro_rules! compiled_loops {
+    ($($(#[$attribute:meta])* $name:ident;)*) => {$(
+        $(#[$attribute])*
+        fn $name<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
+        where
+            A: Rows,
+            B: Rows,
+            Out: RowsMut,
+            J: Job<A::Item, B::Item, Out::Item>,
+        {
+            for_each_lane(job, a, b, count, out);
+        }
+    )*};
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi2")]
-fn with_avx2<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
-where
-    A: Rows,
-    B: Rows,
-    Out: RowsMut,
-    J: Job<A::Item, B::Item, Out::Item>,
-{
-    for_each_lane(job, a, b, count, out);
-}
+compiled_loops! {
+    #[inline(never)]
+    baseline;
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi2,avx512f,avx512vl,avx512dq,avx512bw")]
-fn with_avx512<A, B, Out, J>(job: &J, a: &A, b: &B, count: usize, out: &mut Out)
-where
-    A: Rows,
-    B: Rows,
-    Out: RowsMut,
-    J: Job<A::Item, B::Item, Out::Item>,
-{
-    for_each_lane(job, a, b, count, out);
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi2")]
+    with_avx2;
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi2,avx512f,avx512vl,avx512dq,avx512bw")]
+    with_avx512;
 }
 
 /// What to do at one point, where it is worth the better instructions.

@@ -16,7 +16,9 @@ mod rounding;
 pub use bits::bits_agree;
 pub use dual::GradientIsTheDual;
 pub use gradient::{gradient_is_bounded, gradient_is_the_slope};
-pub use model::{Cell, convex_models_are_tight, model_encloses};
+pub use model::{
+    Cell, convex_models_are_tight, model_encloses, model_says_as_much_as_the_steepness,
+};
 pub use motion::{motion_keeps_distances, scale_scales_distances};
 pub use promise::{
     bounds_hold, convex_where_promised, lipschitz_holds, never_overclaims,

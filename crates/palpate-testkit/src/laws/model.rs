@@ -32,6 +32,9 @@ impl<const D: usize> Cell<D> {
 /// in its middle counts three times.
 const CONVEX_ULP: f64 = 64.0;
 
+/// Room for the roundings that a model allows for and the promise does not.
+const WIDTH_ROUNDINGS: f64 = 8.0;
+
 /// The models of up to [`BLOCK`] cells enclose the field at the parameters
 /// `samples`.
 ///
@@ -98,6 +101,38 @@ pub fn convex_models_are_tight<const D: usize>(
         if ulp > CONVEX_ULP {
             return Err(format!(
                 "a lower remainder of {ulp:.0} ulp of {largest} over {cell:?}"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The model of a cell says as much as the steepness of the field does, but for roundings:
+/// it is no wider than twice the steepness over the cell's half diagonal. A convex field,
+/// which keeps the slope of its plane, is bounded as well as that from below.
+///
+/// # Errors
+///
+/// Says what is wider, and by how much.
+pub fn model_says_as_much_as_the_steepness<const D: usize>(
+    shape: &Shape<D>,
+    cell: &Cell<D>,
+) -> Result<(), String> {
+    let promise = shape.promise();
+    if promise.region.is_some() {
+        return Ok(());
+    }
+    let reach = cell.centre.norm() + cell.half.norm();
+    let slack = WIDTH_ROUNDINGS * (promise.rounding.within(reach) + f64::EPSILON * reach);
+    let most = promise.lipschitz * cell.half.norm() + slack;
+    for model in models(shape, &[*cell]) {
+        let below = model.value - model.minimum();
+        let width = model.maximum() - model.minimum();
+        let wide = if promise.convex { below > most } else { width > 2.0 * most };
+        if wide {
+            return Err(format!(
+                "{below:e} below, {width:e} wide, {most:e} by the steepness over {cell:?}: \
+                 {model:?}"
             ));
         }
     }

@@ -6,10 +6,13 @@
 use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
 use crate::kernel::profile::Curve;
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 8.0;
 
 /// All points within `radius` of an arc of a circle about the origin, open
 /// downwards.
@@ -57,6 +60,11 @@ impl Kernel<2> for Arc {
         self.half.distance([p.0[0].abs(), p.0[1]]) - S::constant(self.radius)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.ring_radius + self.radius)
+    }
+
     fn promise(&self) -> Promise<2> {
         let [sin, cos] = self.half.end();
         let widest = if cos < 0.0 { 1.0 } else { sin };
@@ -72,7 +80,7 @@ impl Kernel<2> for Arc {
             symmetric: [true, false],
             ..Promise::exact(
                 Some(bounds.grown(self.radius)),
-                8.0,
+                OPERATIONS,
                 self.ring_radius + self.radius,
             )
         }

@@ -6,10 +6,13 @@
 use super::line::Edge;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 24.0;
 
 /// The S that every pupil draws: fourteen strokes, two fifths as wide as high.
 /// Exact.
@@ -88,10 +91,15 @@ impl Kernel<2> for CoolS {
         S::select_less(outline, zero, outline.max(-strokes), outline)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.half_height)
+    }
+
     fn promise(&self) -> Promise<2> {
         let half = Vector([0.4, 1.0]) * self.half_height;
         let bounds = Bounds::centred(half, self.half_height);
-        Promise::exact(Some(bounds), 24.0, self.half_height)
+        Promise::exact(Some(bounds), OPERATIONS, self.half_height)
     }
 }
 

@@ -5,9 +5,9 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distances take at most.
@@ -73,6 +73,11 @@ impl Kernel<2> for Cross {
         let (end, side) = (x - S::constant(self.half_length), y - half_width);
         let to_corner = S::norm([x - half_width, side]);
         S::select_less(x, half_width, end.max(-to_corner), S::orthant([end, side]))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.half_length + self.half_width)
     }
 
     fn promise(&self) -> Promise<2> {
@@ -176,6 +181,11 @@ impl Kernel<2> for RoundedX {
         // Rounding must not take a point outside for one before the normal.
         let inside = S::select_less(before, S::constant(self.offset), -to_corner, capsule);
         S::select_less(capsule, S::constant(0.0), inside, capsule)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.length + self.radius)
     }
 
     fn promise(&self) -> Promise<2> {

@@ -3,11 +3,11 @@
 
 //! Discs with a part taken off: by a line, by another disc.
 
-use super::outline::{beside, bounds_about, intersection};
+use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
-use crate::kernel::profile::CutDisc;
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::profile::{self, CutDisc};
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -103,12 +103,8 @@ const MOON_OPERATIONS: f64 = 6.0;
 /// A disc about the origin without a second disc above it on the y axis: a crescent
 /// with its horns up. Exact.
 ///
-/// # Derivation
-///
-/// Fold to `x ≥ 0`; the circles meet at the tip of the horn. Inside, the nearer
-/// circle decides. Outside, the nearest point is on an arc, if the direction from its
-/// centre is one of the arc's, or it is the tip. That a direction is past the end of
-/// an arc shows in the sign of the offset from the line through centre and tip.
+/// Folded to `x ≥ 0`, it is the profile that a [`DeathStar`](crate::kernel::DeathStar)
+/// turns.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Moon};
@@ -126,10 +122,7 @@ const MOON_OPERATIONS: f64 = 6.0;
 #[derive(Clone, Debug)]
 pub struct Moon {
     radius: f64,
-    cut_radius: f64,
-    distance: f64,
-    /// The tip of the right horn.
-    tip: [f64; 2],
+    half: profile::Moon,
 }
 
 impl Moon {
@@ -148,46 +141,26 @@ impl Moon {
             let rule = format!("between {least} m and {most} m, where the circles cross");
             return Err(ShapeError::number("distance", rule, distance, Unit::Metre));
         }
-        // How far along the line to the other centre the circles cross, from the
-        // centre of the smaller, where less cancels: (r² − R² + d²)/2d.
-        let (small, large) = (radius.min(cut_radius), radius.max(cut_radius));
-        let excess = ((distance - large) / distance) * (distance + large);
-        let along = 0.5 * (excess + small * (small / distance));
-        let along = along.clamp(-small, small);
-        let across = (small - along).sqrt() * (small + along).sqrt();
-        let height = if radius <= cut_radius { along } else { distance - along };
-        Ok(Self { radius, cut_radius, distance, tip: [across, height] })
-    }
-
-    fn size(&self) -> f64 {
-        self.radius.max(self.cut_radius) + self.distance
+        Ok(Self { radius, half: profile::Moon::new(radius, cut_radius, distance) })
     }
 }
 
 impl Kernel<2> for Moon {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let [x, y] = [p.0[0].abs(), p.0[1]];
-        let below = S::constant(self.distance) - y;
-        let disc = p.norm() - S::constant(self.radius);
-        // `below` first: from its centre, straight down leads to the arc.
-        let cut = S::constant(self.cut_radius) - S::norm([below, x]);
+        self.half.distance([p.0[0].abs(), p.0[1]])
+    }
 
-        let [tip_x, tip_y] = self.tip;
-        let tip = S::norm([x - S::constant(tip_x), y - S::constant(tip_y)]);
-        let across = [-tip_y / self.radius, tip_x / self.radius];
-        let past_outer = Vector([x, y]).dot_constant(&across);
-        let across = [(self.distance - tip_y) / self.cut_radius, -tip_x / self.cut_radius];
-        let past_inner = Vector([x, below]).dot_constant(&across);
-        let pieces = beside(disc, past_outer, beside(cut, past_inner, tip));
-        intersection(disc.max(cut), pieces, self.size())
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, MOON_OPERATIONS, self.half.size())
     }
 
     fn promise(&self) -> Promise<2> {
-        let [tip_x, tip_y] = self.tip;
+        let [tip_x, tip_y] = self.half.corner();
         let radius = self.radius;
         let widest = if tip_y > 0.0 { radius } else { tip_x };
-        let margin = 8.0 * f64::EPSILON * self.size();
+        let margin = 8.0 * f64::EPSILON * self.half.size();
         let aabb = Aabb { min: Vector([-widest, -radius]), max: Vector([widest, tip_y]) };
         let aabb = aabb.grown(margin);
         let bounds = if tip_y > 0.0 {
@@ -197,7 +170,7 @@ impl Kernel<2> for Moon {
         };
         Promise {
             symmetric: [true, false],
-            ..Promise::exact(Some(bounds), MOON_OPERATIONS, self.size())
+            ..Promise::exact(Some(bounds), MOON_OPERATIONS, self.half.size())
         }
     }
 }

@@ -7,9 +7,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// The height of a heart whose square has edges of one.
@@ -81,6 +81,11 @@ impl Kernel<2> for Heart {
         // The larger of two negative numbers is the nearer; outside, the edge is.
         let square = side.max(-S::norm([across + edge, past_edge]));
         S::select_less(zero, past_edge, lobe, square)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.height)
     }
 
     fn promise(&self) -> Promise<2> {

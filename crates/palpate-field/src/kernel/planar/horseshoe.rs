@@ -3,12 +3,13 @@
 
 //! The horseshoe.
 
-use super::outline::{bounds_about, half_of_less_than_a_turn};
+use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::profile::half_of_less_than_a_turn;
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
@@ -99,6 +100,11 @@ impl Kernel<2> for Horseshoe {
         let ring = (S::norm([p.0[1], p.0[0]]) - radius).abs() - width;
         let arc = ring.max(-S::norm([-end, side.max(zero)]));
         S::select_less(zero, along, S::orthant([side, end]), arc)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.size())
     }
 
     fn promise(&self) -> Promise<2> {

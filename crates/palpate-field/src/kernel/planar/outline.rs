@@ -6,34 +6,8 @@
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::field::Placement;
-use crate::kernel::face_if_on_it;
 use crate::pose::{Pose, Rotation};
-use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
-
-/// The distance of a shape of `size` [m] that is the intersection of sides
-/// (half-planes, discs, what is outside a disc): inside the largest distance to a side,
-/// `sides`; outside that to the nearest piece of the outline, `pieces`.
-#[inline(always)]
-pub(super) fn intersection<S: Scalar>(sides: S, pieces: S, size: f64) -> S {
-    let outside = face_if_on_it(pieces, sides, size);
-    S::select_less(sides, S::constant(0.0), sides, outside)
-}
-
-/// The distance to one piece of an outline, or to the others, which are `otherwise` away.
-/// `out` is the offset from the piece's line or circle, negative inside.
-///
-/// A point on or out of it that is not `past` the piece's ends is beside the piece, which
-/// then is the nearest. The smaller of both would not do: next to an end they differ by
-/// less than their rounding, and the direction from the end is only nearly the normal.
-#[inline(always)]
-pub(super) fn beside<S: Scalar>(out: S, past: S, otherwise: S) -> S {
-    let zero = S::constant(0.0);
-    // Behind the piece, seen through the shape: so that models over cells on the outline
-    // do not have to choose between far apart numbers.
-    let behind = otherwise.min(out.abs());
-    S::select_less(zero, past, otherwise, S::select_less(out, zero, behind, out))
-}
 
 /// The box `aabb`, and of the ball of `radius` about (0, `height`) and the one
 /// around the box the smaller.
@@ -61,16 +35,6 @@ pub(super) fn frame_between(
     let [x, y] = (to - from).normalized().ok_or_else(away)?.0;
     let rotation = Rotation::from_matrix([[y, x], [-x, y]])?;
     Ok((Placement::new(Pose::new(rotation, (from + to) * 0.5)), 0.5 * apart))
-}
-
-/// Half of an angle in (0, 2π) [rad].
-pub(super) fn half_of_less_than_a_turn(angle: f64) -> Result<f64, ShapeError> {
-    // Written so that NaN fails.
-    if angle > 0.0 && angle < std::f64::consts::TAU {
-        return Ok(0.5 * angle);
-    }
-    let rule = "in (0, 2π), less than a full turn";
-    Err(ShapeError::number("angle", rule, angle, Unit::Radian))
 }
 
 #[cfg(test)]
@@ -109,7 +73,7 @@ mod tests {
         let corner = 1.0_f64.hypot(SQRT_2 - 1.0);
         let turned = Rotation::from_angle(PI / 8.0)?;
         let turned = Placement::new(Pose::rotation(turned));
-        for (x, y) in [(0.1, 0.2), (1.7, 0.4), (-0.9, -1.1), (0.3, -2.0)] {
+        for (x, y) in [(0.1_f64, 0.2), (1.7, 0.4), (-0.9, -1.1), (0.3, -2.0)] {
             let p = Vector([x, y]);
             let regular = RegularPolygon::new(8, corner)?.distance(turned.to_body(p));
             assert!((octagon.distance(p) - regular).abs() < 1e-14, "at {p:?}");

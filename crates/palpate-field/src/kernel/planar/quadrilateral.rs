@@ -4,10 +4,11 @@
 //! Rhombi, parallelograms, trapezoids and triangles along the axes.
 
 use super::line::Edge;
-use super::outline::{beside, bounds_about, intersection};
+use super::outline::bounds_about;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::profile::{self, beside, intersection};
+use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -17,10 +18,8 @@ const OPERATIONS: f64 = 6.0;
 
 /// A rhombus about the origin, its diagonals along the axes. Exact.
 ///
-/// # Derivation
-///
-/// Folded to `x, y ≥ 0` there is one edge, between the ends of the half diagonals.
-/// Inside, the distance is that from its line, outside that from the edge.
+/// Folded to `x, y ≥ 0`, it is the profile of a
+/// [`RhombusPrism`](crate::kernel::RhombusPrism).
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Rhombus};
@@ -33,10 +32,7 @@ const OPERATIONS: f64 = 6.0;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Rhombus {
-    half: [f64; 2],
-    edge: Edge,
-}
+pub struct Rhombus(profile::Rhombus);
 
 impl Rhombus {
     /// A rhombus with the given full diagonals along x and y [m].
@@ -48,22 +44,19 @@ impl Rhombus {
         for length in size.0 {
             positive("size", length, Unit::Metre)?;
         }
-        let half = size.0.map(|length| 0.5 * length);
-        // Counter-clockwise: outside is to the right.
-        let edge = Edge::new(Vector([half[0], 0.0]), Vector([0.0, half[1]]));
-        Ok(Self { half, edge })
+        Ok(Self(profile::Rhombus::new(size.0.map(|length| 0.5 * length), 0.0)))
     }
 
     fn radius(&self) -> f64 {
-        self.half[0].max(self.half[1])
+        let [a, b] = self.0.corners();
+        a.max(b)
     }
 }
 
 impl Kernel<2> for Rhombus {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let [out, past] = self.edge.offsets(p.abs());
-        intersection(out, S::norm([out, past]), self.radius())
+        self.0.distance(p.abs().0)
     }
 
     #[inline(always)]
@@ -72,7 +65,7 @@ impl Kernel<2> for Rhombus {
     }
 
     fn promise(&self) -> Promise<2> {
-        let bounds = Bounds::centred(Vector(self.half), self.radius());
+        let bounds = Bounds::centred(Vector(self.0.corners()), self.radius());
         Promise::exact_convex(Some(bounds), OPERATIONS, self.radius()).symmetric()
     }
 }
@@ -301,21 +294,7 @@ impl IsoscelesTriangle {
     }
 }
 
-impl Kernel<2> for IsoscelesTriangle {
-    #[inline(always)]
-    fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        self.0.distance(p)
-    }
-
-    #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
-        self.0.model(cell)
-    }
-
-    fn promise(&self) -> Promise<2> {
-        self.0.promise()
-    }
-}
+answered_by_inner!(IsoscelesTriangle, 2);
 
 primitive! {
     IsoscelesTriangle, "isosceles_triangle", 2,

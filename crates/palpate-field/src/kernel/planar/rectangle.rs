@@ -3,10 +3,11 @@
 
 //! Rectangles: with rounded corners, with cut corners, between two points.
 
-use super::outline::{beside, frame_between, intersection};
+use super::outline::frame_between;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::field::Placement;
+use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Cuboid, Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};

@@ -6,7 +6,7 @@
 use super::line::Edge;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::kernel::{Kernel, face_if_on_it, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
@@ -261,6 +261,11 @@ impl Kernel<2> for RegularStar {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         self.edge.signed_distance(self.fold.apply(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, STAR_OPERATIONS, self.outer_radius)
     }
 
     fn promise(&self) -> Promise<2> {

@@ -5,10 +5,13 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 5.0;
 
 /// All points between two circles about the origin. Exact.
 ///
@@ -57,10 +60,15 @@ impl Kernel<2> for Ring {
         (p.norm() - S::constant(self.mean_radius)).abs() - S::constant(self.half_width)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.mean_radius + self.half_width)
+    }
+
     fn promise(&self) -> Promise<2> {
         let radius = self.mean_radius + self.half_width;
         let bounds = Bounds::centred(Vector::constant(radius), radius);
-        Promise::exact(Some(bounds), 5.0, radius).symmetric()
+        Promise::exact(Some(bounds), OPERATIONS, radius).symmetric()
     }
 }
 

@@ -5,9 +5,9 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
 /// How many rounded operations the distance takes at most.
@@ -90,6 +90,11 @@ impl Kernel<2> for RoundedCross {
         let out = from_centre.dot_constant(below).max(from_centre.dot_constant(left));
         let arc = S::constant(self.arc_radius) - from_centre.norm();
         S::select_less(S::constant(0.0), out, right.min(top), arc)
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.arc_radius)
     }
 
     fn promise(&self) -> Promise<2> {

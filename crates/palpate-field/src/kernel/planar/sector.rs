@@ -3,10 +3,11 @@
 
 //! Sectors of discs and rings about the +y axis.
 
-use super::outline::{bounds_about, half_of_less_than_a_turn};
+use super::outline::bounds_about;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::profile::Wedge;
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -14,74 +15,29 @@ use crate::vector::Vector;
 /// How many rounded operations the distances take at most.
 const OPERATIONS: f64 = 6.0;
 
-/// The angle between two rays from the origin, at the same angle from the +y axis,
-/// and the straight pieces of an outline on them.
-#[derive(Clone, Copy, Debug)]
-struct Wedge {
-    /// Half the angle.
-    half_angle: f64,
-    /// Its sine and cosine: the direction of the right ray.
-    end: [f64; 2],
-    /// Where the piece on a ray begins and ends, from the origin.
-    inner: f64,
-    outer: f64,
-}
-
-impl Wedge {
-    fn new(angle: f64, inner: f64, outer: f64) -> Result<Self, ShapeError> {
-        let half_angle = half_of_less_than_a_turn(angle)?;
-        let end = [libm::sin(half_angle), libm::cos(half_angle)];
-        Ok(Self { half_angle, end, inner, outer })
+/// The bounds of what a wedge cuts out of a disc or ring.
+fn bounds_of(wedge: &Wedge) -> Bounds<2> {
+    let [sin, cos] = wedge.end();
+    let (inner, outer) = (wedge.inner(), wedge.outer());
+    let widest = if cos < 0.0 { outer } else { outer * sin };
+    let lowest = if cos < 0.0 { outer * cos } else { inner * cos };
+    let margin = 4.0 * f64::EPSILON * outer;
+    let aabb = Aabb { min: Vector([-widest, lowest]), max: Vector([widest, outer]) };
+    let aabb = aabb.grown(margin);
+    if cos <= 0.0 {
+        return bounds_about(aabb, 0.0, outer);
     }
-
-    /// What `round`, of which the distance is known, has in common with the wedge.
-    ///
-    /// Fold to `x ≥ 0`. Outside the wedge, the nearest point is on the straight
-    /// piece. In it, outside `round`, that of `round` is in the wedge too, being on
-    /// the same ray. Inside both, the nearer of both decides; where the piece is not
-    /// all of the ray, `round` ends first.
-    #[inline(always)]
-    fn cut<S: Scalar>(&self, p: Vector<S, 2>, round: S) -> S {
-        let zero = S::constant(0.0);
-        let [sin, cos] = self.end;
-        let folded = Vector([p.0[0].abs(), p.0[1]]);
-        let out = folded.dot_constant(&[cos, -sin]);
-        let along = folded.dot_constant(&[sin, cos]);
-        let before = S::constant(self.inner) - along;
-        let past = before.max(along - S::constant(self.outer)).max(zero);
-        let to_piece = S::norm([out, past]);
-        // Beside the piece the offset itself, which has a gradient on it too.
-        let inside = S::select_less(zero, past, -to_piece, out);
-        S::select_less(zero, out, to_piece, round.max(inside))
-    }
-
-    fn bounds(&self) -> Bounds<2> {
-        let [sin, cos] = self.end;
-        let (inner, outer) = (self.inner, self.outer);
-        let widest = if cos < 0.0 { outer } else { outer * sin };
-        let lowest = if cos < 0.0 { outer * cos } else { inner * cos };
-        let margin = 4.0 * f64::EPSILON * outer;
-        let aabb = Aabb { min: Vector([-widest, lowest]), max: Vector([widest, outer]) };
-        let aabb = aabb.grown(margin);
-        if cos <= 0.0 {
-            return bounds_about(aabb, 0.0, outer);
-        }
-        // About the middle of the outer corners, or if the inner ones are further from
-        // there, where all four are equally far.
-        let height = (outer * cos).min(0.5 * (inner + outer) / cos);
-        let radius = (outer * sin).hypot(outer * cos - height);
-        bounds_about(aabb, height, radius + margin)
-    }
+    // About the middle of the outer corners, or if the inner ones are further from
+    // there, where all four are equally far.
+    let height = (outer * cos).min(0.5 * (inner + outer) / cos);
+    let radius = (outer * sin).hypot(outer * cos - height);
+    bounds_about(aabb, height, radius + margin)
 }
 
 /// A sector of a disc about the origin, spread about the +y axis. Exact.
 ///
-/// # Derivation
-///
-/// What the disc and the angle have in common. Fold to `x ≥ 0`. Outside the angle,
-/// the nearest point is on the straight edge; in it, on the arc; inside, on the
-/// nearer of both. That a point is outside the angle shows in the sign of the offset
-/// from the edge's line, without an inverse function.
+/// Folded to `x ≥ 0`, it is the profile that a [`SolidAngle`](crate::kernel::SolidAngle)
+/// turns.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Pie};
@@ -107,32 +63,28 @@ impl Pie {
         positive("radius", radius, Unit::Metre)?;
         Ok(Self(Wedge::new(angle, 0.0, radius)?))
     }
-
-    fn is_convex(&self) -> bool {
-        self.0.half_angle <= std::f64::consts::FRAC_PI_2
-    }
 }
 
 impl Kernel<2> for Pie {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        self.0.cut(p, p.norm() - S::constant(self.0.outer))
+        self.0.sector([p.0[0].abs(), p.0[1]])
     }
 
     #[inline(always)]
     fn model(&self, cell: Vector<Model, 2>) -> Model {
-        if self.is_convex() {
-            tangent_model(self, cell, OPERATIONS, self.0.outer)
+        if self.0.is_convex() {
+            tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            self.distance(cell)
+            formula_model(self, cell, OPERATIONS, self.0.outer())
         }
     }
 
     fn promise(&self) -> Promise<2> {
         Promise {
-            convex: self.is_convex(),
+            convex: self.0.is_convex(),
             symmetric: [true, false],
-            ..Promise::exact(Some(self.0.bounds()), OPERATIONS, self.0.outer)
+            ..Promise::exact(Some(bounds_of(&self.0)), OPERATIONS, self.0.outer())
         }
     }
 }
@@ -203,13 +155,18 @@ impl Kernel<2> for RingSector {
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         // y first: from the centre, the +y axis leads to the ring.
         let ring = (S::norm([p.0[1], p.0[0]]) - S::constant(self.mean_radius)).abs();
-        self.wedge.cut(p, ring - S::constant(self.half_width))
+        self.wedge.cut([p.0[0].abs(), p.0[1]], ring - S::constant(self.half_width))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 2>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.wedge.outer())
     }
 
     fn promise(&self) -> Promise<2> {
         Promise {
             symmetric: [true, false],
-            ..Promise::exact(Some(self.wedge.bounds()), OPERATIONS, self.wedge.outer)
+            ..Promise::exact(Some(bounds_of(&self.wedge)), OPERATIONS, self.wedge.outer())
         }
     }
 }

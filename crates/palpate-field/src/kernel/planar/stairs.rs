@@ -5,7 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, lipschitz_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -160,10 +160,7 @@ impl Kernel<2> for Stairs {
     /// A cell may hold many steps, of which the formula sees one.
     #[inline(always)]
     fn model(&self, cell: Vector<Model, 2>) -> Model {
-        let centre = Vector(cell.0.map(|x| x.value));
-        let far = self.size() + centre.norm() + Model::radius(&cell.0);
-        let rounding = OPERATIONS * f64::EPSILON * far;
-        Model::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
+        lipschitz_model(self, cell, OPERATIONS, self.size())
     }
 
     fn promise(&self) -> Promise<2> {

@@ -7,7 +7,8 @@ use super::outline::frame_between;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::Placement;
-use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::kernel::profile::Lens;
+use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
@@ -15,19 +16,11 @@ use crate::vector::{Point, Vector};
 /// How many rounded operations the distance takes at most.
 const OPERATIONS: f64 = 8.0;
 
-/// The largest height for a width of one: the arcs' radius is a quarter of its square.
-const LARGEST_ASPECT: f64 = 1e3;
-
 /// A lens about the origin, bounded by two equal arcs that meet in tips on the y
 /// axis. Exact.
 ///
-/// # Derivation
-///
-/// With `a` and `b` half the width and height, the right arc's circle has its centre
-/// at (−c, 0) and the radius `r = a + c`, and passes through (0, b), so
-/// `2ar = a² + b²`. Fold to `x, y ≥ 0`: the nearest point is on that circle, or the
-/// tip where the direction from the centre is past it, which shows in the sign of the
-/// offset from the line through both.
+/// Folded to `x ≥ 0`, it is the profile that a
+/// [`VesicaSegment`](crate::kernel::VesicaSegment) turns.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Vesica};
@@ -44,10 +37,7 @@ const LARGEST_ASPECT: f64 = 1e3;
 #[derive(Clone, Debug)]
 pub struct Vesica {
     half_extents: [f64; 2],
-    /// Of an arc.
-    radius: f64,
-    /// How far its centre is from the y axis.
-    offset: f64,
+    half: Lens,
 }
 
 impl Vesica {
@@ -55,44 +45,33 @@ impl Vesica {
     ///
     /// # Errors
     ///
-    /// If either is not positive, the width more than the height, or less than a
-    /// thousandth of it.
+    /// If either is not positive, or the width more than the height.
     pub fn new(width: f64, height: f64) -> Result<Self, ShapeError> {
         let a = 0.5 * positive("width", width, Unit::Metre)?;
         let b = 0.5 * positive("height", height, Unit::Metre)?;
-        if width > height || height > LARGEST_ASPECT * width {
-            let rule =
-                format!("at most the height, {height} m, and at least a thousandth of it");
+        if width > height {
+            let rule = format!("at most the height, {height} m");
             return Err(ShapeError::number("width", rule, width, Unit::Metre));
         }
-        let offset = 0.5 * (b - a) * ((b + a) / a);
-        Ok(Self { half_extents: [a, b], radius: offset + a, offset })
+        Ok(Self { half_extents: [a, b], half: Lens::new(b, a) })
     }
 }
 
 impl Kernel<2> for Vesica {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
-        let zero = S::constant(0.0);
-        let [_, b] = self.half_extents;
-        let folded = p.abs();
-        let [x, y] = folded.0;
-        let arc = S::norm([x + S::constant(self.offset), y]) - S::constant(self.radius);
-        let tip = S::norm([y - S::constant(b), x]);
-        let across = [-b / self.radius, self.offset / self.radius];
-        let past = folded.dot_constant(&across) - S::constant(b * across[1]);
-        S::select_less(zero, past, face_if_on_it(tip, arc, self.radius), arc)
+        self.half.distance([p.0[0].abs(), p.0[1]])
     }
 
     #[inline(always)]
     fn model(&self, cell: Vector<Model, 2>) -> Model {
-        tangent_model(self, cell, OPERATIONS, self.radius)
+        tangent_model(self, cell, OPERATIONS, self.half.half_height())
     }
 
     fn promise(&self) -> Promise<2> {
         let half = Vector(self.half_extents);
         let bounds = Bounds::centred(half, half[1]);
-        Promise::exact_convex(Some(bounds), OPERATIONS, self.radius).symmetric()
+        Promise::exact_convex(Some(bounds), OPERATIONS, self.half.half_height()).symmetric()
     }
 }
 
@@ -134,7 +113,7 @@ impl OrientedVesica {
     /// # Errors
     ///
     /// If the points are the same, a coordinate is not finite, or the width not
-    /// positive, more than their distance or less than a thousandth of it.
+    /// positive or more than their distance.
     pub fn new(from: Point<2>, to: Point<2>, width: f64) -> Result<Self, ShapeError> {
         positive("width", width, Unit::Metre)?;
         let (placement, half_length) = frame_between(from, to)?;

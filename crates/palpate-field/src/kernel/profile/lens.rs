@@ -4,6 +4,7 @@
 //! What two discs have in common.
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
+use crate::kernel::face_if_on_it;
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
 
@@ -53,7 +54,10 @@ impl Lens {
         let product =
             x * (across + S::constant(2.0 * tip_x)) + beyond * (up + S::constant(tip_y));
         let zero = S::constant(0.0);
-        S::select_less(zero, past_tip, S::norm([x, beyond]), product / sum)
+        let arc = product / sum;
+        // `beyond` first: it is a normal of the tip.
+        let tip = face_if_on_it(S::norm([beyond, x]), arc, self.half_height);
+        S::select_less(zero, past_tip, tip, arc)
     }
 
     /// The bounds when turned about the unit vector `axis` through `centre`.

@@ -12,14 +12,16 @@ mod arc;
 mod cut_disc;
 mod lens;
 mod moon;
+mod outline;
 mod rhombus;
-mod sector;
 mod two_discs;
+mod wedge;
 
 pub(super) use arc::Curve;
 pub(super) use cut_disc::{CutDisc, bounds_of_zone};
 pub(super) use lens::Lens;
 pub(super) use moon::Moon;
+pub(super) use outline::{beside, intersection};
 pub(super) use rhombus::{Rhombus, inner_radius};
-pub(super) use sector::Sector;
 pub(super) use two_discs::TwoDiscs;
+pub(super) use wedge::{Wedge, half_of_less_than_a_turn};

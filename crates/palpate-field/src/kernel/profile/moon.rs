@@ -3,9 +3,8 @@
 
 //! A disc with a bite.
 
-use super::bounds_of_zone;
+use super::{beside, bounds_of_zone, intersection};
 use crate::bounds::Bounds;
-use crate::kernel::face_if_on_it;
 use crate::scalar::Scalar;
 
 /// A disc about the origin without another whose centre is on the +y axis.
@@ -13,9 +12,11 @@ use crate::scalar::Scalar;
 /// # Derivation
 ///
 /// The boundary is an arc of either circle, between the corner where both cross and the
-/// y axis. An arc is as far away as its circle, where the angle about its centre is on
-/// the arc's side of the corner, else as the corner. Inside, what is outside is beyond
-/// the disc or in the bite: there the nearer of both circles counts, arc or not.
+/// y axis. Inside, what is outside is beyond the disc or in the bite: there the nearer of
+/// both circles counts, arc or not. Outside, the nearest point is on an arc, if the
+/// direction from its centre is one of the arc's, or it is the corner. That a direction
+/// is past the end of an arc shows in the sign of the offset from the line through the
+/// centre and the corner.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct Moon {
     radius: f64,
@@ -30,7 +31,12 @@ impl Moon {
     /// [m]; the circles cross.
     pub(in crate::kernel) fn new(radius: f64, cut_radius: f64, distance: f64) -> Self {
         let (r, s, d) = (radius, cut_radius, distance);
-        let height = ((r - s) * (r + s) + d * d) / (2.0 * d);
+        // How far along the line to the other centre the circles cross, from the centre
+        // of the smaller, where less cancels: (r² − R² + d²)/2d.
+        let (small, large) = (r.min(s), r.max(s));
+        let along = 0.5 * (((d - large) / d) * (d + large) + small * (small / d));
+        let along = along.clamp(-small, small);
+        let height = if r <= s { along } else { d - along };
         // Heron's formula in Kahan's order, in which nothing cancels ("Miscalculating
         // area and angles of a needle-like triangle", 2014).
         let mut sides = [r, s, d];
@@ -43,24 +49,31 @@ impl Moon {
 
     /// The signed distance.
     #[inline(always)]
-    pub(in crate::kernel) fn distance<S: Scalar>(&self, p: [S; 2]) -> S {
-        let zero = S::constant(0.0);
-        let from_bite = [p[0], p[1] - S::constant(self.distance)];
-        let disc = S::norm(p) - S::constant(self.radius);
-        let bite = S::constant(self.cut_radius) - S::norm(from_bite);
-        let inside = disc.max(bite);
-        // How far past the corner's angle, from +y about each centre.
-        let [x, y] = self.corner;
-        let kept = S::weighted_sum(p, &[y / self.radius, -x / self.radius]);
-        let below = y - self.distance;
-        let within =
-            S::weighted_sum(from_bite, &[below / self.cut_radius, -x / self.cut_radius]);
-        let corner = S::norm([p[0] - S::constant(x), p[1] - S::constant(y)]);
-        let corner = face_if_on_it(corner, inside, self.radius);
-        let of_disc = S::select_less(kept, zero, corner, disc.abs());
-        let of_bite = S::select_less(within, zero, corner, bite.abs());
-        let outside = of_disc.min(of_bite);
-        S::select_less(inside, zero, inside, outside)
+    pub(in crate::kernel) fn distance<S: Scalar>(&self, [x, y]: [S; 2]) -> S {
+        let below = S::constant(self.distance) - y;
+        let disc = S::norm([x, y]) - S::constant(self.radius);
+        // `below` first: from its centre, straight down leads to the arc.
+        let bite = S::constant(self.cut_radius) - S::norm([below, x]);
+        let [corner_x, corner_y] = self.corner;
+        let corner = S::norm([x - S::constant(corner_x), y - S::constant(corner_y)]);
+        let across = [-corner_y / self.radius, corner_x / self.radius];
+        let past_disc = S::weighted_sum([x, y], &across);
+        let across =
+            [(self.distance - corner_y) / self.cut_radius, -corner_x / self.cut_radius];
+        let past_bite = S::weighted_sum([x, below], &across);
+        let pieces = beside(disc, past_disc, beside(bite, past_bite, corner));
+        intersection(disc.max(bite), pieces, self.size())
+    }
+
+    /// Where the circles cross.
+    pub(in crate::kernel) fn corner(&self) -> [f64; 2] {
+        self.corner
+    }
+
+    /// The larger radius and the distance of the centres [m].
+    #[inline(always)]
+    pub(in crate::kernel) fn size(&self) -> f64 {
+        self.radius.max(self.cut_radius) + self.distance
     }
 
     /// The bounds when turned about y: those of the disc cut where the circles cross.

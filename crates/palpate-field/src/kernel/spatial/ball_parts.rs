@@ -6,8 +6,8 @@
 use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
-use crate::kernel::profile::{Curve, CutDisc, Moon, Sector, bounds_of_zone};
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::profile::{Curve, CutDisc, Moon, Wedge, bounds_of_zone};
+use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -34,10 +34,7 @@ const OPERATIONS: f64 = 8.0;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct SolidAngle {
-    sector: Sector,
-    convex: bool,
-}
+pub struct SolidAngle(Wedge);
 
 impl SolidAngle {
     /// The part of a ball of `radius` [m] in a cone that opens by `angle` [rad] from
@@ -48,32 +45,27 @@ impl SolidAngle {
     /// If the radius is not positive, or the angle not between 0 and 2π.
     pub fn new(radius: f64, angle: f64) -> Result<Self, ShapeError> {
         positive("radius", radius, Unit::Metre)?;
-        if !(angle > 0.0 && angle < std::f64::consts::TAU) {
-            let rule = "in (0, 2π), less than a full turn";
-            return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
-        }
-        let convex = angle <= std::f64::consts::PI;
-        Ok(Self { sector: Sector::new(radius, 0.5 * angle), convex })
+        Ok(Self(Wedge::new(angle, 0.0, radius)?))
     }
 }
 
 impl Kernel<3> for SolidAngle {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.sector.distance(in_profile(p))
+        self.0.sector(in_profile(p))
     }
 
     #[inline(always)]
     fn model(&self, cell: Vector<Model, 3>) -> Model {
-        if self.convex {
-            tangent_model(self, cell, OPERATIONS, self.sector.radius())
+        if self.0.is_convex() {
+            tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
-            self.distance(cell)
+            formula_model(self, cell, OPERATIONS, self.0.outer())
         }
     }
 
     fn promise(&self) -> Promise<3> {
-        let (radius, [sin, cos]) = (self.sector.radius(), self.sector.edge());
+        let (radius, [sin, cos]) = (self.0.outer(), self.0.end());
         let widest = if cos < 0.0 { radius } else { radius * sin };
         let aabb = Aabb {
             min: Vector([-widest, radius * cos.min(0.0), -widest]),
@@ -90,7 +82,7 @@ impl Kernel<3> for SolidAngle {
         let ball = BoundingBall { centre: Vector([0.0, centre, 0.0]), radius: around + slack };
         let bounds = Bounds { aabb: aabb.grown(slack), ball };
         Promise {
-            convex: self.convex,
+            convex: self.0.is_convex(),
             symmetric: [true, false, true],
             ..Promise::exact(Some(bounds), OPERATIONS, radius)
         }
@@ -242,13 +234,18 @@ impl Kernel<3> for CutHollowSphere {
         self.wall.distance([rho, -y]) - S::constant(self.half_thickness)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.radius + self.half_thickness)
+    }
+
     fn promise(&self) -> Promise<3> {
         let sheet = bounds_of_zone(self.radius, [-self.radius, self.cut_height]);
         let size = self.radius + self.half_thickness;
         Promise {
             has_interior: self.half_thickness > 0.0,
             symmetric: [true, false, true],
-            ..Promise::exact(Some(sheet.grown(self.half_thickness)), 8.0, size)
+            ..Promise::exact(Some(sheet.grown(self.half_thickness)), OPERATIONS, size)
         }
     }
 }
@@ -282,10 +279,7 @@ primitive! {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct DeathStar {
-    moon: Moon,
-    size: f64,
-}
+pub struct DeathStar(Moon);
 
 impl DeathStar {
     /// A ball of `radius` without one of `cut_radius` that is `distance` above it,
@@ -305,22 +299,26 @@ impl DeathStar {
             );
             return Err(ShapeError::number("distance", rule, distance, Unit::Metre));
         }
-        let size = radius + cut_radius + distance;
-        Ok(Self { moon: Moon::new(radius, cut_radius, distance), size })
+        Ok(Self(Moon::new(radius, cut_radius, distance)))
     }
 }
 
 impl Kernel<3> for DeathStar {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.moon.distance(in_profile(p))
+        self.0.distance(in_profile(p))
+    }
+
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.0.size())
     }
 
     fn promise(&self) -> Promise<3> {
-        let bounds = self.moon.turned_bounds();
+        let bounds = self.0.turned_bounds();
         Promise {
             symmetric: [true, false, true],
-            ..Promise::exact(Some(bounds), OPERATIONS, self.size)
+            ..Promise::exact(Some(bounds), OPERATIONS, self.0.size())
         }
     }
 }

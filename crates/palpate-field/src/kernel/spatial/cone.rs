@@ -5,7 +5,8 @@
 
 use super::cylinder::{from_axis, in_profile, turned_bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::kernel::profile::{beside, intersection};
+use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -62,6 +63,12 @@ impl CappedCone {
         let slope = [(top_radius - bottom_radius) / side, height / side];
         Ok(Self { bottom_radius, top_radius, half_height: 0.5 * height, slope, side })
     }
+
+    /// The sum of the radii and the side [m].
+    #[inline(always)]
+    fn size(&self) -> f64 {
+        self.side + self.bottom_radius + self.top_radius
+    }
 }
 
 impl Kernel<3> for CappedCone {
@@ -86,26 +93,22 @@ impl Kernel<3> for CappedCone {
             S::constant(self.bottom_radius),
             S::constant(self.top_radius),
         );
-        let by_cap = S::select_less(radius, rho, rims, cap.abs());
-        let past_top = S::select_less(S::constant(self.side), along, rims, out.abs());
-        let by_side = S::select_less(along, zero, rims, past_top);
-        let outside = face_if_on_it(by_cap.min(by_side), inside, self.side);
-        S::select_less(inside, zero, inside, outside)
+        let past_side = (along - S::constant(self.side)).max(-along);
+        let pieces = beside(out, past_side, beside(cap, rho - radius, rims));
+        intersection(inside, pieces, self.size())
     }
 
     #[inline(always)]
     fn model(&self, cell: Vector<Model, 3>) -> Model {
-        let size = self.side + self.bottom_radius + self.top_radius;
-        tangent_model(self, cell, OPERATIONS, size)
+        tangent_model(self, cell, OPERATIONS, self.size())
     }
 
     fn promise(&self) -> Promise<3> {
         let widest = self.bottom_radius.max(self.top_radius);
         let bounds = turned_bounds(widest, self.half_height);
-        let size = self.side + self.bottom_radius + self.top_radius;
         Promise {
             symmetric: [true, self.bottom_radius == self.top_radius, true],
-            ..Promise::exact_convex(Some(bounds), OPERATIONS, size)
+            ..Promise::exact_convex(Some(bounds), OPERATIONS, self.size())
         }
     }
 }
@@ -151,21 +154,7 @@ impl Cone {
     }
 }
 
-impl Kernel<3> for Cone {
-    #[inline(always)]
-    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.0.distance(p)
-    }
-
-    #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
-        self.0.model(cell)
-    }
-
-    fn promise(&self) -> Promise<3> {
-        self.0.promise()
-    }
-}
+answered_by_inner!(Cone, 3);
 
 primitive! {
     Cone, "cone", 3,

@@ -5,10 +5,13 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
+
+/// How many rounded operations the distance takes at most.
+const OPERATIONS: f64 = 6.0;
 
 /// The twelve edges of a box as bars with a square section, within the box. Exact.
 ///
@@ -84,10 +87,15 @@ impl Kernel<3> for CuboidFrame {
         S::select_less(bars, zero, inside, bars)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, Vector(self.half_extents).norm())
+    }
+
     fn promise(&self) -> Promise<3> {
         let half = Vector(self.half_extents);
         let radius = half.norm() * (1.0 + 4.0 * f64::EPSILON);
-        Promise::exact(Some(Bounds::centred(half, radius)), 6.0, radius).symmetric()
+        Promise::exact(Some(Bounds::centred(half, radius)), OPERATIONS, radius).symmetric()
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::planar::RegularPolygon;
-use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
@@ -28,6 +28,12 @@ impl Prism {
         Ok(Self { polygon: RegularPolygon::new(sides, radius)?, half_height })
     }
 
+    fn size(&self) -> f64 {
+        self.polygon.radius() + self.half_height
+    }
+}
+
+impl Kernel<3> for Prism {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
         S::orthant([
@@ -36,8 +42,9 @@ impl Prism {
         ])
     }
 
-    fn size(&self) -> f64 {
-        self.polygon.radius() + self.half_height
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        tangent_model(self, cell, OPERATIONS, self.size())
     }
 
     fn promise(&self) -> Promise<3> {
@@ -79,21 +86,7 @@ impl HexagonalPrism {
     }
 }
 
-impl Kernel<3> for HexagonalPrism {
-    #[inline(always)]
-    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.0.distance(p)
-    }
-
-    #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
-        tangent_model(self, cell, OPERATIONS, self.0.size())
-    }
-
-    fn promise(&self) -> Promise<3> {
-        self.0.promise()
-    }
-}
+answered_by_inner!(HexagonalPrism, 3);
 
 primitive! {
     HexagonalPrism, "hexagonal_prism", 3,
@@ -134,21 +127,7 @@ impl TriangularPrism {
     }
 }
 
-impl Kernel<3> for TriangularPrism {
-    #[inline(always)]
-    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        self.0.distance(p)
-    }
-
-    #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
-        tangent_model(self, cell, OPERATIONS, self.0.size())
-    }
-
-    fn promise(&self) -> Promise<3> {
-        self.0.promise()
-    }
-}
+answered_by_inner!(TriangularPrism, 3);
 
 primitive! {
     TriangularPrism, "triangular_prism", 3,

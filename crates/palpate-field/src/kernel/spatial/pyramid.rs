@@ -5,7 +5,8 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::kernel::profile::{beside, intersection};
+use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
@@ -86,19 +87,21 @@ impl Kernel<3> for Pyramid {
 
         let base_edge = S::norm([beyond, y, (b - half).max(zero)]);
         let corner = Vector([beyond, y, b - half]);
-        let up_ridge = corner.dot_constant(&self.ridge).clamp(0.0, self.ridge_length);
+        let up = corner.dot_constant(&self.ridge);
+        let up_ridge = up.clamp(0.0, self.ridge_length);
         let on_ridge = Vector(array!(i < 3 => up_ridge.scale(self.ridge[i])));
         let ridge = (corner - on_ridge).norm();
-        let edges = base_edge.min(ridge);
-        let base = S::select_less(half, a, edges, (-y).abs());
+        // Where one of them ends in the corner, the other: next to it their distances
+        // differ by less than their rounding, but not their directions.
+        let not_past = S::select_less(half, b, ridge, base_edge.min(ridge));
+        let edges = S::select_less(up, zero, base_edge, not_past);
         // On the side: between base and tip, and no further across than the side
         // is wide there.
         let share = along.scale(1.0 / self.slant);
         let width = half - share.scale(self.half_side);
-        let on_side = S::select_less(width, b, edges, out.abs());
-        let side = S::select_less(along, zero, edges, on_side);
-        let outside = face_if_on_it(base.min(side), inside, self.ridge_length);
-        S::select_less(inside, zero, inside, outside)
+        let past_side = (b - width).max(-along);
+        let pieces = beside(out, past_side, beside(-y, beyond, edges));
+        intersection(inside, pieces, self.ridge_length)
     }
 
     #[inline(always)]

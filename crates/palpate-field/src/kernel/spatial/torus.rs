@@ -7,10 +7,16 @@ use super::cylinder::from_axis;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::profile::Curve;
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
+
+/// How many rounded operations the distance of a capped torus takes at most.
+const CAPPED_OPERATIONS: f64 = 10.0;
+
+/// The same of a link.
+const LINK_OPERATIONS: f64 = 9.0;
 
 /// All points within `radius` of a circle about the y axis. Exact.
 ///
@@ -124,6 +130,11 @@ impl Kernel<3> for CappedTorus {
         S::norm([self.half.distance([x.abs(), z]), y]) - S::constant(self.radius)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, CAPPED_OPERATIONS, self.ring_radius + self.radius)
+    }
+
     fn promise(&self) -> Promise<3> {
         let [sin, cos] = self.half.end();
         let widest = if cos < 0.0 { 1.0 } else { sin };
@@ -145,7 +156,7 @@ impl Kernel<3> for CappedTorus {
             inside: if meets_itself { Quality::Bound } else { Quality::Exact },
             has_interior: self.radius > 0.0,
             symmetric: [true, true, false],
-            ..Promise::exact(Some(bounds.grown(self.radius)), 10.0, size)
+            ..Promise::exact(Some(bounds.grown(self.radius)), CAPPED_OPERATIONS, size)
         }
     }
 }
@@ -210,10 +221,21 @@ impl Kernel<3> for Link {
         S::norm([from_curve, y]) - S::constant(self.radius)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(
+            self,
+            cell,
+            LINK_OPERATIONS,
+            self.half_length + self.ring_radius + self.radius,
+        )
+    }
+
     fn promise(&self) -> Promise<3> {
         let reach = self.ring_radius + self.radius;
         let half = Vector([reach, self.radius, reach + self.half_length]);
-        Promise::exact(Some(Bounds::centred(half, half[2])), 9.0, half[2]).symmetric()
+        Promise::exact(Some(Bounds::centred(half, half[2])), LINK_OPERATIONS, half[2])
+            .symmetric()
     }
 }
 

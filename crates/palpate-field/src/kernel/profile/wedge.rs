@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Sectors of discs and rings.
+
+use crate::error::{ShapeError, Unit};
+use crate::scalar::Scalar;
+
+/// The angle between the +y axis and a ray from the origin, and the straight piece of an
+/// outline on the ray.
+#[derive(Clone, Debug)]
+pub(in crate::kernel) struct Wedge {
+    /// The angle from the axis to the ray.
+    half_angle: f64,
+    /// Its sine and cosine: the direction of the ray.
+    end: [f64; 2],
+    /// Where the piece on the ray begins and ends, from the origin.
+    inner: f64,
+    outer: f64,
+}
+
+impl Wedge {
+    /// Half of what spans `angle` [rad] about the +y axis, with a piece on its ray from
+    /// `inner` to `outer` [m].
+    ///
+    /// # Errors
+    ///
+    /// If the angle is not in (0, 2π).
+    pub(in crate::kernel) fn new(
+        angle: f64,
+        inner: f64,
+        outer: f64,
+    ) -> Result<Self, ShapeError> {
+        let half_angle = half_of_less_than_a_turn(angle)?;
+        let end = [libm::sin(half_angle), libm::cos(half_angle)];
+        Ok(Self { half_angle, end, inner, outer })
+    }
+
+    /// What `round`, of which the distance is known, has in common with the wedge.
+    ///
+    /// Outside the wedge, the nearest point is on the straight piece. In it, outside
+    /// `round`, that of `round` is in the wedge too, being on the same ray. Inside both,
+    /// the nearer of both decides; where the piece is not all of the ray, `round` ends
+    /// first.
+    #[inline(always)]
+    pub(in crate::kernel) fn cut<S: Scalar>(&self, p: [S; 2], round: S) -> S {
+        let zero = S::constant(0.0);
+        let [sin, cos] = self.end;
+        let out = S::weighted_sum(p, &[cos, -sin]);
+        let along = S::weighted_sum(p, &[sin, cos]);
+        let before = S::constant(self.inner) - along;
+        let past = before.max(along - S::constant(self.outer)).max(zero);
+        let to_piece = S::norm([out, past]);
+        // Beside the piece the offset itself, which has a gradient on it too.
+        let inside = S::select_less(zero, past, -to_piece, out);
+        S::select_less(zero, out, to_piece, round.max(inside))
+    }
+
+    /// The sector of the disc whose radius is where the piece ends.
+    #[inline(always)]
+    pub(in crate::kernel) fn sector<S: Scalar>(&self, p: [S; 2]) -> S {
+        self.cut(p, S::norm(p) - S::constant(self.outer))
+    }
+
+    /// Whether it is convex: spans half a turn at most.
+    pub(in crate::kernel) fn is_convex(&self) -> bool {
+        self.half_angle <= std::f64::consts::FRAC_PI_2
+    }
+
+    /// Sine and cosine of the angle from the axis to the ray.
+    pub(in crate::kernel) fn end(&self) -> [f64; 2] {
+        self.end
+    }
+
+    /// Where the piece on the ray begins, from the origin [m].
+    pub(in crate::kernel) fn inner(&self) -> f64 {
+        self.inner
+    }
+
+    /// Where it ends [m].
+    pub(in crate::kernel) fn outer(&self) -> f64 {
+        self.outer
+    }
+}
+
+/// Half of an angle in (0, 2π) [rad].
+pub(in crate::kernel) fn half_of_less_than_a_turn(angle: f64) -> Result<f64, ShapeError> {
+    // Written so that NaN fails.
+    if angle > 0.0 && angle < std::f64::consts::TAU {
+        return Ok(0.5 * angle);
+    }
+    let rule = "in (0, 2π), less than a full turn";
+    Err(ShapeError::number("angle", rule, angle, Unit::Radian))
+}
