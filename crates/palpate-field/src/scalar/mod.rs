@@ -140,8 +140,8 @@ pub trait Scalar:
         // two has a slope.
         let zero = Self::constant(0.0);
         let mut largest = q[0];
-        for i in 1..N {
-            largest = largest.max(q[i]);
+        for component in &q[1..] {
+            largest = largest.max(*component);
         }
         Self::power_norm::<P, N>(array!(i < N => zero.max(q[i]))) + largest.min(zero)
     }

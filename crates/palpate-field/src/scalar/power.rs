@@ -30,14 +30,14 @@ pub(super) fn split<S: Scalar, const P: u32, const N: usize>(x: [S; N]) -> Split
     const { assert!(P == 4 || P == 6 || P == 8, "the norm of another power") };
     let sizes = array!(i < N => x[i].abs());
     let mut largest = sizes[0];
-    for i in 1..N {
-        largest = largest.max(sizes[i]);
+    for size in &sizes[1..] {
+        largest = largest.max(*size);
     }
     let divisor = largest.max(S::constant(TINY));
     let shares: [S; N] = array!(i < N => sizes[i] / divisor);
     let mut sum = even_power::<S, P>(shares[0]);
-    for i in 1..N {
-        sum = sum + even_power::<S, P>(shares[i]);
+    for share in &shares[1..] {
+        sum = sum + even_power::<S, P>(*share);
     }
     // Less than one only where nothing is larger than what is not divided by.
     let root = root::<S, P>(sum.max(S::constant(1.0)));

@@ -27,10 +27,7 @@ impl<const D: usize> Cell<D> {
 
 /// The most that a lower remainder of a convex field may be, in ulp of the
 /// largest number met.
-///
-/// The gradient of a norm of eighth powers is off by 18 ulp over the cell, which a fold
-/// in its middle counts three times.
-const CONVEX_ULP: f64 = 64.0;
+const CONVEX_ULP: f64 = 32.0;
 
 /// Room for the roundings that a model allows for and the promise does not.
 const WIDTH_ROUNDINGS: f64 = 8.0;

@@ -7,10 +7,13 @@ use super::torus::Torus;
 use crate::bounds::Bounds;
 use crate::error::ShapeError;
 use crate::kernel::exponent::{Exponent, in_another_norm};
-use crate::kernel::{Kernel, primitive};
+use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::Scalar;
+use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
+
+/// Rounded operations of the formula.
+const OPERATIONS: f64 = 10.0;
 
 /// A torus about the y axis, its ring and its tube each a circle of another norm: from
 /// a round ring of square wire to a frame with rounded corners. A bound on both sides,
@@ -84,13 +87,18 @@ impl Kernel<3> for PowerTorus {
         norm(self.tube, [from_ring, y]) - S::constant(self.round.radius)
     }
 
+    #[inline(always)]
+    fn model(&self, cell: Vector<Model, 3>) -> Model {
+        formula_model(self, cell, OPERATIONS, self.round.ring_radius + self.round.radius)
+    }
+
     fn promise(&self) -> Promise<3> {
         let (ring, tube) = (self.round.ring_radius, self.round.radius);
         let [along, across] =
             [self.ring, self.tube].map(|exponent| exponent.map_or(1.0, Exponent::reach::<2>));
         let half = Vector([ring + tube, tube, ring + tube]);
         let bounds = Bounds::centred(half, along * (ring + across * tube));
-        let exact = Promise::exact(Some(bounds), 10.0, ring + tube).symmetric();
+        let exact = Promise::exact(Some(bounds), OPERATIONS, ring + tube).symmetric();
         if self.ring.or(self.tube).is_none() { exact } else { in_another_norm(exact) }
     }
 }

@@ -19,26 +19,56 @@ fn excess(n: f64, d: f64, curvature: f64) -> f64 {
     choose(far, Scalar::min(curved, d + d), d + d) * INFLATE
 }
 
+/// How far the roundings of a value and of each component of its gradient leave them
+/// off, relative to what is computed.
+#[derive(Clone, Copy)]
+struct Roundings {
+    value: f64,
+    gradient: f64,
+}
+
+/// Those of a norm of squares, with room.
+const OF_SQUARES: Roundings = Roundings { value: 8.0 * UNIT, gradient: 8.0 * UNIT };
+
+/// Those of a norm of the powers `P`.
+///
+/// The value is off by five roundings. A root has up to 4, its share of a component 6,
+/// the gradient is a power `P − 1` of that by up to 4 products, and summing up takes 3.
+const fn of_powers<const P: u32>() -> Roundings {
+    Roundings { value: 8.0 * UNIT, gradient: (6 * (P - 1) + 7) as f64 * UNIT }
+}
+
 /// A function of `x` that nowhere lies below its tangent plane: `value` and
-/// `gradient` at the centre, at most `above` over the plane, both off by `error`.
+/// `gradient` at the centre, at most `above` over the plane, off by `roundings` of
+/// numbers up to `size`.
+///
+/// A component's rounding is relative: of a remainder that lifts the plane, it takes
+/// nothing that the remainder does not bring. So it counts over what may lower it alone.
 #[inline(always)]
 fn convex<const N: usize>(
     value: f64,
     gradient: [f64; N],
     x: &[Model; N],
     above: f64,
-    error: f64,
+    (roundings, size): (Roundings, f64),
 ) -> Model {
     let mut slopes = [0.0; 3];
-    let (mut lower, mut upper) = (0.0, 0.0);
+    let (mut lower, mut upper, mut reach) = (0.0, 0.0, 0.0);
     unrolled!(i < N => {
         let size = f64::abs(gradient[i]);
         let positive = gradient[i] > 0.0;
         unrolled!(k < 3 => slopes[k] += gradient[i] * x[i].gradient[k]);
         lower += size * choose(positive, x[i].lower, x[i].upper);
         upper += size * choose(positive, x[i].upper, x[i].lower);
+        reach += size * x[i].slope();
     });
-    Model { value, gradient: slopes, lower: lower + error, upper: upper + above + error }
+    let fixed = roundings.value * size + roundings.gradient * reach;
+    Model {
+        value,
+        gradient: slopes,
+        lower: lower + roundings.gradient * lower + fixed,
+        upper: upper + roundings.gradient * upper + fixed + above,
+    }
 }
 
 /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
@@ -48,17 +78,7 @@ pub(super) fn norm<const N: usize>(x: [Model; N]) -> Model {
     let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
     let d = Model::radius(&x);
     let unit = array!(i < N => x[i].value * inverse);
-    convex(n, unit, &x, excess(n, d, 1.0), 8.0 * UNIT * (n + d))
-}
-
-/// The rounding of a norm of the powers `P`, at a change of its arguments by `d`.
-///
-/// That of the value is five roundings. A root has up to 4, its share of a component 6,
-/// and the gradient is a power `P − 1` of that, but the shorter the more components
-/// share: 14, 23 and 28 roundings of a length of one. Summing up takes 3 more.
-#[inline(always)]
-fn error_of_powers<const P: u32>(n: f64, d: f64) -> f64 {
-    UNIT * (8.0 * n + (4.0 * f64::from(P) + 4.0) * d) + 4.0 * TINY
+    convex(n, unit, &x, excess(n, d, 1.0), (OF_SQUARES, n))
 }
 
 /// The second derivative is `(P − 1)/n` times the diagonal of `(|xᵢ|/n)^(P−2) ≤ 1`, less
@@ -70,7 +90,7 @@ pub(super) fn power_norm<const P: u32, const N: usize>(x: [Model; N]) -> Model {
     let n = split.largest * split.root;
     let d = Model::radius(&x);
     let above = excess(n, d, f64::from(P) - 1.0);
-    convex(n, split.gradient::<P>(values), &x, above, error_of_powers::<P>(n, d))
+    convex(n, split.gradient::<P>(values), &x, above, (of_powers::<P>(), n + TINY / UNIT))
 }
 
 #[inline(always)]
@@ -78,33 +98,29 @@ pub(super) fn orthant<const N: usize>(q: [Model; N]) -> Model {
     let positive = array!(i < N => q[i].value.max_of(0.0));
     let n = <f64 as Scalar>::norm(positive);
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
-    let d = Model::radius(&q);
     let outside = array!(i < N => positive[i] * inverse);
-    to_orthant(n, outside, &q, d, excess(n, d, 1.0), 8.0 * UNIT * (n + d))
+    to_orthant((n, outside), &q, 1.0, OF_SQUARES)
 }
 
 #[inline(always)]
 pub(super) fn power_orthant<const P: u32, const N: usize>(q: [Model; N]) -> Model {
     let positive = array!(i < N => q[i].value.max_of(0.0));
     let split = power::split::<f64, P, N>(positive);
-    let n = split.largest * split.root;
-    let d = Model::radius(&q);
-    let above = excess(n, d, f64::from(P) - 1.0);
-    to_orthant(n, split.gradient::<P>(positive), &q, d, above, error_of_powers::<P>(n, d))
+    let outside = (split.largest * split.root, split.gradient::<P>(positive));
+    to_orthant(outside, &q, f64::from(P) - 1.0, of_powers::<P>())
 }
 
 /// An orthant distance is convex and grows with each `qᵢ`: below, its subgradient is
 /// a bound. Above, nothing is added where one face rules the whole cell.
 ///
-/// `n` and `outside` are the value and gradient where some `qᵢ` is positive.
+/// Given are the value and gradient where some `qᵢ` is positive, and how much the norm
+/// is curved, as for [`excess`].
 #[inline(always)]
 fn to_orthant<const N: usize>(
-    n: f64,
-    outside: [f64; N],
+    (n, outside): (f64, [f64; N]),
     q: &[Model; N],
-    d: f64,
-    above: f64,
-    error: f64,
+    curvature: f64,
+    roundings: Roundings,
 ) -> Model {
     let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
     unrolled!(i < N => {
@@ -120,8 +136,9 @@ fn to_orthant<const N: usize>(
         choose(n > 0.0, outside[i], face)
     });
     debug_assert!(free <= 0.0, "some face has the largest value");
+    let d = Model::radius(q);
     let one_face = second + d < 0.0 && largest - second > d + d;
-    let value = n + Scalar::min(largest, 0.0);
-    let error = error + 8.0 * UNIT * f64::abs(largest);
-    convex(value, gradient, q, choose(one_face, 0.0, above), error)
+    let above = choose(one_face, 0.0, excess(n, d, curvature));
+    let size = n + f64::abs(largest) + TINY / UNIT;
+    convex(n + Scalar::min(largest, 0.0), gradient, q, above, (roundings, size))
 }
