@@ -51,6 +51,7 @@ Examples:
   palpate plot scenes/memoir_star.json
   palpate plot scenes/s3.json --plane xz --at 0.1 --output s3.png
   palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05
+  palpate plot scenes/gears.json --centre 0.033,0 --size 0.02 --output mesh.png
   palpate plot scenes/memoir_star.json --map gradient --output gradient.png
   palpate plot scenes/memoir_star.json --map promise --output promise.png")]
     Plot(PlotOptions),
@@ -187,6 +188,13 @@ pub(crate) struct PlotOptions {
     /// The third coordinate of a plane along two axes [m].
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) at: Option<f64>,
+    /// The point in the middle of the picture, x,y or x,y,z [m]; the whole scene if
+    /// left out. A plane along two axes goes through it.
+    #[arg(long, requires = "size", allow_hyphen_values = true)]
+    pub(crate) centre: Option<String>,
+    /// How wide and high a part of the scene is shown [m].
+    #[arg(long, requires = "centre", allow_negative_numbers = true)]
+    pub(crate) size: Option<f64>,
     /// What colours show.
     #[arg(long, value_enum, default_value_t = Map::Distance)]
     pub(crate) map: Map,

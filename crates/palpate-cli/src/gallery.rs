@@ -184,7 +184,7 @@ impl<const D: usize> Specimen<D> {
         let unbounded = || Aabb { min, max };
         let bounds = self.shape.promise().bounds.map_or_else(unbounded, |bounds| bounds.aabb);
         let plane = plane(&bounds)?;
-        let view = Dimensions::view(&plane, &bounds)?;
+        let view = Dimensions::view(&plane, &bounds, picture::MARGIN)?;
         let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max);
         let side = 2.0 * (1.0 + 2.0 * MARGIN) * longest;
         let view = View::new(view.center(), side, side)?;

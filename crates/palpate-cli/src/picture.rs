@@ -14,12 +14,13 @@ use crate::arguments::Map;
 use crate::outcome::Failure;
 
 /// Room around a scene, as a share of its longer side.
-const MARGIN: f64 = 0.15;
+pub(crate) const MARGIN: f64 = 0.15;
 
 /// A dimension whose shapes can be drawn.
 pub(crate) trait Drawable<const D: usize> {
-    /// The window that shows `bounds` on `plane`.
-    fn view(plane: &Slice, bounds: &Aabb<D>) -> Result<View, PlotError>;
+    /// The window that shows `bounds` on `plane`, with `margin` times its longer side
+    /// around it.
+    fn view(plane: &Slice, bounds: &Aabb<D>, margin: f64) -> Result<View, PlotError>;
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
@@ -35,8 +36,8 @@ pub(crate) trait Drawable<const D: usize> {
 pub(crate) struct Dimensions;
 
 impl Drawable<2> for Dimensions {
-    fn view(_: &Slice, bounds: &Aabb<2>) -> Result<View, PlotError> {
-        View::from_bounds(bounds.min.0, bounds.max.0, MARGIN)
+    fn view(_: &Slice, bounds: &Aabb<2>, margin: f64) -> Result<View, PlotError> {
+        View::from_bounds(bounds.min.0, bounds.max.0, margin)
     }
 
     fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
@@ -51,8 +52,8 @@ impl Drawable<2> for Dimensions {
 }
 
 impl Drawable<3> for Dimensions {
-    fn view(plane: &Slice, bounds: &Aabb<3>) -> Result<View, PlotError> {
-        View::of_box(plane, bounds.min.0, bounds.max.0, MARGIN)
+    fn view(plane: &Slice, bounds: &Aabb<3>, margin: f64) -> Result<View, PlotError> {
+        View::of_box(plane, bounds.min.0, bounds.max.0, margin)
     }
 
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {

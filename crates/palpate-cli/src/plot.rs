@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use palpate::field::{Aabb, Vector};
+use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
 use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
 use palpate::scene::{BuiltScene, World};
 use serde_json::json;
@@ -20,26 +20,47 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
     match &named.world {
         World::Planar(scene) => {
-            let bounds = window(scene)?;
-            draw(options, scene, &bounds, &Slice::planar())
+            let window = Window::of(options, scene)?;
+            draw(options, scene, &window, &Slice::planar())
         }
         World::Spatial(scene) => {
-            let bounds = window(scene)?;
-            draw(options, scene, &bounds, &plane(options, &bounds)?)
+            let window = Window::of(options, scene)?;
+            draw(options, scene, &window, &plane(options, &window.bounds)?)
         }
     }
 }
 
-/// What the picture shows: the scene's box, or a metre about the origin if no body
-/// has bounds.
-fn window<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
-    Ok(input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5))))
+/// What the picture shows.
+struct Window<const D: usize> {
+    bounds: Aabb<D>,
+    /// Room around them, as a share of their longer side.
+    margin: f64,
+}
+
+impl<const D: usize> Window<D> {
+    /// A square about the centre that is asked for; else the scene's box, or a metre
+    /// about the origin if no body has bounds.
+    fn of(options: &PlotOptions, scene: &BuiltScene<D>) -> Result<Self, Failure> {
+        if let (Some(centre), Some(size)) = (&options.centre, options.size) {
+            if !(size > 0.0 && size <= LARGEST_LENGTH) {
+                let rule = format!("positive and at most {LARGEST_LENGTH:e} m, got {size:?} m");
+                return Err(Failure::input(format!("--size must be {rule}")));
+            }
+            let centre = input::point::<D>(centre)?;
+            let half = Vector::constant(0.5 * size);
+            let bounds = Aabb { min: centre - half, max: centre + half };
+            return Ok(Self { bounds, margin: 0.0 });
+        }
+        let whole =
+            input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
+        Ok(Self { bounds: whole, margin: picture::MARGIN })
+    }
 }
 
 fn draw<const D: usize>(
     options: &PlotOptions,
     scene: &BuiltScene<D>,
-    bounds: &Aabb<D>,
+    window: &Window<D>,
     plane: &Slice,
 ) -> Result<Outcome, Failure>
 where
@@ -50,7 +71,8 @@ where
             "--step is for --map distance: other maps have no isolines",
         ));
     }
-    let view = Dimensions::view(plane, bounds).map_err(Failure::input)?;
+    let view = Dimensions::view(plane, &window.bounds, window.margin);
+    let view = view.map_err(Failure::input)?;
     let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
         .map_err(Failure::input)?;
     let isolines = match options.step {

@@ -213,6 +213,32 @@ fn plot_writes_svg_and_png() {
 }
 
 #[test]
+fn plot_shows_a_part_of_a_scene() {
+    let folder = Folder::new();
+    let svg = folder.name("part.svg");
+    // A ball of 0.7 m about the origin, seen where x is from 1.6 m to 1.8 m.
+    let around = ["plot", "scenes/s1.json", "--output", &svg, "--json", "--size", "0.2"];
+    let answer = json(&[&around[..], &["--centre", "1.7,0,0"]].concat());
+    // To within a cell of the samples.
+    assert!((answer["smallest_m"].as_f64().unwrap() - 0.9).abs() < 1e-3, "{answer}");
+    assert!((answer["largest_m"].as_f64().unwrap() - 1.103).abs() < 1e-3, "{answer}");
+    for (size, centre) in [("0.2", "1.7,0"), ("-1", "0,0,0"), ("nan", "0,0,0")] {
+        let output = palpate(&[
+            "plot",
+            "scenes/s1.json",
+            "--output",
+            &svg,
+            "--size",
+            size,
+            "--centre",
+            centre,
+        ]);
+        assert_eq!(status(&output), 2, "{size} {centre}");
+    }
+    assert_eq!(status(&palpate(&["plot", "scenes/s1.json", "--size", "0.2"])), 2);
+}
+
+#[test]
 fn plot_draws_gradients() {
     let folder = Folder::new();
     for (scene, plane) in [("scenes/memoir_star.json", "xy"), ("scenes/cup.json", "xz")] {

@@ -126,9 +126,12 @@ impl Picture<'_> {
                 let plot = &self.frame.plot;
                 let spots = labels::place_on_lines(lines, &label, plot, &neighbours, occupied);
                 for spot in &spots {
-                    let halo = Some((self.around(*level), 4.5));
+                    let text = spot.text(&label);
+                    let (around, width) = (self.around(*level), 4.5);
+                    // Between letters, above a decimal point, the line would show.
+                    drawing.stroke(text.middle(), Stroke::new(around, width));
                     let color = side_of(*level).label();
-                    drawing.text(&spot.text(&label), TextPaint { color, halo });
+                    drawing.text(&text, TextPaint { color, halo: Some((around, width)) });
                 }
                 if !spots.is_empty() {
                     neighbours = spots;

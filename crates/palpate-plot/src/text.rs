@@ -134,12 +134,7 @@ impl Text<'_> {
         let Some(face) = Face::of(self.weight) else {
             return Path::default();
         };
-        let width = width(self.text, self.size, self.weight);
-        let mut x = match self.anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => -width / 2.0,
-            Anchor::End => -width,
-        };
+        let mut x = self.start();
         let mut pen = Pen { path: Path::default(), text: self, x };
         for c in self.text.chars() {
             pen.x = x;
@@ -153,14 +148,31 @@ impl Text<'_> {
         pen.path
     }
 
+    /// The line through the middle of the letters, from the first to the last.
+    pub(crate) fn middle(&self) -> Path {
+        const HEIGHT: f32 = 0.36;
+        let pen = Pen { path: Path::default(), text: self, x: self.start() };
+        let width = (width(self.text, self.size, self.weight) / self.size) as f32;
+        let mut path = Path::default();
+        path.push(Verb::Move(pen.place(0.0, HEIGHT)));
+        path.push(Verb::Line(pen.place(width, HEIGHT)));
+        path
+    }
+
+    /// Where the first letter starts, to the right of the anchor [px].
+    fn start(&self) -> f64 {
+        let width = width(self.text, self.size, self.weight);
+        match self.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -width / 2.0,
+            Anchor::End => -width,
+        }
+    }
+
     /// The box around the text, before its turn: from the baseline's descenders to the capitals.
     pub(crate) fn bounds(&self) -> Rect {
         let width = width(self.text, self.size, self.weight);
-        let x = match self.anchor {
-            Anchor::Start => self.at[0],
-            Anchor::Middle => self.at[0] - width / 2.0,
-            Anchor::End => self.at[0] - width,
-        };
+        let x = self.at[0] + self.start();
         let (ascent, descent) = (0.76 * self.size, 0.2 * self.size);
         Rect::new(x, self.at[1] - ascent, width, ascent + descent)
     }

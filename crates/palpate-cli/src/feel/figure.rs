@@ -69,7 +69,7 @@ where
     let slices = felt_slices(&bounds, rows)?;
     let mut views = Vec::new();
     for slice in &slices {
-        let view = Dimensions::view(&slice.plane, &bounds)?;
+        let view = Dimensions::view(&slice.plane, &bounds, picture::MARGIN)?;
         let isolines =
             picture::isolines(&scene.whole, &slice.plane, &view, Sampling::default())?;
         let isolines = isolines.with_title(&slice.heading);
