@@ -143,8 +143,8 @@ fn gradient_apart<K: Kernel<D>, const D: usize>(
     kernel.distance_gradient(p)
 }
 
-/// Directions that differ by less are the same but for rounding: over a length `t`, the
-/// distance along them by `t·NEARLY²/2`, which is less than a rounding.
+/// Directions that differ by less are taken as one: over a length `t`, the distance along
+/// them differs by `t·NEARLY²/2`, which is less than a rounding.
 const NEARLY: f64 = 1e-8;
 
 /// A normal of a convex exact kernel next to `centre`, and by how much its plane through
@@ -177,7 +177,7 @@ fn sure_normal<K: Kernel<D>, const D: usize>(
     };
     let (normal, lost) = out(far, direction);
     if (normal - direction).norm() < NEARLY && lost < NEARLY * far {
-        return (normal, 0.0);
+        return (normal, 0.5 * far * NEARLY * NEARLY);
     }
     let (mut normal, mut lost) = (direction, 0.0_f64);
     let mut step = 4.0 * unit;
@@ -209,7 +209,9 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
         let unit = rounding.max(f64::EPSILON * far);
         let lost;
         (normal, lost) = sure_normal(kernel, centre, (distance, normal), unit, far);
-        rounding += lost;
+        // Where the normal was found, at least four sizes out, the roundings of the nearest
+        // point turn it by a quarter of them, and its own by two; the cell's ends move so.
+        rounding += lost + (0.25 * operations + 2.0) * f64::EPSILON * radius;
     }
     let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
     Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
