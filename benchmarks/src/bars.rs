@@ -6,7 +6,10 @@
 use crate::fields::Rows;
 
 /// A row's key and the most it may be.
-const BARS: &[(&str, f64)] = &[
+pub(crate) type Bar = (&'static str, f64);
+
+/// Those of fields.
+pub(crate) const FIELDS: &[Bar] = &[
     ("S3.distance.point.ours_over_fidget_jit", 1.0),
     ("S3.distance.point_f32.ours_over_fidget_jit", 0.9),
     ("S3.distance.1024.ours_over_fidget_jit", 0.65),
@@ -33,8 +36,18 @@ const BARS: &[(&str, f64)] = &[
     ("S3_displaced.distance.1024.over_child", 4.0),
 ];
 
+/// Those of searches.
+pub(crate) const COLLIDE: &[Bar] = &[
+    ("triangle.hit.S1.ns", 80.0),
+    ("triangle.hit.S2.ns", 160.0),
+    ("triangle.hit.S3.ns", 400.0),
+    ("triangle.minimum_1pc.S1.ns", 600.0),
+    ("triangle.minimum_1pc.S2.ns", 1200.0),
+    ("triangle.minimum_1pc.S3.ns", 3200.0),
+];
+
 /// Prints all rows and how they stand against their bars, or the rows as JSON.
-pub(crate) fn print(rows: &Rows, as_json: bool) {
+pub(crate) fn print(rows: &Rows, bars: &[Bar], as_json: bool) {
     if as_json {
         let object: serde_json::Map<String, serde_json::Value> =
             rows.iter().map(|(key, number)| (key.clone(), (*number).into())).collect();
@@ -46,11 +59,11 @@ pub(crate) fn print(rows: &Rows, as_json: bool) {
     }
     println!();
     let mut missed = 0;
-    for (key, bar) in BARS {
+    for (key, bar) in bars {
         let number = rows.get(*key).copied().unwrap_or(f64::NAN);
         let verdict = if number <= *bar { "reached" } else { "missed" };
         missed += usize::from(verdict == "missed");
         println!("{key:<60} {number:>12.4}  at most {bar:<8} {verdict}");
     }
-    println!("{} of {} bars reached", BARS.len() - missed, BARS.len());
+    println!("{} of {} bars reached", bars.len() - missed, bars.len());
 }

@@ -7,6 +7,7 @@
 //! this package lists them. Machines differ and are shared: quote ratios.
 
 mod bars;
+mod collide;
 mod fields;
 mod peers;
 mod random;
@@ -33,13 +34,22 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// Searches that prove where things touch.
+    Collide {
+        /// Print one JSON object of keys and numbers.
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 fn main() -> ExitCode {
-    let Suite::Fields { json } = Arguments::parse().suite;
-    match fields::measure() {
+    let (measured, bars, json) = match Arguments::parse().suite {
+        Suite::Fields { json } => (fields::measure(), bars::FIELDS, json),
+        Suite::Collide { json } => (collide::measure(), bars::COLLIDE, json),
+    };
+    match measured {
         Ok(rows) => {
-            bars::print(&rows, json);
+            bars::print(&rows, bars, json);
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -4,7 +4,7 @@
 //! Signed distance functions that can be touched.
 //!
 //! One crate for everything: the [`field`]s and their promises, [`scene`] files,
-//! the [`haptics`] proxy and servo, and [`plot`]s. Each is a crate of its own;
+//! [`query`] for where things touch, the [`haptics`] proxy and servo, and [`plot`]s. Each is a crate of its own;
 //! this one only gathers them.
 //!
 //! ```
@@ -25,4 +25,5 @@
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
 pub use palpate_plot as plot;
+pub use palpate_query as query;
 pub use palpate_scene as scene;

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Triangles near a surface: whether they touch it, and how deep.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
+
+use palpate::field::{Point, Shape, Vector};
+use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
+
+use crate::fields::Rows;
+use crate::random::Random;
+use crate::scenes::Work;
+
+/// How large triangles are: their corners lie in balls of these radii [m].
+const SIZES: [f64; 2] = [0.05, 0.3];
+
+/// Triangles of each size.
+const COUNT: usize = 400;
+
+/// How far from the surface the balls' centres are at most, as a share of the size.
+const NEAR: f64 = 0.7;
+
+/// How often each triangle is timed; the fastest counts.
+const REPEATS: usize = 15;
+
+type Triangle = Element<3, 3>;
+
+/// A way of asking.
+type Ask = fn(&Shape<3>, &Triangle, &Limits, &mut Workspace<3, 3>) -> Certified<Point<3>>;
+
+/// Adds the rows of a work.
+pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
+    let questions: [(&str, Ask, f64); 2] =
+        [("hit", touches, 1e-4), ("minimum_1pc", minimum, 1e-2)];
+    for (question, ask, tolerance) in questions {
+        let mut times = Vec::new();
+        let (mut evaluations, mut undecided) = (0, 0);
+        for size in SIZES {
+            let limits = Limits { tolerance: tolerance * size, ..Limits::default() };
+            let mut workspace = Workspace::new();
+            for triangle in near(&work.shape, size)? {
+                let answer = ask(&work.shape, &triangle, &limits, &mut workspace);
+                evaluations += answer.evaluations;
+                undecided += u32::from(match question {
+                    "hit" => answer.is_hit().is_none(),
+                    _ => answer.upper - answer.lower > limits.tolerance,
+                });
+                times.push(fastest(|| {
+                    black_box(ask(&work.shape, black_box(&triangle), &limits, &mut workspace));
+                }));
+            }
+        }
+        let count = times.len() as f64;
+        let key = |what: &str| format!("triangle.{question}.{}.{what}", work.name);
+        rows.insert(key("ns"), times.iter().sum::<f64>() / count);
+        times.sort_by(f64::total_cmp);
+        rows.insert(key("p50_ns"), times[times.len() / 2]);
+        rows.insert(key("p95_ns"), times[times.len() * 95 / 100]);
+        rows.insert(key("max_ns"), times[times.len() - 1]);
+        rows.insert(key("evaluations"), f64::from(evaluations) / count);
+        rows.insert(key("undecided"), f64::from(undecided));
+    }
+    Ok(())
+}
+
+/// The time of the fastest of several batches of a few runs [ns a run].
+fn fastest(mut run: impl FnMut()) -> f64 {
+    const BATCH: usize = 4;
+    run();
+    let mut best = f64::INFINITY;
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        for _ in 0..BATCH {
+            run();
+        }
+        best = best.min(start.elapsed().as_nanos() as f64 / BATCH as f64);
+    }
+    best
+}
+
+/// Triangles near the surface: points of a cube moved along the gradient to at most
+/// [`NEAR`] sizes from it, and three corners about each.
+fn near(shape: &Shape<3>, size: f64) -> Result<Vec<Triangle>, Box<dyn Error>> {
+    let mut random = Random::new(7);
+    let mut triangles = Vec::with_capacity(COUNT);
+    while triangles.len() < COUNT {
+        let start = Vector(random.point([0.0; 3], 1.0));
+        let (distance, gradient) = shape.distance_gradient(start);
+        let height = random.between(-NEAR * size, NEAR * size);
+        let steepness = gradient.norm().max(1e-9);
+        let middle = start - gradient * ((distance - height) / steepness);
+        if shape.distance(middle).abs() > 2.0 * NEAR * size {
+            continue;
+        }
+        let mut corner = || loop {
+            let offset: Point<3> = Vector(random.point([0.0; 3], 1.0));
+            if offset.norm() < 1.0 {
+                return middle + offset * size;
+            }
+        };
+        triangles.push(Element::new([corner(), corner(), corner()])?);
+    }
+    Ok(triangles)
+}

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Answers with their proof.
+
+/// The answer of a search: the truth lies in `[lower, upper]`, rounding included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certified<T> {
+    /// The best that was found; `upper` is its value.
+    pub best: T,
+    /// Nothing is less [m].
+    pub lower: f64,
+    /// Something is no more [m].
+    pub upper: f64,
+    /// Why the search stopped.
+    pub stop: Stop,
+    /// How often the field was asked; a gradient counts twice.
+    pub evaluations: u32,
+}
+
+impl<T> Certified<T> {
+    /// `true` if it is proven that something is at most zero, `false` if nothing is;
+    /// `None` if the search stopped before either was known.
+    #[must_use]
+    pub fn is_hit(&self) -> Option<bool> {
+        if self.upper <= 0.0 {
+            Some(true)
+        } else if self.lower > 0.0 {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+/// Why a search stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The bounds are no further apart than the tolerance.
+    Converged,
+    /// It is proven whether anything is at most zero.
+    SignKnown,
+    /// The budget of evaluations, or the room of the workspace, came to its end first.
+    BudgetSpent,
+}
+
+/// When a search may stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// How far apart the bounds may be [m].
+    pub tolerance: f64,
+    /// The most evaluations, but for those of the round that reaches it.
+    pub budget: u32,
+}
+
+impl Default for Limits {
+    /// A tolerance of 0.1 mm, and 20 000 evaluations.
+    fn default() -> Self {
+        Self { tolerance: 1e-4, budget: 20_000 }
+    }
+}

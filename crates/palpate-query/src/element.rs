@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Segments and triangles.
+
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
+
+use crate::error::QueryError;
+
+/// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
+/// Points may coincide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element<const N: usize, const D: usize> {
+    pub(crate) vertices: [Point<D>; N],
+}
+
+impl<const N: usize, const D: usize> Element<N, D> {
+    /// The segment or triangle with these `vertices` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m.
+    pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
+        const { assert!(N == 2 || N == 3, "segments and triangles") };
+        for value in vertices.iter().flat_map(|vertex| vertex.0) {
+            if value.is_nan() || value.abs() > LARGEST_LENGTH {
+                return Err(QueryError::Coordinate { what: "a vertex", value });
+            }
+        }
+        Ok(Self { vertices })
+    }
+
+    /// The vertices [m].
+    #[must_use]
+    pub fn vertices(&self) -> &[Point<D>; N] {
+        &self.vertices
+    }
+
+    /// How much of each vertex the centre of the smallest ball around the element is.
+    ///
+    /// That of the two ends of its longest edge if the triangle is not acute; else its
+    /// circumcentre, `a²(b² + c² − a²)` with the edges as seen from each vertex.
+    pub(crate) fn centre_weights(&self) -> [f64; N] {
+        let mut weights = [0.5; N];
+        if N == 3 {
+            let squared = |i: usize, k: usize| {
+                let edge = self.vertices[i] - self.vertices[k];
+                edge.dot(edge)
+            };
+            let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
+            let sum: f64 = edges.iter().sum();
+            let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
+            let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
+            let whole: f64 = parts.iter().sum();
+            let is_acute = parts[longest] > 0.0 && whole.is_normal();
+            for (i, weight) in weights.iter_mut().enumerate() {
+                *weight = match (is_acute, i == longest) {
+                    (true, _) => parts[i] / whole,
+                    (false, true) => 0.0,
+                    (false, false) => 0.5,
+                };
+            }
+        }
+        weights
+    }
+
+    /// The point with these parts of the vertices.
+    #[inline]
+    pub(crate) fn at(&self, weights: &[f64; N]) -> Point<D> {
+        let mut point = Vector::ZERO;
+        for (vertex, weight) in self.vertices.iter().zip(weights) {
+            point += *vertex * *weight;
+        }
+        point
+    }
+
+    /// The distance of `p` from the farthest point of the element, a vertex.
+    #[inline]
+    pub(crate) fn farthest(&self, p: Point<D>) -> f64 {
+        let squared = |vertex: &Point<D>| {
+            let apart = *vertex - p;
+            apart.dot(apart)
+        };
+        self.vertices.iter().map(squared).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The parts of half the size that make up the element, all similar to it: two of a
+    /// segment, four of a triangle. Unused places hold the last.
+    #[inline]
+    pub(crate) fn halves(&self) -> [Self; 4] {
+        let v = &self.vertices;
+        let middle = |i: usize, k: usize| (v[i] + v[k]) * 0.5;
+        let part = |points: [Point<D>; 3]| {
+            let mut vertices = *v;
+            vertices.copy_from_slice(&points[..N]);
+            Self { vertices }
+        };
+        if N == 2 {
+            let centre = middle(0, 1);
+            let last = part([centre, v[1], centre]);
+            return [part([v[0], centre, centre]), last, last, last];
+        }
+        // The middle one is turned by half a turn: each vertex is across from its own.
+        let across = [middle(1, 2), middle(2, 0), middle(0, 1)];
+        [
+            part([v[0], across[2], across[1]]),
+            part([across[2], v[1], across[0]]),
+            part([across[1], across[0], v[2]]),
+            part(across),
+        ]
+    }
+}

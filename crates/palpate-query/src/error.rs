@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What can be wrong with a question.
+
+use palpate_field::LARGEST_LENGTH;
+
+/// Why a question cannot be asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// A coordinate is not a number, or too large to compute with.
+    #[error("{what} must be finite and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
+    Coordinate {
+        /// What the coordinate is of.
+        what: &'static str,
+        /// The coordinate.
+        value: f64,
+    },
+}

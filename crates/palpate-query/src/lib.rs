@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Where fields touch other things, with a proof.
+//!
+//! Every search returns a [`Certified`] answer: the best point that was found, between
+//! which bounds the truth lies, and why the search stopped. A search that stops early
+//! says less; it never says what is wrong.
+//!
+//! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
+//!   triangle, in two or three dimensions.
+//!
+//! ```
+//! use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
+//! use palpate_query::{Element, Limits, Stop, Workspace, minimum};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let ball = Shape::from_kernel(Ball::new(1.0)?);
+//! let triangle = Element::new([
+//!     Vector([2.0, 0.0, 0.0]),
+//!     Vector([0.0, 2.0, 0.0]),
+//!     Vector([0.0, 0.0, 2.0]),
+//! ])?;
+//! let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+//! let nearest = minimum(&ball, &triangle, &limits, &mut Workspace::new());
+//! // The plane x + y + z = 2 is 2/√3 from the centre.
+//! let truth = 2.0 / 3.0_f64.sqrt() - 1.0;
+//! assert_eq!(nearest.stop, Stop::Converged);
+//! assert!(nearest.lower <= truth && truth <= nearest.upper);
+//! # Ok(())
+//! # }
+//! ```
+
+mod certified;
+mod element;
+mod error;
+mod sampler;
+mod search;
+
+pub use certified::{Certified, Limits, Stop};
+pub use element::Element;
+pub use error::QueryError;
+pub use search::{Workspace, minimum, touches};

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A field as searches see it: values with all that they may be off by.
+
+use palpate_field::{Block, BoundingBall, Column, Gradients, Point, SHORT, Shape, Vector};
+
+/// Roundings of a distance between points, and of the points themselves, which move by
+/// one each time that an element is halved; relative to the largest coordinate.
+const GEOMETRY_ROUNDINGS: f64 = 64.0;
+
+/// Asks a field, a short block at a time, and counts.
+pub(crate) struct Sampler<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    pub(crate) lipschitz: f64,
+    /// Where `lipschitz` holds, if not everywhere.
+    region: Option<BoundingBall<D>>,
+    /// What a value may be off by, and what it bounds elsewhere [m].
+    pub(crate) slack: f64,
+    pub(crate) evaluations: u32,
+    block: Block<f64, D, SHORT>,
+    values: Column<f64, SHORT>,
+    slopes: Gradients<f64, D, SHORT>,
+}
+
+impl<'a, const D: usize> Sampler<'a, D>
+where
+    dyn palpate_field::field::Field<D>: palpate_field::field::EvaluateBlock<f64, D, SHORT>
+        + palpate_field::field::DifferentiateBlock<f64, D, SHORT>,
+{
+    /// For points at most `reach` from the origin [m].
+    #[inline]
+    pub(crate) fn new(shape: &'a Shape<D>, reach: f64) -> Self {
+        let promise = shape.promise();
+        let geometry = GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
+        Self {
+            shape,
+            lipschitz: promise.lipschitz,
+            region: promise.region,
+            slack: promise.rounding.within(reach) + promise.lipschitz * geometry,
+            evaluations: 0,
+            block: Block::zero(),
+            values: Column::zero(),
+            slopes: Gradients::zero(),
+        }
+    }
+
+    /// The value at a point and the unit vector in which it grows; zero where it is flat.
+    #[inline]
+    pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        self.evaluations += 2;
+        let (value, gradient) = self.shape.distance_gradient(p);
+        (value, unit(gradient))
+    }
+
+    /// The values at points.
+    #[inline]
+    pub(crate) fn values(&mut self, points: &[Point<D>; SHORT]) -> [f64; SHORT] {
+        self.evaluations += SHORT as u32;
+        for (i, p) in points.iter().enumerate() {
+            self.block.set(i, *p);
+        }
+        self.shape.block_distances(&self.block, SHORT, &mut self.values);
+        std::array::from_fn(|i| self.values.get(i))
+    }
+
+    /// The values at points, and the unit vectors in which they grow.
+    #[inline]
+    pub(crate) fn slopes(
+        &mut self,
+        points: &[Point<D>; SHORT],
+    ) -> [(f64, Vector<f64, D>); SHORT] {
+        self.evaluations += 2 * SHORT as u32;
+        for (i, p) in points.iter().enumerate() {
+            self.block.set(i, *p);
+        }
+        self.shape.block_gradients(&self.block, SHORT, &mut self.slopes);
+        std::array::from_fn(|i| {
+            (self.slopes.distance.get(i), unit(self.slopes.gradient.get(i)))
+        })
+    }
+
+    /// What a value at `p` says of all points at most `far` from it [m].
+    #[inline]
+    pub(crate) fn bound(&self, p: Point<D>, value: f64, far: f64) -> f64 {
+        match &self.region {
+            Some(region) if (p - region.centre).norm() + far > region.radius => {
+                f64::NEG_INFINITY
+            }
+            _ => value - self.lipschitz * far - self.slack,
+        }
+    }
+}
+
+#[inline]
+fn unit<const D: usize>(v: Vector<f64, D>) -> Vector<f64, D> {
+    let length = v.norm();
+    if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
+}

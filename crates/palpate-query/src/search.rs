@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The least value of a field over a segment or a triangle.
+//!
+//! Best-first branch and bound, with bounds from points that need not lie on the
+//! element. A field varies by at most L times the way, in all of space: so from `f(p)`
+//! at any `p`,
+//!
+//! ```text
+//! f ≥ f(p) − L·max‖p − vertex‖   on the element,
+//! ```
+//!
+//! since the distance from `p` is convex. From the centre, the loss is the element's
+//! radius r. From a point lifted off it along the gradient by s, the free ball about it
+//! is nearly a half-space, and the loss is about r²/2s: of second order, without
+//! curvature, exactness or a gradient that is right (a wrong one only says less).
+//!
+//! Cells are halves of halves of the element, all similar to it, so that one set of
+//! weights gives all their centres, and each level halves the radius.
+
+use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
+use palpate_field::{Point, SHORT, Shape, Vector};
+
+use crate::certified::{Certified, Limits, Stop};
+use crate::element::Element;
+use crate::sampler::Sampler;
+
+/// Heights that are tried first, in radii.
+const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
+
+/// A cell's second height, as a share of its first.
+const LOWER: f64 = 0.4;
+
+/// What a height becomes when the plain ball said more, and when the lifted one nearly
+/// said all there is to say.
+const SHRINK: f64 = 0.25;
+const GROW: f64 = 1.5;
+
+/// Cells are halved no more often: they are then as small as roundings of the whole.
+const MOST_LEVELS: u32 = 48;
+
+/// Cells that a workspace holds.
+const ROOM: usize = 4096;
+
+/// A part of the element, and what is known of it.
+#[derive(Clone, Copy, Debug)]
+struct Cell<const N: usize, const D: usize> {
+    element: Element<N, D>,
+    radius: f64,
+    /// Nothing on the cell is less [m].
+    lower: f64,
+    /// How far samples are lifted [m], and which way.
+    height: f64,
+    direction: Vector<f64, D>,
+    /// How often the element was halved.
+    level: u32,
+}
+
+/// Memory of searches, to be kept between them: it is allocated once.
+#[derive(Debug)]
+pub struct Workspace<const N: usize, const D: usize> {
+    cells: Vec<Cell<N, D>>,
+}
+
+impl<const N: usize, const D: usize> Workspace<N, D> {
+    /// Room for searches over elements of `N` points in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { cells: Vec::with_capacity(ROOM) }
+    }
+}
+
+impl<const N: usize, const D: usize> Default for Workspace<N, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The least value of a field over an element, between bounds [m], and where it is.
+///
+/// Stops when the bounds are no further apart than the tolerance.
+pub fn minimum<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    limits: &Limits,
+    workspace: &mut Workspace<N, D>,
+) -> Certified<Point<D>>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    Search::over(shape, element, Goal::Least { tolerance: limits.tolerance }, limits.budget)
+        .run(element, workspace)
+}
+
+/// Whether a field is at most zero anywhere on an element.
+///
+/// Stops as soon as that is known, in [`Certified::is_hit`]. A touch that is neither
+/// deeper nor further off than rounding stays unknown, and `limits.tolerance` says up to
+/// which clearance it is to be looked for.
+pub fn touches<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    limits: &Limits,
+    workspace: &mut Workspace<N, D>,
+) -> Certified<Point<D>>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    Search::over(shape, element, Goal::Sign { tolerance: limits.tolerance }, limits.budget)
+        .run(element, workspace)
+}
+
+/// What is to be known.
+#[derive(Clone, Copy, Debug)]
+enum Goal {
+    Least { tolerance: f64 },
+    Sign { tolerance: f64 },
+}
+
+impl Goal {
+    /// Cells with nothing below this need no more looking at.
+    fn threshold(self, upper: f64) -> f64 {
+        match self {
+            Self::Least { tolerance } => upper - tolerance,
+            Self::Sign { tolerance } => (upper - tolerance).min(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Why to stop, if the bounds allow it.
+    fn reached(self, lower: f64, upper: f64) -> Option<Stop> {
+        if matches!(self, Self::Sign { .. }) && (upper <= 0.0 || lower > 0.0) {
+            return Some(Stop::SignKnown);
+        }
+        let (Self::Least { tolerance } | Self::Sign { tolerance }) = self;
+        (upper - lower <= tolerance).then_some(Stop::Converged)
+    }
+}
+
+/// A search under way.
+struct Search<'a, const N: usize, const D: usize> {
+    sampler: Sampler<'a, D>,
+    goal: Goal,
+    budget: u32,
+    /// Of each vertex in a cell's centre.
+    weights: [f64; N],
+    radius: f64,
+    /// The least value found, what it may be off by included, and where.
+    upper: f64,
+    best: Point<D>,
+    /// Nothing in the cells that were dropped is less.
+    dropped: f64,
+}
+
+impl<'a, const N: usize, const D: usize> Search<'a, N, D>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    fn over(shape: &'a Shape<D>, element: &Element<N, D>, goal: Goal, budget: u32) -> Self {
+        let weights = element.centre_weights();
+        let centre = element.at(&weights);
+        let radius = element.farthest(centre);
+        let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
+        let reach = centre.norm() + (1.0 + highest) * radius;
+        Self {
+            sampler: Sampler::new(shape, reach),
+            goal,
+            budget,
+            weights,
+            radius,
+            upper: f64::INFINITY,
+            best: centre,
+            dropped: f64::INFINITY,
+        }
+    }
+
+    /// A value found on the element.
+    #[inline]
+    fn found(&mut self, p: Point<D>, value: f64) {
+        let value = value + self.sampler.slack;
+        if value < self.upper {
+            (self.upper, self.best) = (value, p);
+        }
+    }
+
+    fn answer(&self, lower: f64, stop: Stop) -> Certified<Point<D>> {
+        let (best, upper) = (self.best, self.upper);
+        let lower = lower.min(upper);
+        Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
+    }
+
+    fn run(
+        mut self,
+        element: &Element<N, D>,
+        workspace: &mut Workspace<N, D>,
+    ) -> Certified<Point<D>> {
+        let cells = &mut workspace.cells;
+        cells.clear();
+        let (value, direction) = self.sampler.slope(self.best);
+        let centre = self.best;
+        self.found(centre, value);
+        let mut whole = Cell {
+            element: *element,
+            radius: self.radius,
+            lower: self.sampler.bound(centre, value, self.radius),
+            height: FIRST_HEIGHTS[0] * self.radius,
+            direction,
+            level: 0,
+        };
+        if let Some(stop) = self.goal.reached(whole.lower, self.upper) {
+            return self.answer(whole.lower, stop);
+        }
+        self.look_around(&mut whole, centre);
+        cells.push(whole);
+        loop {
+            let lowest = cells.iter().fold(self.dropped, |low, cell| low.min(cell.lower));
+            if let Some(stop) = self.goal.reached(lowest, self.upper) {
+                return self.answer(lowest, stop);
+            }
+            let is_full = cells.len() + SHORT > cells.capacity();
+            if cells.is_empty() || is_full || self.sampler.evaluations >= self.budget {
+                return self.answer(lowest, Stop::BudgetSpent);
+            }
+            self.halve(cells);
+        }
+    }
+
+    /// The vertices, and points over the centre at several heights.
+    fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) {
+        let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
+        let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
+            None => cell.element.vertices[i],
+            Some(k) => centre + cell.direction * heights[k.min(heights.len() - 1)],
+        });
+        let values = self.sampler.values(&points);
+        for (i, (p, value)) in points.into_iter().zip(values).enumerate() {
+            match i.checked_sub(N) {
+                None => self.found(p, value),
+                Some(k) => {
+                    let lower = self.sampler.bound(p, value, cell.element.farthest(p));
+                    if lower > cell.lower {
+                        cell.lower = lower;
+                        cell.height = heights[k.min(heights.len() - 1)];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Halves the cells of which least is known, a block of parts.
+    fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
+        const { assert!(N == 2 || N == 3, "segments and triangles") };
+        let parts_of_one = if N == 2 { 2 } else { 4 };
+        let mut parts = [cells[0]; SHORT];
+        let mut count = 0;
+        while count < SHORT && !cells.is_empty() {
+            let lowest = (1..cells.len())
+                .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
+            let parent = cells.swap_remove(lowest);
+            for element in &parent.element.halves()[..parts_of_one] {
+                let (radius, level) = (0.5 * parent.radius, parent.level + 1);
+                parts[count] = Cell { element: *element, radius, level, ..parent };
+                count += 1;
+            }
+        }
+        for i in count..SHORT {
+            parts[i] = parts[count - 1];
+        }
+        let centres: [Point<D>; SHORT] =
+            std::array::from_fn(|i| parts[i].element.at(&self.weights));
+        if parts[0].level.is_multiple_of(2) {
+            let slopes = self.sampler.slopes(&centres);
+            for ((part, centre), (value, direction)) in
+                parts.iter_mut().zip(centres).zip(slopes)
+            {
+                self.found(centre, value);
+                part.direction = direction;
+                part.lower = part.lower.max(self.sampler.bound(centre, value, part.radius));
+            }
+            let heights: [f64; SHORT] = std::array::from_fn(|i| parts[i].height);
+            self.lift(&mut parts[..count], &centres, &slopes.map(|(value, _)| value), &heights);
+            self.lift(
+                &mut parts[..count],
+                &centres,
+                &slopes.map(|(value, _)| value),
+                &heights.map(|height| LOWER * height),
+            );
+        } else {
+            let values = self.sampler.values(&centres);
+            for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
+                self.found(centre, value);
+                part.lower = part.lower.max(self.sampler.bound(centre, value, part.radius));
+            }
+            let heights: [f64; SHORT] = std::array::from_fn(|i| parts[i].height);
+            self.lift(&mut parts[..count], &centres, &values, &heights);
+        }
+        let threshold = self.goal.threshold(self.upper);
+        for part in &parts[..count] {
+            if part.lower < threshold && part.level < MOST_LEVELS {
+                cells.push(*part);
+            } else {
+                self.dropped = self.dropped.min(part.lower);
+            }
+        }
+    }
+
+    /// Bounds parts by points over their centres, and learns which heights say much.
+    fn lift(
+        &mut self,
+        parts: &mut [Cell<N, D>],
+        centres: &[Point<D>; SHORT],
+        values: &[f64; SHORT],
+        heights: &[f64; SHORT],
+    ) {
+        let over = |i: usize| {
+            let k = i.min(parts.len() - 1);
+            centres[k] + parts[k].direction * heights[k]
+        };
+        let points: [Point<D>; SHORT] = std::array::from_fn(over);
+        let lifted = self.sampler.values(&points);
+        let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
+        for (i, part) in parts.iter_mut().enumerate() {
+            let far = part.element.farthest(points[i]);
+            let lower = self.sampler.bound(points[i], lifted[i], far);
+            let plain = self.sampler.bound(centres[i], values[i], part.radius);
+            if lower <= plain {
+                part.height = SHRINK * heights[i];
+            } else if lower >= part.lower {
+                let nearly_all = values[i] - 0.25 * self.sampler.lipschitz * part.radius;
+                let grown = if lower > nearly_all { GROW } else { 1.0 };
+                part.height = (grown * heights[i]).min(highest);
+            }
+            part.lower = part.lower.max(lower);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Segments and triangles on random trees: bounds against dense samples.
+
+use arbitrary::Unstructured;
+use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
+use palpate_field::kernel::{Ball, Cuboid};
+use palpate_field::{Point, SHORT, Shape, ShapeError, Vector};
+use palpate_query::{
+    Certified, Element, Limits, QueryError, Stop, Workspace, minimum, touches,
+};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::cases;
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::{Solid, Tree};
+
+/// Samples along an edge.
+const SAMPLES: u32 = 24;
+
+/// Points all over an element, its ends included.
+fn samples<const N: usize, const D: usize>(element: &Element<N, D>) -> Vec<Point<D>> {
+    let v = element.vertices();
+    let mut points = Vec::new();
+    for i in 0..=SAMPLES {
+        for k in 0..=(if N == 3 { SAMPLES - i } else { 0 }) {
+            let (s, t) = (f64::from(i), f64::from(k));
+            let rest = f64::from(SAMPLES) - s - t;
+            points.push((v[0] * rest + v[1] * s + v[N - 1] * t) * (1.0 / f64::from(SAMPLES)));
+        }
+    }
+    points
+}
+
+/// An element near the surface of a shape, small, large or without an extent.
+fn element<const N: usize, const D: usize>(
+    u: &mut Unstructured<'_>,
+    shape: &Shape<D>,
+) -> arbitrary::Result<Element<N, D>> {
+    let middle = draw::point(u, shape)?;
+    let size = draw::size(shape) * [0.0, 1e-6, 0.05, 0.3, 2.0][u.choose_index(5)?];
+    let mut vertices = [middle; N];
+    for vertex in &mut vertices {
+        *vertex += draw::direction::<D>(u)? * (size * draw::unit(u)?);
+    }
+    if u.ratio(1, 5)? {
+        vertices[N - 1] = (vertices[0] + vertices[1]) * 0.5;
+    }
+    Element::new(vertices).map_err(|_| arbitrary::Error::IncorrectFormat)
+}
+
+fn wrong<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    answer: &Certified<Point<D>>,
+) -> Option<String> {
+    // What is sampled is off by rounding too, as `upper` is.
+    let rounding = |p: Point<D>| shape.promise().rounding.within(p.norm());
+    for p in samples(element) {
+        let value = shape.distance(p);
+        if value + rounding(p) < answer.lower {
+            return Some(format!("{value} at {p:?} is below {answer:?} of {element:?}"));
+        }
+    }
+    let again = shape.distance(answer.best);
+    if again > answer.upper || again < answer.lower - rounding(answer.best) {
+        return Some(format!("{again} at the best point of {answer:?}"));
+    }
+    None
+}
+
+fn on_trees<const N: usize, const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    let mut workspace = Workspace::new();
+    let mut seed = 0;
+    let mut spent = 0;
+    cases::check(count, |u| {
+        seed += 1;
+        let tree: Tree<D> = draw::tree(u, 1 + (seed % 4))?;
+        let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
+        let element = element::<N, D>(u, &shape)?;
+        let limits = Limits { tolerance: 0.01 * draw::size(&shape), ..Limits::default() };
+        let least = minimum(&shape, &element, &limits, &mut workspace);
+        let sign = touches(&shape, &element, &limits, &mut workspace);
+        for answer in [least, sign] {
+            if let Some(complaint) = wrong(&shape, &element, &answer) {
+                return Ok(Err(format!("{complaint}\n  {tree:?}")));
+            }
+        }
+        if least.stop == Stop::Converged && least.upper - least.lower > limits.tolerance {
+            return Ok(Err(format!("{least:?} has not converged")));
+        }
+        if sign.stop == Stop::SignKnown && sign.is_hit().is_none() {
+            return Ok(Err(format!("{sign:?} does not know")));
+        }
+        spent += u64::from(least.stop == Stop::BudgetSpent);
+        // Ten evaluations prove little, and nothing that is wrong.
+        let hasty = Limits { budget: 10, ..limits };
+        let answer = minimum(&shape, &element, &hasty, &mut workspace);
+        Ok(wrong(&shape, &element, &answer).map_or(Ok(()), Err))
+    });
+    assert!(spent * 50 <= count, "{spent} of {count} searches spent their budget");
+}
+
+#[test]
+fn minima_of_triangles_in_space_are_enclosed() {
+    on_trees::<3, 3>(600);
+}
+
+#[test]
+fn minima_of_triangles_in_the_plane_are_enclosed() {
+    on_trees::<3, 2>(600);
+}
+
+#[test]
+fn minima_of_segments_are_enclosed() {
+    on_trees::<2, 3>(400);
+    on_trees::<2, 2>(400);
+}
+
+#[test]
+fn a_triangle_through_a_ball_and_one_that_passes_it_are_told_apart() -> Result<(), ShapeError> {
+    let ball = Shape::from_kernel(Ball::new(1.0)?);
+    // A large triangle, at ±1e-9 m from the ball.
+    for (clearance, is_hit) in [(1e-9, false), (-1e-9, true)] {
+        let z = 1.0 + clearance;
+        let vertices = [Vector([-3.0, -2.0, z]), Vector([4.0, -2.5, z]), Vector([0.3, 5.0, z])];
+        let limits = Limits { tolerance: 1e-12, ..Limits::default() };
+        let triangle = Element::new(vertices).unwrap();
+        let answer = touches(&ball, &triangle, &limits, &mut Workspace::new());
+        assert_eq!(answer.is_hit(), Some(is_hit), "{answer:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn the_depth_of_a_segment_in_a_box_is_exact_to_the_tolerance() -> Result<(), ShapeError> {
+    let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
+    let segment = Element::new([Vector([-2.0, 0.2]), Vector([3.0, 0.2])]).unwrap();
+    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    let answer = minimum(&square, &segment, &limits, &mut Workspace::new());
+    assert_eq!(answer.stop, Stop::Converged);
+    assert!(answer.lower <= -0.3 && -0.3 <= answer.upper && answer.upper < -0.3 + 1e-6);
+    Ok(())
+}
+
+#[test]
+fn a_coordinate_that_is_no_number_is_refused() {
+    let wrong = Element::new([Vector([0.0, 1.0]), Vector([f64::NAN, 0.0])]);
+    assert!(matches!(wrong, Err(QueryError::Coordinate { .. })));
+    let far = Element::new([Vector([0.0, 1.0]), Vector([2e16, 0.0])]).unwrap_err();
+    assert_eq!(far.to_string(), "a vertex must be finite and at most 1e15 m, got 2e16 m");
+}
