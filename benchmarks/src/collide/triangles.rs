@@ -69,7 +69,7 @@ pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Err
 
 /// The time of the fastest of several batches of a few runs [ns a run].
 fn fastest(mut run: impl FnMut()) -> f64 {
-    const BATCH: usize = 4;
+    const BATCH: usize = 16;
     run();
     let mut best = f64::INFINITY;
     for _ in 0..REPEATS {

@@ -77,11 +77,13 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// The distance of `p` from the farthest point of the element, a vertex.
     #[inline]
     pub(crate) fn farthest(&self, p: Point<D>) -> f64 {
-        let squared = |vertex: &Point<D>| {
+        let mut farthest = 0.0;
+        for vertex in &self.vertices {
             let apart = *vertex - p;
-            apart.dot(apart)
-        };
-        self.vertices.iter().map(squared).fold(0.0, f64::max).sqrt()
+            let squared = apart.dot(apart);
+            farthest = if squared > farthest { squared } else { farthest };
+        }
+        farthest.sqrt()
     }
 
     /// The parts of half the size that make up the element, all similar to it: two of a

@@ -9,18 +9,30 @@ use palpate_field::{Block, BoundingBall, Column, Gradients, Point, SHORT, Shape,
 /// one each time that an element is halved; relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 64.0;
 
+/// Memory of samples.
+#[derive(Debug)]
+pub(crate) struct Samples<const D: usize> {
+    block: Block<f64, D, SHORT>,
+    values: Column<f64, SHORT>,
+    slopes: Gradients<f64, D, SHORT>,
+}
+
+impl<const D: usize> Samples<D> {
+    pub(crate) fn new() -> Self {
+        Self { block: Block::zero(), values: Column::zero(), slopes: Gradients::zero() }
+    }
+}
+
 /// Asks a field, a short block at a time, and counts.
 pub(crate) struct Sampler<'a, const D: usize> {
     shape: &'a Shape<D>,
+    samples: &'a mut Samples<D>,
     pub(crate) lipschitz: f64,
     /// Where `lipschitz` holds, if not everywhere.
     region: Option<BoundingBall<D>>,
     /// What a value may be off by, and what it bounds elsewhere [m].
     pub(crate) slack: f64,
     pub(crate) evaluations: u32,
-    block: Block<f64, D, SHORT>,
-    values: Column<f64, SHORT>,
-    slopes: Gradients<f64, D, SHORT>,
 }
 
 impl<'a, const D: usize> Sampler<'a, D>
@@ -30,18 +42,16 @@ where
 {
     /// For points at most `reach` from the origin [m].
     #[inline]
-    pub(crate) fn new(shape: &'a Shape<D>, reach: f64) -> Self {
+    pub(crate) fn new(shape: &'a Shape<D>, samples: &'a mut Samples<D>, reach: f64) -> Self {
         let promise = shape.promise();
         let geometry = GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
         Self {
             shape,
+            samples,
             lipschitz: promise.lipschitz,
             region: promise.region,
             slack: promise.rounding.within(reach) + promise.lipschitz * geometry,
             evaluations: 0,
-            block: Block::zero(),
-            values: Column::zero(),
-            slopes: Gradients::zero(),
         }
     }
 
@@ -57,11 +67,16 @@ where
     #[inline]
     pub(crate) fn values(&mut self, points: &[Point<D>; SHORT]) -> [f64; SHORT] {
         self.evaluations += SHORT as u32;
+        let samples = &mut *self.samples;
         for (i, p) in points.iter().enumerate() {
-            self.block.set(i, *p);
+            samples.block.set(i, *p);
         }
-        self.shape.block_distances(&self.block, SHORT, &mut self.values);
-        std::array::from_fn(|i| self.values.get(i))
+        self.shape.block_distances(&samples.block, SHORT, &mut samples.values);
+        let mut values = [0.0; SHORT];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = samples.values.get(i);
+        }
+        values
     }
 
     /// The values at points, and the unit vectors in which they grow.
@@ -69,15 +84,19 @@ where
     pub(crate) fn slopes(
         &mut self,
         points: &[Point<D>; SHORT],
-    ) -> [(f64, Vector<f64, D>); SHORT] {
+    ) -> ([f64; SHORT], [Vector<f64, D>; SHORT]) {
         self.evaluations += 2 * SHORT as u32;
+        let samples = &mut *self.samples;
         for (i, p) in points.iter().enumerate() {
-            self.block.set(i, *p);
+            samples.block.set(i, *p);
         }
-        self.shape.block_gradients(&self.block, SHORT, &mut self.slopes);
-        std::array::from_fn(|i| {
-            (self.slopes.distance.get(i), unit(self.slopes.gradient.get(i)))
-        })
+        self.shape.block_gradients(&samples.block, SHORT, &mut samples.slopes);
+        let (mut values, mut directions) = ([0.0; SHORT], [Vector::ZERO; SHORT]);
+        for i in 0..SHORT {
+            values[i] = samples.slopes.distance.get(i);
+            directions[i] = unit(samples.slopes.gradient.get(i));
+        }
+        (values, directions)
     }
 
     /// What a value at `p` says of all points at most `far` from it [m].

@@ -24,7 +24,7 @@ use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::element::Element;
-use crate::sampler::Sampler;
+use crate::sampler::{Sampler, Samples};
 
 /// Heights that are tried first, in radii.
 const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
@@ -61,13 +61,14 @@ struct Cell<const N: usize, const D: usize> {
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
     cells: Vec<Cell<N, D>>,
+    samples: Samples<D>,
 }
 
 impl<const N: usize, const D: usize> Workspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
     pub fn new() -> Self {
-        Self { cells: Vec::with_capacity(ROOM) }
+        Self { cells: Vec::with_capacity(ROOM), samples: Samples::new() }
     }
 }
 
@@ -89,8 +90,8 @@ pub fn minimum<const N: usize, const D: usize>(
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
-    Search::over(shape, element, Goal::Least { tolerance: limits.tolerance }, limits.budget)
-        .run(element, workspace)
+    let goal = Goal::Least { tolerance: limits.tolerance };
+    search(shape, element, goal, limits.budget, workspace)
 }
 
 /// Whether a field is at most zero anywhere on an element.
@@ -107,8 +108,8 @@ pub fn touches<const N: usize, const D: usize>(
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
-    Search::over(shape, element, Goal::Sign { tolerance: limits.tolerance }, limits.budget)
-        .run(element, workspace)
+    let goal = Goal::Sign { tolerance: limits.tolerance };
+    search(shape, element, goal, limits.budget, workspace)
 }
 
 /// What is to be known.
@@ -137,6 +138,34 @@ impl Goal {
     }
 }
 
+fn search<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    goal: Goal,
+    budget: u32,
+    workspace: &mut Workspace<N, D>,
+) -> Certified<Point<D>>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    let weights = element.centre_weights();
+    let centre = element.at(&weights);
+    let radius = element.farthest(centre);
+    let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
+    let reach = centre.norm() + (1.0 + highest) * radius;
+    let search = Search {
+        sampler: Sampler::new(shape, &mut workspace.samples, reach),
+        goal,
+        budget,
+        weights,
+        radius,
+        upper: f64::INFINITY,
+        best: centre,
+        dropped: f64::INFINITY,
+    };
+    search.run(element, &mut workspace.cells)
+}
+
 /// A search under way.
 struct Search<'a, const N: usize, const D: usize> {
     sampler: Sampler<'a, D>,
@@ -152,28 +181,10 @@ struct Search<'a, const N: usize, const D: usize> {
     dropped: f64,
 }
 
-impl<'a, const N: usize, const D: usize> Search<'a, N, D>
+impl<const N: usize, const D: usize> Search<'_, N, D>
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
-    fn over(shape: &'a Shape<D>, element: &Element<N, D>, goal: Goal, budget: u32) -> Self {
-        let weights = element.centre_weights();
-        let centre = element.at(&weights);
-        let radius = element.farthest(centre);
-        let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
-        let reach = centre.norm() + (1.0 + highest) * radius;
-        Self {
-            sampler: Sampler::new(shape, reach),
-            goal,
-            budget,
-            weights,
-            radius,
-            upper: f64::INFINITY,
-            best: centre,
-            dropped: f64::INFINITY,
-        }
-    }
-
     /// A value found on the element.
     #[inline]
     fn found(&mut self, p: Point<D>, value: f64) {
@@ -192,9 +203,8 @@ where
     fn run(
         mut self,
         element: &Element<N, D>,
-        workspace: &mut Workspace<N, D>,
+        cells: &mut Vec<Cell<N, D>>,
     ) -> Certified<Point<D>> {
-        let cells = &mut workspace.cells;
         cells.clear();
         let (value, direction) = self.sampler.slope(self.best);
         let centre = self.best;
@@ -266,36 +276,26 @@ where
         for i in count..SHORT {
             parts[i] = parts[count - 1];
         }
-        let centres: [Point<D>; SHORT] =
-            std::array::from_fn(|i| parts[i].element.at(&self.weights));
+        let mut centres = [Vector::ZERO; SHORT];
+        for (centre, part) in centres.iter_mut().zip(&parts) {
+            *centre = part.element.at(&self.weights);
+        }
+        let parts = &mut parts[..count];
         if parts[0].level.is_multiple_of(2) {
-            let slopes = self.sampler.slopes(&centres);
-            for ((part, centre), (value, direction)) in
-                parts.iter_mut().zip(centres).zip(slopes)
-            {
-                self.found(centre, value);
+            let (values, directions) = self.sampler.slopes(&centres);
+            for (part, direction) in parts.iter_mut().zip(directions) {
                 part.direction = direction;
-                part.lower = part.lower.max(self.sampler.bound(centre, value, part.radius));
             }
-            let heights: [f64; SHORT] = std::array::from_fn(|i| parts[i].height);
-            self.lift(&mut parts[..count], &centres, &slopes.map(|(value, _)| value), &heights);
-            self.lift(
-                &mut parts[..count],
-                &centres,
-                &slopes.map(|(value, _)| value),
-                &heights.map(|height| LOWER * height),
-            );
+            self.settle(parts, &centres, &values);
+            self.lift(parts, &centres, &values, 1.0);
+            self.lift(parts, &centres, &values, LOWER);
         } else {
             let values = self.sampler.values(&centres);
-            for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
-                self.found(centre, value);
-                part.lower = part.lower.max(self.sampler.bound(centre, value, part.radius));
-            }
-            let heights: [f64; SHORT] = std::array::from_fn(|i| parts[i].height);
-            self.lift(&mut parts[..count], &centres, &values, &heights);
+            self.settle(parts, &centres, &values);
+            self.lift(parts, &centres, &values, 1.0);
         }
         let threshold = self.goal.threshold(self.upper);
-        for part in &parts[..count] {
+        for part in parts {
             if part.lower < threshold && part.level < MOST_LEVELS {
                 cells.push(*part);
             } else {
@@ -304,33 +304,52 @@ where
         }
     }
 
-    /// Bounds parts by points over their centres, and learns which heights say much.
+    /// Bounds parts by the values at their centres.
+    #[inline]
+    fn settle(
+        &mut self,
+        parts: &mut [Cell<N, D>],
+        centres: &[Point<D>; SHORT],
+        values: &[f64; SHORT],
+    ) {
+        for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
+            self.found(*centre, *value);
+            part.lower = larger(part.lower, self.sampler.bound(*centre, *value, part.radius));
+        }
+    }
+
+    /// Bounds parts by points over their centres, at `share` of their heights, and
+    /// learns which heights say much.
+    #[inline]
     fn lift(
         &mut self,
         parts: &mut [Cell<N, D>],
         centres: &[Point<D>; SHORT],
         values: &[f64; SHORT],
-        heights: &[f64; SHORT],
+        share: f64,
     ) {
-        let over = |i: usize| {
-            let k = i.min(parts.len() - 1);
-            centres[k] + parts[k].direction * heights[k]
-        };
-        let points: [Point<D>; SHORT] = std::array::from_fn(over);
+        let mut points = *centres;
+        for (point, part) in points.iter_mut().zip(&*parts) {
+            *point += part.direction * (share * part.height);
+        }
         let lifted = self.sampler.values(&points);
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
-            let far = part.element.farthest(points[i]);
-            let lower = self.sampler.bound(points[i], lifted[i], far);
-            let plain = self.sampler.bound(centres[i], values[i], part.radius);
-            if lower <= plain {
-                part.height = SHRINK * heights[i];
-            } else if lower >= part.lower {
+            let lower =
+                self.sampler.bound(points[i], lifted[i], part.element.farthest(points[i]));
+            if lower >= part.lower {
                 let nearly_all = values[i] - 0.25 * self.sampler.lipschitz * part.radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };
-                part.height = (grown * heights[i]).min(highest);
+                part.height = (grown * share * part.height).min(highest);
+                part.lower = lower;
+            } else if lower <= self.sampler.bound(centres[i], values[i], part.radius) {
+                part.height *= SHRINK;
             }
-            part.lower = part.lower.max(lower);
         }
     }
+}
+
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }
