@@ -17,4 +17,13 @@ pub enum QueryError {
         /// The coordinate.
         value: f64,
     },
+    /// A direction without a length.
+    #[error("a direction must not be zero")]
+    NoDirection,
+    /// A length that is negative, or too large to compute with.
+    #[error("a length must be from 0 m to {LARGEST_LENGTH:e} m, got {value:?} m")]
+    Length {
+        /// The length.
+        value: f64,
+    },
 }

@@ -7,6 +7,7 @@
 //! which bounds the truth lies, and why the search stopped. A search that stops early
 //! says less; it never says what is wrong.
 //!
+//! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions.
 //!
@@ -34,10 +35,12 @@
 mod certified;
 mod element;
 mod error;
+mod ray;
 mod sampler;
 mod search;
 
 pub use certified::{Certified, Limits, Stop};
 pub use element::Element;
 pub use error::QueryError;
+pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};

@@ -99,6 +99,17 @@ where
         (values, directions)
     }
 
+    /// The radius of a ball about `p` in which the field is positive, from a positive
+    /// value there [m]; negative where rounding leaves nothing to know.
+    #[inline]
+    pub(crate) fn free_radius(&self, p: Point<D>, value: f64) -> f64 {
+        let (promise, reach) = (self.shape.promise(), p.norm());
+        let slack = promise.rounding.within(reach)
+            + promise.lipschitz * GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
+        let value = value - slack;
+        if value > 0.0 { promise.safe_radius(p, value) } else { value }
+    }
+
     /// What a value at `p` says of all points at most `far` from it [m].
     #[inline]
     pub(crate) fn bound(&self, p: Point<D>, value: f64, far: f64) -> f64 {

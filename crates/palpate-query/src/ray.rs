@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The first surface along a ray, with nothing skipped.
+//!
+//! Conservative advancement: where the value is f, nothing is within f/L, so the ray may
+//! go on by that (Hart 1996). Past a surface at a small distance, such steps are small,
+//! and there are many. Then points lifted off the ray along the gradient help: the ball
+//! that a value proves empty about such a point is larger, and the ray leaves it later.
+
+use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
+use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
+
+use crate::certified::{Certified, Limits, Stop};
+use crate::error::QueryError;
+use crate::sampler::{Sampler, Samples};
+
+/// Heights of lifted points, as shares of the one that said most the time before.
+const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
+
+/// The first height, as a share of the ray.
+const FIRST_HEIGHT: f64 = 0.25;
+
+/// Steps that are at least this share of the ray are worth taking without lifting.
+const LONG: f64 = 0.05;
+
+/// As are those that come near fast: the value falls at least to this share.
+const NEARING: f64 = 0.4;
+
+/// A part of a straight line: from `origin` in a `direction` of length one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray<const D: usize> {
+    origin: Point<D>,
+    direction: Vector<f64, D>,
+    length: f64,
+}
+
+impl<const D: usize> Ray<D> {
+    /// The ray from `origin` along `direction`, whose length does not matter, `length`
+    /// long [m].
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite or beyond 1e15, the direction is zero, or the length
+    /// is negative.
+    pub fn new(
+        origin: Point<D>,
+        direction: Vector<f64, D>,
+        length: f64,
+    ) -> Result<Self, QueryError> {
+        for (what, numbers) in [("an origin", origin), ("a direction", direction)] {
+            for value in numbers.0 {
+                if value.is_nan() || value.abs() > LARGEST_LENGTH {
+                    return Err(QueryError::Coordinate { what, value });
+                }
+            }
+        }
+        let largest = direction.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if largest == 0.0 {
+            return Err(QueryError::NoDirection);
+        }
+        if !(0.0..=LARGEST_LENGTH).contains(&length) {
+            return Err(QueryError::Length { value: length });
+        }
+        // Divided by the largest first, since squares may underflow.
+        let direction = direction * (1.0 / largest);
+        Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
+    }
+
+    /// The point at a distance from the origin [m].
+    #[must_use]
+    pub fn at(&self, distance: f64) -> Point<D> {
+        self.origin + self.direction * distance
+    }
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit<const D: usize> {
+    /// The point [m].
+    pub point: Point<D>,
+    /// The gradient's unit vector there; `None` where it vanishes.
+    pub normal: Option<Vector<f64, D>>,
+}
+
+/// The first point of a ray at which the field is at most `limits.tolerance`.
+///
+/// The bounds are distances from the origin [m]: before `lower` the field is positive,
+/// which is proven; at `upper` it is at most the tolerance. They are at most the
+/// tolerance apart, if the search converged. A ray proven free has no hit, both bounds
+/// at its end, and [`Stop::SignKnown`]. A ray that starts inside hits at 0.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+/// use palpate_query::{Limits, Ray, Stop, ray};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(1.0)?);
+/// let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+/// let across = Ray::new(Vector([-3.0, 0.6]), Vector([1.0, 0.0]), 10.0)?;
+/// let first = ray(&ball, &across, &limits);
+/// assert!(first.lower <= 2.2 && 2.2 - 1e-8 < first.upper && first.upper < 2.2 + 1e-8);
+///
+/// let past = Ray::new(Vector([-3.0, 1.000_001]), Vector([1.0, 0.0]), 10.0)?;
+/// assert_eq!((ray(&ball, &past, &limits).best, ray(&ball, &past, &limits).stop), (None, Stop::SignKnown));
+/// # Ok(())
+/// # }
+/// ```
+pub fn ray<const D: usize>(
+    shape: &Shape<D>,
+    ray: &Ray<D>,
+    limits: &Limits,
+) -> Certified<Option<RayHit<D>>>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    let mut samples = Samples::new();
+    let mut advance = Advance {
+        sampler: Sampler::new(shape, &mut samples, ray.origin.norm()),
+        ray,
+        height: FIRST_HEIGHT * ray.length,
+        witness: None,
+    };
+    advance.run(limits)
+}
+
+/// A ray on its way.
+struct Advance<'a, const D: usize> {
+    sampler: Sampler<'a, D>,
+    ray: &'a Ray<D>,
+    height: f64,
+    /// Where the field was found to be at most the tolerance, and nowhere before.
+    witness: Option<f64>,
+}
+
+impl<const D: usize> Advance<'_, D>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
+{
+    fn run(&mut self, limits: &Limits) -> Certified<Option<RayHit<D>>> {
+        let (length, gap) = (self.ray.length, limits.tolerance);
+        let (mut free, mut previous, mut is_short) = (0.0, f64::INFINITY, false);
+        loop {
+            let p = self.ray.at(free);
+            let (value, direction) = self.sampler.slope(p);
+            if value <= gap {
+                return self.hit(free, free, Stop::Converged);
+            }
+            if self.sampler.evaluations >= limits.budget {
+                let upper = self.witness.unwrap_or(f64::INFINITY);
+                return self.hit(free, upper, Stop::BudgetSpent);
+            }
+            let step = self.sampler.free_radius(p, value);
+            let pays = step >= LONG * length || value < NEARING * previous;
+            let mut ahead = free + step.max(0.0);
+            if is_short || !pays {
+                is_short = true;
+                ahead = ahead.max(self.lifted(free, (value, direction), limits));
+            }
+            previous = value;
+            if let Some(witness) = self.witness
+                && witness - ahead <= limits.tolerance
+            {
+                return self.hit(ahead.min(witness), witness, Stop::Converged);
+            }
+            if ahead >= length {
+                let (lower, upper) = (length, length);
+                let evaluations = self.sampler.evaluations;
+                return Certified {
+                    best: None,
+                    lower,
+                    upper,
+                    stop: Stop::SignKnown,
+                    evaluations,
+                };
+            }
+            is_short &= ahead - free < LONG * length;
+            if ahead <= free {
+                // Nearer than what rounding leaves to be known.
+                let upper = self.witness.unwrap_or(f64::INFINITY);
+                return self.hit(free, upper, Stop::BudgetSpent);
+            }
+            free = ahead;
+        }
+    }
+
+    /// How far the ray is proven free by points lifted off it at `free`; also looks for a
+    /// witness where the tangent plane says that the surface is.
+    fn lifted(
+        &mut self,
+        free: f64,
+        (value, direction): (f64, Vector<f64, D>),
+        limits: &Limits,
+    ) -> f64 {
+        let p = self.ray.at(free);
+        let heights = HEIGHTS.map(|share| share * self.height);
+        let mut points = [p; SHORT];
+        for (point, height) in points.iter_mut().zip(heights) {
+            *point += direction * height;
+        }
+        let towards = -direction.dot(self.ray.direction);
+        let latest = self.witness.unwrap_or(self.ray.length);
+        let there = free + value / towards.max(1e-3) + 0.5 * limits.tolerance;
+        let there = if there < latest { there } else { 0.5 * (free + latest) };
+        points[SHORT - 1] = self.ray.at(there);
+        let values = self.sampler.values(&points);
+        if values[SHORT - 1] <= limits.tolerance {
+            self.witness = Some(there);
+        }
+        let mut ahead = free;
+        // Unless one of them says more, they were far too high.
+        self.height *= HEIGHTS[HEIGHTS.len() - 1];
+        for ((point, value), height) in points.iter().zip(values).zip(heights) {
+            let radius = self.sampler.free_radius(*point, value);
+            // |o + t·d − point| < radius, from the origin p at t = 0.
+            let offset = p - *point;
+            let half = offset.dot(self.ray.direction);
+            let rest = offset.dot(offset) - radius * radius;
+            if radius > 0.0 && rest < 0.0 {
+                let exit = free + ((half * half - rest).sqrt() - half) * (1.0 - 1e-12);
+                if exit > ahead {
+                    (ahead, self.height) = (exit, height);
+                }
+            }
+        }
+        self.height = self.height.min(self.ray.length);
+        ahead
+    }
+
+    fn hit(&mut self, lower: f64, upper: f64, stop: Stop) -> Certified<Option<RayHit<D>>> {
+        let best = upper.is_finite().then(|| {
+            let point = self.ray.at(upper);
+            let (_, direction) = self.sampler.slope(point);
+            let is_flat = direction == Vector::ZERO;
+            RayHit { point, normal: (!is_flat).then_some(direction) }
+        });
+        Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
+    }
+}
