@@ -52,13 +52,13 @@ impl<const N: usize, const D: usize> Element<N, D> {
             let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
             let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
             let whole: f64 = parts.iter().sum();
-            let is_acute = parts[longest] > 0.0 && whole.is_normal();
-            for (i, weight) in weights.iter_mut().enumerate() {
-                *weight = match (is_acute, i == longest) {
-                    (true, _) => parts[i] / whole,
-                    (false, true) => 0.0,
-                    (false, false) => 0.5,
-                };
+            if parts[longest] > 0.0 && whole.is_normal() {
+                let scale = 1.0 / whole;
+                for (weight, part) in weights.iter_mut().zip(parts) {
+                    *weight = part * scale;
+                }
+            } else {
+                weights[longest] = 0.0;
             }
         }
         weights

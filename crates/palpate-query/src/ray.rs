@@ -13,7 +13,7 @@ use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
-use crate::sampler::{Sampler, Samples};
+use crate::sampler::{Sampler, Samples, unit};
 
 /// Heights of lifted points, as shares of the one that said most the time before.
 const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
@@ -26,6 +26,9 @@ const LONG: f64 = 0.05;
 
 /// As are those that come near fast: the value falls at least to this share.
 const NEARING: f64 = 0.4;
+
+/// A gradient shorter than this says nothing of a direction.
+const FLAT: f64 = 1e-6;
 
 /// A part of a straight line: from `origin` in a `direction` of length one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +82,7 @@ impl<const D: usize> Ray<D> {
 pub struct RayHit<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
-    /// The gradient's unit vector there; `None` where it vanishes.
+    /// The gradient's unit vector there; `None` where it is shorter than 1e-6.
     pub normal: Option<Vector<f64, D>>,
 }
 
@@ -142,7 +145,7 @@ where
         let (mut free, mut previous, mut is_short) = (0.0, f64::INFINITY, false);
         loop {
             let p = self.ray.at(free);
-            let (value, direction) = self.sampler.slope(p);
+            let (value, gradient) = self.sampler.slope(p);
             if value <= gap {
                 return self.hit(free, free, Stop::Converged);
             }
@@ -155,7 +158,7 @@ where
             let mut ahead = free + step.max(0.0);
             if is_short || !pays {
                 is_short = true;
-                ahead = ahead.max(self.lifted(free, (value, direction), limits));
+                ahead = ahead.max(self.lifted(free, (value, unit(gradient)), limits));
             }
             previous = value;
             if let Some(witness) = self.witness
@@ -230,9 +233,9 @@ where
     fn hit(&mut self, lower: f64, upper: f64, stop: Stop) -> Certified<Option<RayHit<D>>> {
         let best = upper.is_finite().then(|| {
             let point = self.ray.at(upper);
-            let (_, direction) = self.sampler.slope(point);
-            let is_flat = direction == Vector::ZERO;
-            RayHit { point, normal: (!is_flat).then_some(direction) }
+            let (_, gradient) = self.sampler.slope(point);
+            let is_flat = gradient.norm() < FLAT;
+            RayHit { point, normal: (!is_flat).then(|| unit(gradient)) }
         });
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
     }

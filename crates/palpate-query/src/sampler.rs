@@ -55,12 +55,11 @@ where
         }
     }
 
-    /// The value at a point and the unit vector in which it grows; zero where it is flat.
+    /// The value at a point and its gradient.
     #[inline]
     pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {
         self.evaluations += 2;
-        let (value, gradient) = self.shape.distance_gradient(p);
-        (value, unit(gradient))
+        self.shape.distance_gradient(p)
     }
 
     /// The values at points.
@@ -122,8 +121,9 @@ where
     }
 }
 
+/// The unit vector along `v`; zero if that is.
 #[inline]
-fn unit<const D: usize>(v: Vector<f64, D>) -> Vector<f64, D> {
+pub(crate) fn unit<const D: usize>(v: Vector<f64, D>) -> Vector<f64, D> {
     let length = v.norm();
     if length > 0.0 { v * (1.0 / length) } else { Vector::ZERO }
 }

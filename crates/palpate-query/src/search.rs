@@ -24,7 +24,7 @@ use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::element::Element;
-use crate::sampler::{Sampler, Samples};
+use crate::sampler::{Sampler, Samples, unit};
 
 /// Heights that are tried first, in radii.
 const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
@@ -128,9 +128,14 @@ impl Goal {
         }
     }
 
+    /// `true` if a value as small as this is all that is to be known.
+    fn is_hit(self, upper: f64) -> bool {
+        matches!(self, Self::Sign { .. }) && upper <= 0.0
+    }
+
     /// Why to stop, if the bounds allow it.
     fn reached(self, lower: f64, upper: f64) -> Option<Stop> {
-        if matches!(self, Self::Sign { .. }) && (upper <= 0.0 || lower > 0.0) {
+        if self.is_hit(upper) || matches!(self, Self::Sign { .. }) && lower > 0.0 {
             return Some(Stop::SignKnown);
         }
         let (Self::Least { tolerance } | Self::Sign { tolerance }) = self;
@@ -206,20 +211,21 @@ where
         cells: &mut Vec<Cell<N, D>>,
     ) -> Certified<Point<D>> {
         cells.clear();
-        let (value, direction) = self.sampler.slope(self.best);
         let centre = self.best;
+        let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
+        let lower = self.sampler.bound(centre, value, self.radius);
+        if let Some(stop) = self.goal.reached(lower, self.upper) {
+            return self.answer(lower, stop);
+        }
         let mut whole = Cell {
             element: *element,
             radius: self.radius,
-            lower: self.sampler.bound(centre, value, self.radius),
+            lower,
             height: FIRST_HEIGHTS[0] * self.radius,
-            direction,
+            direction: unit(gradient),
             level: 0,
         };
-        if let Some(stop) = self.goal.reached(whole.lower, self.upper) {
-            return self.answer(whole.lower, stop);
-        }
         self.look_around(&mut whole, centre);
         cells.push(whole);
         loop {
@@ -246,6 +252,7 @@ where
         for (i, (p, value)) in points.into_iter().zip(values).enumerate() {
             match i.checked_sub(N) {
                 None => self.found(p, value),
+                Some(_) if self.goal.is_hit(self.upper) => return,
                 Some(k) => {
                     let lower = self.sampler.bound(p, value, cell.element.farthest(p));
                     if lower > cell.lower {
@@ -328,6 +335,11 @@ where
         values: &[f64; SHORT],
         share: f64,
     ) {
+        let threshold = self.goal.threshold(self.upper);
+        let is_open = |part: &Cell<N, D>| part.lower < threshold;
+        if self.goal.is_hit(self.upper) || !parts.iter().any(is_open) {
+            return;
+        }
         let mut points = *centres;
         for (point, part) in points.iter_mut().zip(&*parts) {
             *point += part.direction * (share * part.height);
