@@ -26,4 +26,7 @@ pub enum QueryError {
         /// The length.
         value: f64,
     },
+    /// Two bodies that both go on without end.
+    #[error("one of two bodies must be bounded, and both have no bounds")]
+    Unbounded,
 }

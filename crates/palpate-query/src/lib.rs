@@ -7,6 +7,7 @@
 //! which bounds the truth lies, and why the search stopped. A search that stops early
 //! says less; it never says what is wrong.
 //!
+//! - [`separation`] says how far two bodies are apart, or how much they overlap.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions.
@@ -32,9 +33,11 @@
 //! # }
 //! ```
 
+mod body;
 mod certified;
 mod element;
 mod error;
+mod pair;
 mod ray;
 mod sampler;
 mod search;
@@ -42,5 +45,6 @@ mod search;
 pub use certified::{Certified, Limits, Stop};
 pub use element::Element;
 pub use error::QueryError;
+pub use pair::{Nearest, PairWorkspace, separation};
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Separations: closed forms, and bounds against samples on random trees.
+
+use arbitrary::Unstructured;
+use palpate_field::field::{EvaluateBlock, Field};
+use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{Limits, PairWorkspace, QueryError, Stop, separation};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::cases;
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::{Solid, Tree};
+
+/// Points at which a bound is tried, all over and close to the best.
+const SAMPLES: usize = 400;
+
+/// Two bounded shapes, the second somewhere about the first.
+fn two<const D: usize>(
+    u: &mut Unstructured<'_>,
+    depth: usize,
+) -> arbitrary::Result<Option<[Shape<D>; 2]>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let (a, b): (Tree<D>, Tree<D>) = (draw::tree(u, depth)?, draw::tree(u, depth)?);
+    let (Ok(a), Ok(b)) = (a.shape(), b.shape()) else { return Ok(None) };
+    let away = draw::direction::<D>(u)? * (draw::size(&a) * 2.0 * draw::unit(u)?);
+    let Ok(b) = b.translated(away) else { return Ok(None) };
+    let are_bounded = a.promise().bounds.is_some() && b.promise().bounds.is_some();
+    Ok(are_bounded.then_some([a, b]))
+}
+
+fn on_trees<const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    let mut workspace = PairWorkspace::new();
+    let (mut seed, mut asked, mut spent) = (0, 0, 0);
+    cases::check(count, |u| {
+        seed += 1;
+        let Some([a, b]) = two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
+        let size = draw::size(&a);
+        let limits = Limits { tolerance: 0.02 * size, budget: 200_000 };
+        let Ok(answer) = separation(&a, &b, &limits, &mut workspace) else {
+            return Ok(Err("bounded bodies are refused".into()));
+        };
+        asked += 1;
+        spent += u64::from(answer.stop == Stop::BudgetSpent);
+        // By the definition, of which the values alone are a part.
+        let scales = [&a, &b].map(|shape| 1.0 / shape.promise().lipschitz.max(1.0));
+        for i in 0..SAMPLES {
+            let spread = [2.0, 0.2, 1e-3][i % 3] * size;
+            let p = answer.best.point + draw::direction::<D>(u)? * (spread * draw::unit(u)?);
+            let value = (a.distance(p) * scales[0]).max(b.distance(p) * scales[1]);
+            let far = [&a, &b].map(|shape| {
+                shape.promise().bounds.map_or(0.0, |bounds| {
+                    let nearest = Vector(std::array::from_fn(|k| {
+                        p[k].clamp(bounds.aabb.min[k], bounds.aabb.max[k])
+                    }));
+                    (p - nearest).norm()
+                })
+            });
+            let rounding = a.promise().rounding.within(p.norm() + size)
+                + b.promise().rounding.within(p.norm() + size);
+            if 2.0 * (value.max(far[0]).max(far[1]) + rounding) < answer.lower {
+                return Ok(Err(format!("{value} at {p:?} is below {answer:?}: {a:?} {b:?}")));
+            }
+        }
+        // The other way round the bounds overlap.
+        let Ok(other) = separation(&b, &a, &limits, &mut workspace) else {
+            return Ok(Err("bounded bodies are refused".into()));
+        };
+        if other.lower > answer.upper || answer.lower > other.upper {
+            return Ok(Err(format!("{answer:?} and {other:?} exclude each other")));
+        }
+        Ok(Ok(()))
+    });
+    assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
+    assert!(spent * 20 <= asked, "{spent} of {asked} searches spent their budget");
+}
+
+#[test]
+fn separations_in_space_are_enclosed() {
+    on_trees::<3>(150);
+}
+
+#[test]
+fn separations_in_the_plane_are_enclosed() {
+    on_trees::<2>(300);
+}
+
+#[test]
+fn balls_are_as_far_apart_as_their_centres_less_their_radii() -> Result<(), ShapeError> {
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: 1e-7, ..Limits::default() };
+    let a = Shape::<3>::from_kernel(Ball::new(1.0)?);
+    for (apart, truth) in [(3.0, 1.5), (1.500_001, 1e-6), (1.2, -0.3), (0.1, -1.0)] {
+        // A ball inside the other is as wide as the overlap gets.
+        let b = Shape::from_kernel(Ball::new(0.5)?).translated(Vector([
+            apart * 0.48,
+            apart * 0.6,
+            apart * 0.64,
+        ]))?;
+        let Ok(answer) = separation(&a, &b, &limits, &mut workspace) else { panic!("bounded") };
+        assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
+        assert!(answer.lower <= truth + 1e-12 && truth <= answer.upper + 1e-12, "{answer:?}");
+        assert!(answer.upper - answer.lower <= 1e-7);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_box_on_a_floor_is_as_deep_as_it_is() -> Result<(), ShapeError> {
+    let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    for lift in [0.01, -0.01] {
+        let crate_ = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4]))?)
+            .translated(Vector([0.3, 0.2 + lift]))?;
+        let Ok(answer) = separation(&crate_, &floor, &limits, &mut workspace) else {
+            panic!("one is bounded");
+        };
+        assert!(answer.lower <= lift && lift <= answer.upper, "{answer:?}");
+        assert!(answer.upper - answer.lower <= 1e-6, "{answer:?}");
+        let Some(normal) = answer.best.normal else { panic!("{answer:?}") };
+        assert!((normal - Vector([0.0, -1.0])).norm() < 1e-12, "{answer:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_thin_plate_that_just_cuts_a_torus_is_found() -> Result<(), ShapeError> {
+    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
+    let mut workspace = PairWorkspace::new();
+    // Upright, with its outermost point 1 mm in the plate, and 1 mm off it.
+    for (gap, is_apart) in [(-1e-3, false), (1e-3, true)] {
+        let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?).translated(Vector([
+            0.1,
+            -0.05,
+            0.5 + 0.01 + gap,
+        ]))?;
+        let limits = Limits { tolerance: 1e-4, ..Limits::default() };
+        let Ok(answer) = separation(&plate, &torus, &limits, &mut workspace) else {
+            panic!("bounded");
+        };
+        assert_eq!(answer.is_hit(), Some(!is_apart), "{answer:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn turned_and_moved_together_bodies_stay_as_far_apart() -> Result<(), ShapeError> {
+    let a = Shape::from_kernel(Cylinder::new(0.3, 1.0)?);
+    let b = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.5, 0.6]))?)
+        .translated(Vector([0.7, 0.2, -0.1]))?;
+    let turn = Rotation::from_quaternion([0.1, 0.3, -0.2, 0.9])?;
+    let limits = Limits { tolerance: 1e-5, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let mut ask = |a: &Shape<3>, b: &Shape<3>| separation(a, b, &limits, &mut workspace);
+    let here = ask(&a, &b);
+    let move_ = |shape: Shape<3>| shape.rotated(turn)?.translated(Vector([3.0, -2.0, 1.0]));
+    let there = ask(&move_(a)?, &move_(b)?);
+    let (Ok(here), Ok(there)) = (here, there) else { panic!("bounded") };
+    assert!(here.lower <= there.upper && there.lower <= here.upper, "{here:?} {there:?}");
+    assert_eq!((here.stop, there.stop), (Stop::Converged, Stop::Converged));
+    Ok(())
+}
+
+#[test]
+fn two_bodies_without_an_end_are_refused() -> Result<(), ShapeError> {
+    let a = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
+    let answer = separation(&a, &a, &Limits::default(), &mut PairWorkspace::new());
+    assert_eq!(answer, Err(QueryError::Unbounded));
+    Ok(())
+}
