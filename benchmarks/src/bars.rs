@@ -44,6 +44,13 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("triangle.minimum_1pc.S1.ns", 600.0),
     ("triangle.minimum_1pc.S2.ns", 1200.0),
     ("triangle.minimum_1pc.S3.ns", 3200.0),
+    ("pair.sign.S3_S3.+50mm.p50_ns", 20_000.0),
+    ("pair.sign.S3_S3.+5mm.p50_ns", 35_000.0),
+    ("pair.sign.S3_S3.-5mm.p50_ns", 5_000.0),
+    ("pair.separation.S3_S3.1pc.p50_ns", 33_000.0),
+    ("pair.separation.S3_S3.1mm.p50_ns", 45_000.0),
+    ("pair.separation.S3_S3.0.1mm.p50_ns", 55_000.0),
+    ("pair.sign.plate_torus.-1mm.p50_ns", 2_500.0),
 ];
 
 /// Prints all rows and how they stand against their bars, or the rows as JSON.

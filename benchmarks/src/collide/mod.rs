@@ -3,9 +3,11 @@
 
 //! Searches that prove where things touch.
 
+mod pairs;
 mod triangles;
 
 use std::error::Error;
+use std::time::Instant;
 
 use crate::fields::Rows;
 use crate::scenes;
@@ -17,5 +19,35 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
         eprintln!("measuring triangles on {} …", work.name);
         triangles::measure(&work, &mut rows)?;
     }
+    eprintln!("measuring pairs …");
+    pairs::measure(&mut rows)?;
     Ok(rows)
+}
+
+/// How often each question is timed; the fastest counts.
+const REPEATS: usize = 15;
+
+/// The time of the fastest of several batches of a few runs [ns a run].
+fn fastest(mut run: impl FnMut()) -> f64 {
+    const BATCH: usize = 16;
+    run();
+    let mut best = f64::INFINITY;
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        for _ in 0..BATCH {
+            run();
+        }
+        best = best.min(start.elapsed().as_nanos() as f64 / BATCH as f64);
+    }
+    best
+}
+
+/// Adds the mean and the extremes of `times`, which it sorts.
+fn summarise(key: &str, times: &mut [f64], rows: &mut Rows) {
+    times.sort_by(f64::total_cmp);
+    let Some(last) = times.last() else { return };
+    rows.insert(format!("{key}.max_ns"), *last);
+    rows.insert(format!("{key}.ns"), times.iter().sum::<f64>() / times.len() as f64);
+    rows.insert(format!("{key}.p50_ns"), times[times.len() / 2]);
+    rows.insert(format!("{key}.p95_ns"), times[times.len() * 95 / 100]);
 }

@@ -5,11 +5,11 @@
 
 use std::error::Error;
 use std::hint::black_box;
-use std::time::Instant;
 
 use palpate::field::{Point, Shape, Vector};
 use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 
+use super::fastest;
 use crate::fields::Rows;
 use crate::random::Random;
 use crate::scenes::Work;
@@ -22,9 +22,6 @@ const COUNT: usize = 400;
 
 /// How far from the surface the balls' centres are at most, as a share of the size.
 const NEAR: f64 = 0.7;
-
-/// How often each triangle is timed; the fastest counts.
-const REPEATS: usize = 15;
 
 type Triangle = Element<3, 3>;
 
@@ -54,32 +51,12 @@ pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Err
                 }));
             }
         }
-        let count = times.len() as f64;
-        let key = |what: &str| format!("triangle.{question}.{}.{what}", work.name);
-        rows.insert(key("ns"), times.iter().sum::<f64>() / count);
-        times.sort_by(f64::total_cmp);
-        rows.insert(key("p50_ns"), times[times.len() / 2]);
-        rows.insert(key("p95_ns"), times[times.len() * 95 / 100]);
-        rows.insert(key("max_ns"), times[times.len() - 1]);
-        rows.insert(key("evaluations"), f64::from(evaluations) / count);
-        rows.insert(key("undecided"), f64::from(undecided));
+        let key = format!("triangle.{question}.{}", work.name);
+        super::summarise(&key, &mut times, rows);
+        rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
+        rows.insert(format!("{key}.undecided"), f64::from(undecided));
     }
     Ok(())
-}
-
-/// The time of the fastest of several batches of a few runs [ns a run].
-fn fastest(mut run: impl FnMut()) -> f64 {
-    const BATCH: usize = 16;
-    run();
-    let mut best = f64::INFINITY;
-    for _ in 0..REPEATS {
-        let start = Instant::now();
-        for _ in 0..BATCH {
-            run();
-        }
-        best = best.min(start.elapsed().as_nanos() as f64 / BATCH as f64);
-    }
-    best
 }
 
 /// Triangles near the surface: points of a cube moved along the gradient to at most

@@ -7,7 +7,8 @@
 //! which bounds the truth lies, and why the search stopped. A search that stops early
 //! says less; it never says what is wrong.
 //!
-//! - [`separation`] says how far two bodies are apart, or how much they overlap.
+//! - [`separation`] says how far two bodies are apart, or how much they overlap;
+//!   [`overlap`] whether they do.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions.
@@ -37,6 +38,7 @@ mod body;
 mod certified;
 mod element;
 mod error;
+mod goal;
 mod pair;
 mod ray;
 mod sampler;
@@ -45,6 +47,6 @@ mod search;
 pub use certified::{Certified, Limits, Stop};
 pub use element::Element;
 pub use error::QueryError;
-pub use pair::{Nearest, PairWorkspace, separation};
+pub use pair::{Nearest, PairWorkspace, overlap, separation};
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};

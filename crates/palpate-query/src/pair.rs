@@ -32,6 +32,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Point, Shape, Vector};
 use crate::body::Body;
 use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
+use crate::goal::Goal;
 
 /// Boxes are bounded by models below this radius, as a share of the first box's: above,
 /// remainders are larger than radii.
@@ -145,6 +146,40 @@ pub fn separation<const D: usize>(
 where
     dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
 {
+    let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
+    search([a, b], goal, limits.budget, workspace)
+}
+
+/// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
+///
+/// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
+/// Bodies whose boxes are apart are told apart without asking them.
+///
+/// # Errors
+///
+/// If neither body is bounded.
+pub fn overlap<const D: usize>(
+    a: &Shape<D>,
+    b: &Shape<D>,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Certified<Nearest<D>>, QueryError>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    let goal = Goal::Sign { tolerance: 0.5 * limits.tolerance };
+    search([a, b], goal, limits.budget, workspace)
+}
+
+fn search<const D: usize>(
+    [a, b]: [&Shape<D>; 2],
+    goal: Goal,
+    budget: u32,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Certified<Nearest<D>>, QueryError>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
     let bodies = [Body::new(a), Body::new(b)];
     let start = match (bodies[0].aabb, bodies[1].aabb) {
         (None, None) => return Err(QueryError::Unbounded),
@@ -155,7 +190,8 @@ where
     };
     let mut search = Search {
         bodies,
-        limits,
+        goal,
+        budget,
         upper: f64::INFINITY,
         best: start,
         dropped: f64::INFINITY,
@@ -180,7 +216,8 @@ fn smaller<const D: usize>(a: Point<D>, b: Point<D>) -> Point<D> {
 /// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
 struct Search<'a, const D: usize> {
     bodies: [Body<'a, D>; 2],
-    limits: &'a Limits,
+    goal: Goal,
+    budget: u32,
     upper: f64,
     best: Point<D>,
     /// Nothing in the boxes that were dropped is less.
@@ -195,7 +232,15 @@ where
     dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
 {
     fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
-        let tolerance = 0.5 * self.limits.tolerance;
+        if let (Goal::Sign { .. }, Some(gap)) = (self.goal, self.gap_of_boxes()) {
+            // Half of it is what both values are at least, somewhere between.
+            let reach = self.best.norm() + gap;
+            self.slack = self.bodies[0].slack(reach).max(self.bodies[1].slack(reach));
+            if 0.5 * gap > self.slack {
+                self.upper = f64::INFINITY;
+                return self.answer(Stop::SignKnown, 0.5 * gap - self.slack);
+            }
+        }
         self.descend(self.best);
         let Some(root) = self.root() else { return self.answer(Stop::BudgetSpent, self.upper) };
         let reach = root.centre().norm() + root.half_extents().norm();
@@ -210,17 +255,17 @@ where
         loop {
             let lowest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
             let lower = lowest.min(self.dropped);
-            if self.upper + self.slack - lower <= tolerance {
-                return self.answer(Stop::Converged, lower);
+            if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
+                return self.answer(stop, lower);
             }
             let is_full = workspace.cells.len() + BLOCK > ROOM;
             if lowest.is_infinite() && lowest > 0.0
                 || is_full
-                || self.evaluations >= self.limits.budget
+                || self.evaluations >= self.budget
             {
                 return self.answer(Stop::BudgetSpent, lower);
             }
-            self.round(workspace, largest, tolerance);
+            self.round(workspace, largest);
         }
     }
 
@@ -240,6 +285,22 @@ where
         }
     }
 
+    /// Boxes with nothing below this need no more looking at.
+    fn threshold(&self) -> f64 {
+        self.goal.threshold(self.upper + self.slack)
+    }
+
+    /// How far the boxes of both bodies are apart, if they are [m].
+    fn gap_of_boxes(&self) -> Option<f64> {
+        let [a, b] = [self.bodies[0].aabb?, self.bodies[1].aabb?];
+        let (low, high) = (larger(a.min, b.min), smaller(a.max, b.max));
+        let mut gap = 0.0_f64;
+        for k in 0..D {
+            gap = gap.max(low[k] - high[k]);
+        }
+        (gap > 0.0).then_some(gap)
+    }
+
     /// A box that holds all points where neither `g` is more than the best so far.
     fn root(&self) -> Option<Aabb<D>> {
         let reach = self.best.norm() + self.upper.abs();
@@ -255,12 +316,12 @@ where
     }
 
     /// Halves the boxes of which least is known, a block of parts, and bounds them.
-    fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64, tolerance: f64) {
+    fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
         let mut parts = [Cell { lower: 0.0, centre: Vector::ZERO, half: Vector::ZERO }; BLOCK];
         let mut count = 0;
         while count + (1 << D) <= BLOCK {
             let Some(parent) = workspace.cells.pop() else { break };
-            if parent.lower >= self.upper - tolerance + self.slack {
+            if parent.lower >= self.threshold() {
                 self.dropped = self.dropped.min(parent.lower);
                 continue;
             }
@@ -286,12 +347,12 @@ where
                 least = (value, part.centre);
             }
         }
-        if least.0 < self.upper - 0.25 * tolerance {
+        if least.0 < self.upper - 0.25 * self.goal.tolerance() {
             self.descend(least.1);
         }
-        self.refine(parts, &radii, workspace, (largest, tolerance));
+        self.refine(parts, &radii, workspace, largest);
         for part in &*parts {
-            if part.lower < self.upper - tolerance + self.slack {
+            if part.lower < self.threshold() {
                 workspace.cells.push(*part);
             } else {
                 self.dropped = self.dropped.min(part.lower);
@@ -305,16 +366,13 @@ where
         parts: &mut [Cell<D>],
         radii: &[f64; BLOCK],
         workspace: &mut PairWorkspace<D>,
-        (largest, tolerance): (f64, f64),
+        largest: f64,
     ) {
         let mut open = [0; BLOCK];
         let mut count = 0;
         for (i, part) in parts.iter().enumerate() {
             let is_known = self.bodies.iter().all(|body| body.is_known(part.centre, radii[i]));
-            if radii[i] <= largest
-                && is_known
-                && part.lower < self.upper - tolerance + self.slack
-            {
+            if radii[i] <= largest && is_known && part.lower < self.threshold() {
                 let cell = Model::cell(part.centre.0, part.half.0);
                 workspace.boxes.set(count, Vector(cell));
                 open[count] = i;
@@ -346,7 +404,7 @@ where
         let mut p = start;
         let mut here = slopes(self, p);
         let mut value = here[0].0.max(here[1].0);
-        let mut step = value.abs().max(self.limits.tolerance);
+        let mut step = value.abs().max(self.goal.tolerance());
         let mut small_gains = 0;
         for _ in 0..STEPS {
             let [(a, slope_a), (b, slope_b)] = here;
@@ -365,11 +423,12 @@ where
                 (p, here, value) = (next, there, next_value);
                 step *= 2.5;
                 small_gains =
-                    if gain < 0.05 * self.limits.tolerance { small_gains + 1 } else { 0 };
+                    if gain < 0.05 * self.goal.tolerance() { small_gains + 1 } else { 0 };
             } else {
                 step *= 0.25;
             }
-            if small_gains == 2 || step < 0.05 * self.limits.tolerance {
+            let is_enough = self.goal.is_hit(value + self.slack);
+            if is_enough || small_gains == 2 || step < 0.05 * self.goal.tolerance() {
                 break;
             }
         }

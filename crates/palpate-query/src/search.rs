@@ -24,6 +24,7 @@ use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::element::Element;
+use crate::goal::Goal;
 use crate::sampler::{Sampler, Samples, unit};
 
 /// Heights that are tried first, in radii.
@@ -110,37 +111,6 @@ where
 {
     let goal = Goal::Sign { tolerance: limits.tolerance };
     search(shape, element, goal, limits.budget, workspace)
-}
-
-/// What is to be known.
-#[derive(Clone, Copy, Debug)]
-enum Goal {
-    Least { tolerance: f64 },
-    Sign { tolerance: f64 },
-}
-
-impl Goal {
-    /// Cells with nothing below this need no more looking at.
-    fn threshold(self, upper: f64) -> f64 {
-        match self {
-            Self::Least { tolerance } => upper - tolerance,
-            Self::Sign { tolerance } => (upper - tolerance).min(f64::MIN_POSITIVE),
-        }
-    }
-
-    /// `true` if a value as small as this is all that is to be known.
-    fn is_hit(self, upper: f64) -> bool {
-        matches!(self, Self::Sign { .. }) && upper <= 0.0
-    }
-
-    /// Why to stop, if the bounds allow it.
-    fn reached(self, lower: f64, upper: f64) -> Option<Stop> {
-        if self.is_hit(upper) || matches!(self, Self::Sign { .. }) && lower > 0.0 {
-            return Some(Stop::SignKnown);
-        }
-        let (Self::Least { tolerance } | Self::Sign { tolerance }) = self;
-        (upper - lower <= tolerance).then_some(Stop::Converged)
-    }
 }
 
 fn search<const N: usize, const D: usize>(

@@ -8,7 +8,7 @@ use palpate_field::field::{EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, QueryError, Stop, separation};
+use palpate_query::{Limits, PairWorkspace, QueryError, Stop, overlap, separation};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
@@ -77,6 +77,16 @@ where
         if other.lower > answer.upper || answer.lower > other.upper {
             return Ok(Err(format!("{answer:?} and {other:?} exclude each other")));
         }
+        // Neither does the sign alone say otherwise.
+        let Ok(sign) = overlap(&a, &b, &limits, &mut workspace) else {
+            return Ok(Err("bounded bodies are refused".into()));
+        };
+        if sign.lower > answer.upper || answer.lower > sign.upper {
+            return Ok(Err(format!("{answer:?} and {sign:?} exclude each other")));
+        }
+        if sign.stop == Stop::SignKnown && sign.is_hit().is_none() {
+            return Ok(Err(format!("{sign:?} does not know")));
+        }
         Ok(Ok(()))
     });
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
@@ -85,12 +95,12 @@ where
 
 #[test]
 fn separations_in_space_are_enclosed() {
-    on_trees::<3>(150);
+    on_trees::<3>(1000);
 }
 
 #[test]
 fn separations_in_the_plane_are_enclosed() {
-    on_trees::<2>(300);
+    on_trees::<2>(1500);
 }
 
 #[test]
@@ -148,6 +158,11 @@ fn a_thin_plate_that_just_cuts_a_torus_is_found() -> Result<(), ShapeError> {
             panic!("bounded");
         };
         assert_eq!(answer.is_hit(), Some(!is_apart), "{answer:?}");
+        let Ok(sign) = overlap(&plate, &torus, &limits, &mut workspace) else {
+            panic!("bounded");
+        };
+        assert_eq!((sign.is_hit(), sign.stop), (Some(!is_apart), Stop::SignKnown));
+        assert!(sign.evaluations <= answer.evaluations);
     }
     Ok(())
 }

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies at known separations: whether they overlap, and how far they are apart.
+
+use std::error::Error;
+use std::hint::black_box;
+
+use palpate::field::kernel::{Cuboid, Torus};
+use palpate::field::{Rotation, Shape, Vector};
+use palpate::query::{
+    Certified, Limits, Nearest, PairWorkspace, QueryError, overlap, separation,
+};
+
+use super::fastest;
+use crate::fields::Rows;
+use crate::random::Random;
+use crate::scenes;
+
+/// Poses of each pair.
+const POSES: usize = 40;
+
+/// How close to the gap that is asked for bodies are put [m].
+const PLACED: f64 = 1e-6;
+
+/// Farther apart than any two bodies here touch [m].
+const FAR: f64 = 4.0;
+
+/// Two bodies.
+type Pair = [Shape<3>; 2];
+
+/// A way of asking.
+type Ask = fn(
+    &Shape<3>,
+    &Shape<3>,
+    &Limits,
+    &mut PairWorkspace<3>,
+) -> Result<Certified<Nearest<3>>, QueryError>;
+
+/// Adds the rows of pairs.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    let works = scenes::spatial()?;
+    let s3 = &works.iter().find(|work| work.name == "S3").ok_or("no S3")?.shape;
+    for (name, gap) in [("+50mm", 0.05), ("+5mm", 0.005), ("-5mm", -0.005)] {
+        let pairs = placed([s3, s3], gap)?;
+        ask(&format!("pair.sign.S3_S3.{name}"), overlap, 1e-7, &pairs, rows)?;
+    }
+    let pairs = placed([s3, s3], 0.005)?;
+    for (name, tolerance) in [("1pc", 1e-2), ("1mm", 1e-3), ("0.1mm", 1e-4)] {
+        let key = format!("pair.separation.S3_S3.{name}");
+        ask(&key, separation, tolerance, &pairs, rows)?;
+    }
+    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let pairs = placed([&plate, &torus], -0.001)?;
+    ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)
+}
+
+fn ask(
+    key: &str,
+    ask: Ask,
+    tolerance: f64,
+    pairs: &[Pair],
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
+    let limits = Limits { tolerance, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    for [a, b] in pairs {
+        let answer = ask(a, b, &limits, &mut workspace)?;
+        evaluations += answer.evaluations;
+        let is_known = answer.is_hit().is_some() || answer.upper - answer.lower <= tolerance;
+        undecided += u32::from(!is_known);
+        times.push(fastest(|| {
+            // That it is no error was seen above.
+            let _ = black_box(ask(a, black_box(b), &limits, &mut workspace));
+        }));
+    }
+    super::summarise(key, &mut times, rows);
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / pairs.len() as f64);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    Ok(())
+}
+
+/// The second body turned at random and moved along a random way to the first place at
+/// which the separation is `gap`, coming from afar.
+fn placed([a, b]: [&Shape<3>; 2], gap: f64) -> Result<Vec<Pair>, Box<dyn Error>> {
+    let mut random = Random::new(7);
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: PLACED, budget: 1_000_000 };
+    let mut pairs = Vec::with_capacity(POSES);
+    while pairs.len() < POSES {
+        let [x, y, z]: [f64; 3] = random.point([0.0; 3], 1.0);
+        let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
+        let w = random.between(-1.0, 1.0);
+        let size = (x * x + y * y + z * z + w * w).sqrt();
+        let turn = Rotation::from_quaternion([x, y, z, w].map(|q| q / size))?;
+        let turned = b.clone().rotated(turn)?;
+        let way = way * (1.0 / way.norm());
+        let at = |apart: f64| turned.clone().translated(way * apart);
+        let (mut near, mut far) = (0.0, FAR);
+        let deepest = separation(a, &at(near)?, &limits, &mut workspace)?;
+        if deepest.upper > gap {
+            continue;
+        }
+        while far - near > PLACED {
+            let middle = 0.5 * (near + far);
+            let answer = separation(a, &at(middle)?, &limits, &mut workspace)?;
+            if answer.lower > gap { far = middle } else { near = middle }
+        }
+        pairs.push([a.clone(), at(far)?]);
+    }
+    Ok(pairs)
+}
