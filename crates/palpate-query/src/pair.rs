@@ -44,6 +44,9 @@ const LONG_SIDE: f64 = 0.6;
 /// Steps of a descent at most.
 const STEPS: u32 = 40;
 
+/// A gain that is less than this share of the value is slow.
+const SLOW: f64 = 0.2;
+
 /// Boxes that a workspace holds.
 const ROOM: usize = 1 << 16;
 
@@ -301,11 +304,17 @@ where
         (gap > 0.0).then_some(gap)
     }
 
-    /// A box that holds all points where neither `g` is more than the best so far.
-    fn root(&self) -> Option<Aabb<D>> {
+    /// A box that holds all points that matter: where neither `g` is more than the best so
+    /// far, or, if the sign is all that is asked for, than the tolerance. Elsewhere one is.
+    fn root(&mut self) -> Option<Aabb<D>> {
         let reach = self.best.norm() + self.upper.abs();
         let slack = self.bodies[0].slack(reach).max(self.bodies[1].slack(reach));
-        let margin = (self.upper.max(0.0) + slack) * (1.0 + 1e-12);
+        let least = match self.goal {
+            Goal::Least { .. } => self.upper.max(0.0),
+            Goal::Sign { tolerance } => self.upper.clamp(0.0, tolerance.max(0.0)),
+        };
+        self.dropped = least + slack;
+        let margin = (least + 2.0 * slack) * (1.0 + 1e-12);
         let grown = self.bodies.map(|body| body.aabb.map(|aabb| aabb.grown(margin)));
         match grown {
             [Some(a), Some(b)] => {
@@ -420,7 +429,13 @@ where
             let next_value = there[0].0.max(there[1].0);
             if next_value < value {
                 let gain = value - next_value;
+                // Whether bodies that are far apart overlap, boxes tell sooner.
+                let is_slow =
+                    matches!(self.goal, Goal::Sign { .. }) && gain < SLOW * next_value;
                 (p, here, value) = (next, there, next_value);
+                if is_slow {
+                    break;
+                }
                 step *= 2.5;
                 small_gains =
                     if gain < 0.05 * self.goal.tolerance() { small_gains + 1 } else { 0 };
