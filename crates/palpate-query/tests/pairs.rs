@@ -192,3 +192,39 @@ fn two_bodies_without_an_end_are_refused() -> Result<(), ShapeError> {
     assert_eq!(answer, Err(QueryError::Unbounded));
     Ok(())
 }
+
+#[test]
+fn coincident_and_concentric_bodies_overlap_by_the_width_of_the_smaller()
+-> Result<(), ShapeError> {
+    let plate = Shape::from_kernel(Cuboid::new(Vector([0.7, 0.1, 0.5]))?);
+    let ball = Shape::from_kernel(Ball::new(0.2)?);
+    let large = Shape::from_kernel(Ball::new(0.9)?);
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    for (a, b, truth) in [(&plate, &plate, -0.1), (&ball, &ball, -0.4), (&ball, &large, -0.4)] {
+        let Ok(answer) = separation(a, b, &limits, &mut workspace) else { panic!("bounded") };
+        assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
+        assert!(answer.lower <= truth + 1e-12 && truth <= answer.upper + 1e-12, "{answer:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn searches_that_may_not_look_say_little_and_nothing_wrong() -> Result<(), ShapeError> {
+    let a = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let b = Shape::from_kernel(Cuboid::new(Vector([0.3, 0.5, 0.2]))?)
+        .translated(Vector([0.4, 0.3, 0.1]))?;
+    let mut workspace = PairWorkspace::new();
+    let ask = |limits: &Limits, workspace: &mut _| {
+        let Ok(answer) = separation(&a, &b, limits, workspace) else { panic!("bounded") };
+        answer
+    };
+    let truth = ask(&Limits { tolerance: 1e-6, budget: 1_000_000 }, &mut workspace);
+    for (tolerance, budget) in
+        [(1e-6, 0), (1e-6, 10), (f64::NAN, 1000), (-1.0, 1000), (f64::INFINITY, 1000)]
+    {
+        let answer = ask(&Limits { tolerance, budget }, &mut workspace);
+        assert!(answer.lower <= truth.upper && truth.lower <= answer.upper, "{answer:?}");
+    }
+    Ok(())
+}
