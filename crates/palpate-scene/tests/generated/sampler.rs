@@ -204,7 +204,7 @@ pub(crate) const OPERATORS: &[Sample] = &[
     (
         "repeat",
         r#"{ "repeat": { "x": { "spacing": 0.03, "first": -1, "last": 1 },
-             "y": { "spacing": 0.04, "first": 0, "last": 1 } },
+             "y": { "spacing": 0.03, "first": -1, "last": 1 } },
              "of": { "ball": { "radius": 0.01 } } }"#,
     ),
     (
