@@ -19,7 +19,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
 use crate::field::{Warp, Warped};
 use crate::promise::{Promise, Quality, Rounding};
-use crate::scalar::Scalar;
+use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
 use crate::vector::{Vector, array};
 
@@ -56,6 +56,27 @@ impl<const D: usize> Room<D> {
         // distance does, whatever is rounded.
         S::norm((p - self.nearest(p)).0)
     }
+
+    /// The distorted field and its gradient at `p`, from the child's answer and the
+    /// `slope` of it at the nearest point of the room.
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        p: Vector<T, D>,
+        child: T,
+        slope: Vector<T, D>,
+    ) -> (T, Vector<T, D>) {
+        let (zero, one) = (T::constant(0.0), T::constant(1.0));
+        let away = p - self.nearest(p);
+        let distance = away.norm();
+        let inverse = one / T::select_less(zero, distance, distance, one);
+        // Past a wall the nearest point stays, and the distance grows.
+        let gradient = array!(i < D => {
+            let kept = if away.0[i] == zero { slope.0[i] } else { zero };
+            kept + away.0[i] * inverse
+        });
+        (child + distance, Vector(gradient))
+    }
 }
 
 /// `(u, v)` turned by `angle` from u towards v.
@@ -63,6 +84,15 @@ impl<const D: usize> Room<D> {
 fn turned<S: Scalar>(u: S, v: S, angle: S) -> [S; 2] {
     let (sin, cos) = (angle.sin(), angle.cos());
     [cos * u - sin * v, sin * u + cos * v]
+}
+
+/// The gradient in `(u, v)` and in the angle, from that in the turned `(u, v)`.
+#[inline(always)]
+fn turned_back<T: Float>([u, v]: [T; 2], angle: T, [by_u, by_v]: [T; 2]) -> ([T; 2], T) {
+    let (sin, cos) = (angle.sin(), angle.cos());
+    let [turned_u, turned_v] = turned(u, v, angle);
+    let slope = [cos * by_u + sin * by_v, cos * by_v - sin * by_u];
+    (slope, turned_u * by_v - turned_v * by_u)
 }
 
 /// Turned about y by an angle that grows with y.
@@ -83,6 +113,20 @@ impl Warp<3, 3> for Twist {
     #[inline(always)]
     fn value<S: Scalar>(&self, p: Vector<S, 3>, child: S) -> S {
         child + self.room.distance(p)
+    }
+
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        p: Vector<T, 3>,
+        child: T,
+        Vector([by_x, by_y, by_z]): Vector<T, 3>,
+    ) -> (T, Vector<T, 3>) {
+        let Vector([x, y, z]) = self.room.nearest(p);
+        let ([slope_z, slope_x], by_angle) =
+            turned_back([z, x], y.scale(-self.rate), [by_z, by_x]);
+        let slope_y = by_y + by_angle.scale(-self.rate);
+        self.room.gradient(p, child, Vector([slope_x, slope_y, slope_z]))
     }
 }
 
@@ -105,6 +149,22 @@ impl<const D: usize> Warp<D, D> for Bend<D> {
     #[inline(always)]
     fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S {
         child + self.room.distance(p)
+    }
+
+    #[inline(always)]
+    fn gradient<T: Float>(
+        &self,
+        p: Vector<T, D>,
+        child: T,
+        child_gradient: Vector<T, D>,
+    ) -> (T, Vector<T, D>) {
+        let (q, mut slope) = (self.room.nearest(p), child_gradient);
+        let (x, y) = (q.0[0], q.0[1]);
+        let by = [slope.0[0], slope.0[1]];
+        let ([slope_x, slope_y], by_angle) = turned_back([x, y], x.scale(-self.rate), by);
+        slope.0[0] = slope_x + by_angle.scale(-self.rate);
+        slope.0[1] = slope_y;
+        self.room.gradient(p, child, slope)
     }
 }
 
