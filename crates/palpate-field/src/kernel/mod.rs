@@ -227,9 +227,20 @@ pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
     size: f64,
 ) -> Model {
     let centre = Vector(array!(i < D => cell.0[i].value));
+    by_steepness(kernel.distance(centre), &cell, operations, size)
+}
+
+/// A cell's bound by its `value` at the centre alone.
+#[inline(always)]
+fn by_steepness<const D: usize>(
+    value: f64,
+    cell: &Vector<Model, D>,
+    operations: f64,
+    size: f64,
+) -> Model {
+    let centre = Vector(array!(i < D => cell.0[i].value));
     let far = size + centre.norm() + Model::radius(&cell.0);
-    let rounding = operations * f64::EPSILON * far;
-    Model::lipschitz(kernel.distance(centre), 1.0, &cell.0, rounding)
+    Model::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
 }
 
 /// Bounds an exact kernel that is not convex over a cell by its formula or, where that
@@ -244,10 +255,7 @@ pub(crate) fn formula_model<K: Kernel<D>, const D: usize>(
     size: f64,
 ) -> Model {
     let formula = kernel.distance(cell);
-    let centre = Vector(array!(i < D => cell.0[i].value));
-    let far = size + centre.norm() + Model::radius(&cell.0);
-    let rounding = operations * f64::EPSILON * far;
-    let by_steepness = Model::lipschitz(formula.value, 1.0, &cell.0, rounding);
+    let by_steepness = by_steepness(formula.value, &cell, operations, size);
     let width = |model: &Model| model.maximum() - model.minimum();
     if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
 }
