@@ -36,6 +36,7 @@
 
 mod body;
 mod certified;
+mod contact;
 mod element;
 mod error;
 mod goal;
@@ -45,6 +46,7 @@ mod sampler;
 mod search;
 
 pub use certified::{Certified, Limits, Stop};
+pub use contact::Contact;
 pub use element::Element;
 pub use error::QueryError;
 pub use pair::{Nearest, PairWorkspace, overlap, separation};
