@@ -49,7 +49,9 @@ pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use element::Element;
 pub use error::QueryError;
-pub use pair::{Nearest, PairWorkspace, PoseDerivative, overlap, separation};
+pub use pair::{
+    Nearest, PairWorkspace, PoseDerivative, Rates, Track, overlap, rates, separation,
+};
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};

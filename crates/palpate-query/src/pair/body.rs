@@ -7,6 +7,8 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
+use super::cell::reach;
+
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
@@ -49,7 +51,7 @@ impl<'a, const D: usize> Body<'a, D> {
             None => aabb,
             Some(pose) => {
                 let placed = aabb.placed(&pose.inverse());
-                placed.grown(self.geometry(corner(&placed)))
+                placed.grown(self.geometry(reach(&placed)))
             }
         })
     }
@@ -154,9 +156,4 @@ impl<'a, const D: usize> Body<'a, D> {
             (f64::NEG_INFINITY, away)
         }
     }
-}
-
-/// The distance of a box's farthest corner from the origin [m].
-fn corner<const D: usize>(aabb: &Aabb<D>) -> f64 {
-    aabb.centre().norm() + aabb.half_extents().norm()
 }

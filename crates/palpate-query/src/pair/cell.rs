@@ -86,6 +86,11 @@ impl<const D: usize> Cell<D> {
     }
 }
 
+/// No point of a box is farther from the origin [m].
+pub(crate) fn reach<const D: usize>(aabb: &Aabb<D>) -> f64 {
+    aabb.centre().norm() + aabb.half_extents().norm()
+}
+
 /// The box of which least is known comes first.
 impl<const D: usize> Ord for Cell<D> {
     fn cmp(&self, other: &Self) -> Ordering {

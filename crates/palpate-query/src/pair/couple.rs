@@ -36,6 +36,7 @@ impl<const D: usize> Memory<D> {
 
 /// Two bodies in the frame of the first, so that what is known of places stays true of
 /// it while both move.
+#[derive(Clone, Copy)]
 pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) bodies: [Body<'a, D>; 2],
     /// Boxes of the frame that hold the bodies; one of them at least is there.

@@ -20,7 +20,7 @@ const SLOW: f64 = 0.2;
 /// in the mean whose slope, times `step`, leads to where their larger one plus
 /// `|e|²/2 step` is least.
 #[inline]
-pub(super) fn share<const D: usize>(
+fn share<const D: usize>(
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
     step: f64,
 ) -> f64 {

@@ -27,7 +27,9 @@ mod cell;
 mod couple;
 mod descent;
 mod nearest;
+mod rates;
 mod search;
+mod track;
 
 use palpate_field::BLOCK;
 use palpate_field::field::{EvaluateBlock, Field};
@@ -40,8 +42,10 @@ use crate::placed::Placed;
 use couple::Couple;
 use search::Search;
 
-pub use nearest::{Nearest, PoseDerivative};
+pub use nearest::Nearest;
+pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
+pub use track::Track;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///

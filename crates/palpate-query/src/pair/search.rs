@@ -10,7 +10,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, least_of_larger};
+use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use crate::certified::{Certified, Limits, Stop};
 use crate::goal::Goal;
@@ -26,13 +26,13 @@ const ROOM: usize = 1 << 16;
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best, after those that only may no longer not.
-    pub(super) cells: BinaryHeap<Cell<D>>,
+    cells: BinaryHeap<Cell<D>>,
     /// Boxes to be looked at as they are.
-    pub(super) pending: Vec<Cell<D>>,
+    pending: Vec<Cell<D>>,
     /// Boxes that were dropped, if they are to be kept.
-    pub(super) leaves: Vec<Cell<D>>,
+    leaves: Vec<Cell<D>>,
     open: Vec<usize>,
-    pub(crate) memory: Memory<D>,
+    memory: Memory<D>,
 }
 
 impl<const D: usize> PairWorkspace<D> {
@@ -42,10 +42,23 @@ impl<const D: usize> PairWorkspace<D> {
         Self {
             cells: BinaryHeap::with_capacity(ROOM),
             pending: Vec::with_capacity(ROOM),
-            leaves: Vec::new(),
+            leaves: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
             memory: Memory::new(),
         }
+    }
+
+    /// How many boxes the last search left.
+    pub(super) fn known(&self) -> usize {
+        self.cells.len() + self.pending.len() + self.leaves.len()
+    }
+
+    /// Moves all boxes that the last search left into `known`.
+    pub(super) fn take_known(&mut self, known: &mut Vec<Cell<D>>) {
+        known.clear();
+        known.extend(self.cells.drain());
+        known.append(&mut self.pending);
+        known.append(&mut self.leaves);
     }
 }
 
@@ -66,7 +79,7 @@ pub(super) struct Search<'a, const D: usize> {
     pub(super) dropped: f64,
     /// What values may be off by [m].
     pub(super) slack: f64,
-    /// Whether boxes that are dropped are to be kept.
+    /// Whether boxes that are dropped are kept.
     pub(super) keeps_leaves: bool,
 }
 
@@ -97,13 +110,44 @@ where
                 return self.answer(Stop::SignKnown, 0.5 * gap - self.slack);
             }
         }
-        self.descend(self.best);
-        let root = self.root(0.0);
+        self.run_within(0.0, workspace).0
+    }
+
+    /// Searches everywhere, and `margin` around it; also returns the box that it searched.
+    pub(super) fn run_within(
+        &mut self,
+        margin: f64,
+        workspace: &mut PairWorkspace<D>,
+    ) -> (Certified<Nearest<D>>, Aabb<D>) {
+        self.descend(self.couple.root(0.0).centre());
+        let root = self.root(margin);
         workspace.pending.clear();
         let mut parts = [Cell::NOTHING; BLOCK];
         let count = Cell::unknown(&root).grid(&mut parts);
         workspace.pending.extend_from_slice(&parts[..count]);
-        self.refine(&root, workspace)
+        workspace.leaves.clear();
+        self.slack = self.couple.slack(reach(&root));
+        (self.refine(&root, workspace), root)
+    }
+
+    /// Takes over boxes, parts of `root`, of which something is known.
+    pub(super) fn keep(
+        &mut self,
+        cells: impl Iterator<Item = Cell<D>>,
+        root: &Aabb<D>,
+        workspace: &mut PairWorkspace<D>,
+    ) {
+        workspace.pending.clear();
+        workspace.leaves.clear();
+        self.slack = self.couple.slack(reach(root));
+        let threshold = self.threshold();
+        for cell in cells {
+            if cell.lower < threshold {
+                workspace.pending.push(cell);
+            } else {
+                self.drop_cell(&cell, workspace);
+            }
+        }
     }
 
     /// Searches the pending boxes, parts of `root`, and all that is found in them.
@@ -112,8 +156,7 @@ where
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
     ) -> Certified<Nearest<D>> {
-        let size = root.half_extents().norm();
-        self.slack = self.couple.slack(root.centre().norm() + size);
+        let largest = SMALL * root.half_extents().norm();
         workspace.cells.clear();
         loop {
             let lowest = if workspace.pending.is_empty() {
@@ -125,7 +168,7 @@ where
             if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
                 return self.answer(stop, lower);
             }
-            let is_full = workspace.cells.len() + BLOCK > ROOM;
+            let is_full = workspace.cells.len().max(workspace.leaves.len()) + BLOCK > ROOM;
             let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
             if is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
@@ -135,14 +178,14 @@ where
                     pending.fold(lowest.min(self.dropped), f64::min),
                 );
             }
-            self.round(workspace, SMALL * size);
+            self.round(workspace, largest);
         }
     }
 
     pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
         let upper = self.upper + self.slack;
         Certified {
-            best: Nearest::at(&mut self.couple, self.best, self.goal.tolerance()),
+            best: Nearest::at(&mut self.couple, self.best),
             lower: 2.0 * lower.min(upper),
             upper: 2.0 * upper,
             stop,
