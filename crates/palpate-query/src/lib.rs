@@ -50,7 +50,8 @@ pub use contact::Contact;
 pub use element::Element;
 pub use error::QueryError;
 pub use pair::{
-    Nearest, PairWorkspace, PoseDerivative, Rates, Track, overlap, rates, separation,
+    Escape, Nearest, PairWorkspace, PoseDerivative, Rates, Track, escape, overlap, rates,
+    separation,
 };
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};

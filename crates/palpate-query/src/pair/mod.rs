@@ -26,6 +26,7 @@ mod body;
 mod cell;
 mod couple;
 mod descent;
+mod escape;
 mod nearest;
 mod rates;
 mod search;
@@ -42,6 +43,7 @@ use crate::placed::Placed;
 use couple::Couple;
 use search::Search;
 
+pub use escape::{Escape, escape};
 pub use nearest::Nearest;
 pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
