@@ -19,7 +19,6 @@
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
@@ -87,10 +86,7 @@ pub fn minimum<const N: usize, const D: usize>(
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Point<D>> {
     let goal = Goal::Least { tolerance: limits.tolerance };
     search(shape, element, goal, limits.budget, workspace)
 }
@@ -105,10 +101,7 @@ pub fn touches<const N: usize, const D: usize>(
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Point<D>> {
     let goal = Goal::Sign { tolerance: limits.tolerance };
     search(shape, element, goal, limits.budget, workspace)
 }
@@ -119,10 +112,7 @@ fn search<const N: usize, const D: usize>(
     goal: Goal,
     budget: u32,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Point<D>> {
     let weights = element.centre_weights();
     let centre = element.at(&weights);
     let radius = element.farthest(centre);
@@ -156,10 +146,7 @@ struct Search<'a, const N: usize, const D: usize> {
     dropped: f64,
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// A value found on the element.
     #[inline]
     fn found(&mut self, p: Point<D>, value: f64) {

@@ -3,19 +3,14 @@
 
 //! Ways out: closed forms, and that the bodies are apart after them.
 
-use palpate_field::field::{EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{Escape, Limits, PairWorkspace, Placed, escape, separation};
 
 const LIMITS: Limits = Limits { tolerance: 1e-4, budget: 200_000 };
 
 /// The way out, which must be one.
-fn out<const D: usize>(a: &Shape<D>, b: &Shape<D>, pose: Pose<D>) -> Escape<D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+fn out<const D: usize>(a: &Shape<D>, b: &Shape<D>, pose: Pose<D>) -> Escape<D> {
     let mut workspace = PairWorkspace::new();
     let there = Placed::new(b, pose);
     let way = escape(a, there, &LIMITS, &mut workspace).expect("bounded").expect("a way out");

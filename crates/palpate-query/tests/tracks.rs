@@ -3,11 +3,10 @@
 
 //! Bodies that move: what is kept of the last proof, and derivatives.
 
-use palpate_field::field::{EvaluateBlock, Field};
+use palpate_field::field::Field;
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::operator::Smooth;
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{Limits, PairWorkspace, Placed, Track, rates, separation};
 
 type Pair<const D: usize> = (&'static str, Shape<D>, Shape<D>);
@@ -36,10 +35,7 @@ fn in_the_plane() -> Result<Vec<Pair<2>>, ShapeError> {
 }
 
 /// Follows each pair along a way with a jump in it, and asks anew beside it.
-fn agree<const D: usize>(pairs: &[Pair<D>], motion: impl Fn(f64) -> Pose<D>)
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+fn agree<const D: usize>(pairs: &[Pair<D>], motion: impl Fn(f64) -> Pose<D>) {
     let limits = Limits { tolerance: 1e-3, ..Limits::default() };
     let mut workspace = PairWorkspace::new();
     for (name, a, b) in pairs {
@@ -81,10 +77,11 @@ fn what_is_kept_stays_true_and_saves_evaluations() -> Result<(), ShapeError> {
 }
 
 /// Derivatives of separations that are smooth at these poses, against differences.
-fn differ<const D: usize>(pairs: &[Pair<D>], start: Pose<D>, moves: &[(Pose<D>, usize, usize)])
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+fn differ<const D: usize>(
+    pairs: &[Pair<D>],
+    start: Pose<D>,
+    moves: &[(Pose<D>, usize, usize)],
+) {
     const STEP: f64 = 1e-4;
     let limits = Limits { tolerance: 1e-9, budget: 1_000_000 };
     let mut workspace = PairWorkspace::new();

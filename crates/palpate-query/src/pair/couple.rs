@@ -3,7 +3,6 @@
 
 //! Two bodies in one frame, asked a block at a time.
 
-use palpate_field::field::{EvaluateBlock, Field};
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Vector};
 
@@ -48,10 +47,7 @@ pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) evaluations: u32,
 }
 
-impl<'a, const D: usize> Couple<'a, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
         if !(a.world_from_body.is_finite() && b.world_from_body.is_finite()) {
             return Err(QueryError::Pose);

@@ -3,9 +3,7 @@
 
 //! Minimax proximal steps: points at which the larger of two fields is less.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Point, Vector};
+use palpate_field::{Point, Vector};
 
 use super::search::Search;
 use crate::goal::Goal;
@@ -33,10 +31,7 @@ fn share<const D: usize>(
     }
 }
 
-impl<const D: usize> Search<'_, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<const D: usize> Search<'_, D> {
     /// Improves the best point, from `start`.
     pub(super) fn descend(&mut self, start: Point<D>) {
         let mut p = start;

@@ -3,9 +3,9 @@
 
 //! How far a body must move to leave another.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::{Model, Scalar};
-use palpate_field::{BLOCK, Vector};
+use palpate_field::Vector;
+use palpate_field::field::Field;
+use palpate_field::scalar::Scalar;
 
 use super::{Nearest, PairWorkspace, separation};
 use crate::certified::{Certified, Limits};
@@ -73,10 +73,7 @@ pub fn escape<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Option<Escape<D>>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+) -> Result<Option<Escape<D>>, QueryError> {
     let (a, b) = (a.into(), b.into());
     let size = |body: &Placed<'_, D>| {
         let bounds = body.shape.promise().bounds;
@@ -117,10 +114,7 @@ struct Search<'a, 'w, const D: usize> {
     evaluations: u32,
 }
 
-impl<const D: usize> Search<'_, '_, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<const D: usize> Search<'_, '_, D> {
     /// The separation after the second body has moved.
     fn at(
         &mut self,

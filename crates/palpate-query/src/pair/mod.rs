@@ -32,10 +32,6 @@ mod rates;
 mod search;
 mod track;
 
-use palpate_field::BLOCK;
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -73,10 +69,7 @@ pub fn separation<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Certified<Nearest<D>>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }
@@ -94,10 +87,7 @@ pub fn overlap<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Certified<Nearest<D>>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::Sign { tolerance: 0.5 * limits.tolerance };
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }

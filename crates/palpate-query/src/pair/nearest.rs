@@ -3,9 +3,7 @@
 
 //! Where two bodies are nearest.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Point, Vector};
+use palpate_field::{Point, Vector};
 
 use super::couple::Couple;
 use crate::contact::Contact;
@@ -26,10 +24,7 @@ pub struct Nearest<const D: usize> {
 
 impl<const D: usize> Nearest<D> {
     /// The answer at a point of the couple's frame.
-    pub(super) fn at(couple: &mut Couple<'_, D>, p: Point<D>) -> Self
-    where
-        dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-    {
+    pub(super) fn at(couple: &mut Couple<'_, D>, p: Point<D>) -> Self {
         let [(_, a), (_, b)] = couple.slopes(p);
         let pose = &couple.world_from_frame;
         let between = a - b;

@@ -3,9 +3,7 @@
 
 //! How a separation changes when the bodies move.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Point, Vector};
+use palpate_field::{Point, Vector};
 
 use super::Nearest;
 use super::couple::Couple;
@@ -102,10 +100,7 @@ pub fn rates<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
     nearest: &Nearest<D>,
-) -> Result<Rates<D>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+) -> Result<Rates<D>, QueryError> {
     let mut couple = Couple::new(a.into(), b.into())?;
     let pose = couple.world_from_frame;
     let centre = pose.inverse().transform_point(nearest.point);
@@ -137,10 +132,7 @@ fn around<const D: usize>(
     couple: &mut Couple<'_, D>,
     centre: Point<D>,
     spread: f64,
-) -> Vec<(usize, Vector<f64, D>)>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+) -> Vec<(usize, Vector<f64, D>)> {
     let mut points = vec![centre];
     if spread > 0.0 {
         for axis in 0..D {

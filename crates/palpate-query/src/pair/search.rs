@@ -5,8 +5,6 @@
 
 use std::collections::BinaryHeap;
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
@@ -83,10 +81,7 @@ pub(super) struct Search<'a, const D: usize> {
     pub(super) keeps_leaves: bool,
 }
 
-impl<'a, const D: usize> Search<'a, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<'a, const D: usize> Search<'a, D> {
     pub(super) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
         Self {
             couple,

@@ -3,8 +3,6 @@
 
 //! Two bodies that are asked again and again while they move.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
 use super::Nearest;
@@ -65,10 +63,7 @@ struct Cover<const D: usize> {
     first: usize,
 }
 
-impl<const D: usize> Track<D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<const D: usize> Track<D> {
     /// Two shapes of which nothing is known yet.
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
@@ -130,10 +125,7 @@ where
 impl<const D: usize> Cover<D> {
     /// Puts into `workspace` what is still known now that the bodies have moved; `false`
     /// if they moved too far.
-    fn resume(&self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool
-    where
-        dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-    {
+    fn resume(&self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
         if self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
