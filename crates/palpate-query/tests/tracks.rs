@@ -3,7 +3,6 @@
 
 //! Bodies that move: what is kept of the last proof, and derivatives.
 
-use palpate_field::field::Field;
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::operator::Smooth;
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};

@@ -4,7 +4,6 @@
 //! How far a body must move to leave another.
 
 use palpate_field::Vector;
-use palpate_field::field::Field;
 use palpate_field::scalar::Scalar;
 
 use super::{Nearest, PairWorkspace, separation};
