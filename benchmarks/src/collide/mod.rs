@@ -3,6 +3,7 @@
 
 //! Searches that prove where things touch.
 
+mod manifolds;
 mod pairs;
 mod triangles;
 
@@ -21,6 +22,8 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     }
     eprintln!("measuring pairs …");
     pairs::measure(&mut rows)?;
+    eprintln!("measuring manifolds …");
+    manifolds::measure(&mut rows)?;
     Ok(rows)
 }
 

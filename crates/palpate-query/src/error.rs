@@ -26,6 +26,14 @@ pub enum QueryError {
         /// The length.
         value: f64,
     },
+    /// A setting that is negative, zero or not finite.
+    #[error("{what} must be finite and positive, got {value:?} m")]
+    Setting {
+        /// What is set.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
     /// A pose with a number that is NaN or infinite.
     #[error("a pose must be finite")]
     Pose,

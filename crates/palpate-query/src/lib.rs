@@ -39,6 +39,7 @@ mod contact;
 mod element;
 mod error;
 mod goal;
+mod manifold;
 mod pair;
 mod placed;
 mod ray;
@@ -49,6 +50,7 @@ pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use element::Element;
 pub use error::QueryError;
+pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use pair::{
     Escape, Nearest, PairWorkspace, PoseDerivative, Rates, Track, escape, overlap, rates,
     separation,

@@ -78,6 +78,14 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
+    /// A point of the frame, from one in the shape's coordinates.
+    pub(crate) fn in_frame(&self, local: Point<D>) -> Point<D> {
+        match &self.body_from_frame {
+            None => local,
+            Some(pose) => pose.inverse().transform_point(local),
+        }
+    }
+
     /// The coordinates of a box of the frame about a point in the shape's coordinates.
     #[inline]
     pub(crate) fn cell(&self, local: Point<D>, half: Vector<f64, D>) -> Vector<Model, D> {
@@ -131,6 +139,18 @@ impl<'a, const D: usize> Body<'a, D> {
     pub(crate) fn slope(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let local = self.local(p);
         let (f, gradient) = self.shape.distance_gradient(local);
+        self.slope_of(local, f, gradient)
+    }
+
+    /// `g` and its gradient in the frame, at a point in the shape's coordinates where the
+    /// field is `f` and has a gradient.
+    #[inline]
+    pub(crate) fn slope_of(
+        &self,
+        local: Point<D>,
+        f: f64,
+        gradient: Vector<f64, D>,
+    ) -> (f64, Vector<f64, D>) {
         let (outside, away) = self.outside_box(local);
         let inner = if self.is_known(local, 0.0) { f * self.scale } else { outside };
         let (value, slope) =

@@ -4,7 +4,7 @@
 //! Two bodies in one frame, asked a block at a time.
 
 use palpate_field::scalar::Model;
-use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Vector};
+use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 
 use super::body::Body;
 use super::cell::Cell;
@@ -18,6 +18,7 @@ pub(crate) struct Memory<const D: usize> {
     points: Block<f64, D, BLOCK>,
     boxes: Block<Model, D, BLOCK>,
     values: Column<f64, BLOCK>,
+    slopes: Gradients<f64, D, BLOCK>,
     models: [Column<Model, BLOCK>; 2],
 }
 
@@ -28,6 +29,7 @@ impl<const D: usize> Memory<D> {
             points: Block::zero(),
             boxes: Block::zero(),
             values: Column::zero(),
+            slopes: Gradients::zero(),
             models: [Column::zero(), Column::zero()],
         }
     }
@@ -75,6 +77,21 @@ impl<'a, const D: usize> Couple<'a, D> {
         [self.bodies[0].slope(p), self.bodies[1].slope(p)]
     }
 
+    /// A point of a body's surface near a point of the frame, in the frame.
+    pub(crate) fn surface_point(&self, body: usize, p: Point<D>) -> Option<Point<D>> {
+        let body = &self.bodies[body];
+        Some(body.in_frame(body.shape.surface_point(body.local(p))?))
+    }
+
+    /// From the middle of the first body's box to that of the second's; zero if one has
+    /// none.
+    pub(crate) fn between_centres(&self) -> Vector<f64, D> {
+        match self.aabbs {
+            [Some(a), Some(b)] => b.centre() - a.centre(),
+            _ => Vector::ZERO,
+        }
+    }
+
     /// `g` of both at the centres of cells.
     pub(crate) fn values(
         &mut self,
@@ -91,6 +108,28 @@ impl<'a, const D: usize> Couple<'a, D> {
             body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
             for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
                 *value = body.value(*local, memory.values.get(i));
+            }
+        }
+    }
+
+    /// `g` of both at points, with gradients.
+    pub(crate) fn block_slopes(
+        &mut self,
+        points: &[Point<D>],
+        memory: &mut Memory<D>,
+        slopes: &mut [[(f64, Vector<f64, D>); BLOCK]; 2],
+    ) {
+        self.evaluations += 4 * points.len() as u32;
+        for (body, slopes) in self.bodies.iter().zip(slopes) {
+            for (i, p) in points.iter().enumerate() {
+                memory.points.set(i, body.local(*p));
+            }
+            body.shape.block_gradients(&memory.points, points.len(), &mut memory.slopes);
+            for (i, slope) in slopes[..points.len()].iter_mut().enumerate() {
+                let local = memory.points.get(i);
+                let (f, gradient) =
+                    (memory.slopes.distance.get(i), memory.slopes.gradient.get(i));
+                *slope = body.slope_of(local, f, gradient);
             }
         }
     }

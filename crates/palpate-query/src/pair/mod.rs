@@ -23,13 +23,13 @@
 //! tangent planes plus a parabola is least at a step along a mean of both gradients.
 
 mod body;
-mod cell;
-mod couple;
-mod descent;
+pub(crate) mod cell;
+pub(crate) mod couple;
+pub(crate) mod descent;
 mod escape;
 mod nearest;
 mod rates;
-mod search;
+pub(crate) mod search;
 mod track;
 
 use crate::certified::{Certified, Limits};

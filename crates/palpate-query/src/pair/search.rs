@@ -10,6 +10,7 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 use super::Nearest;
 use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
+use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
 use crate::goal::Goal;
 
@@ -26,11 +27,11 @@ pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best, after those that only may no longer not.
     cells: BinaryHeap<Cell<D>>,
     /// Boxes to be looked at as they are.
-    pending: Vec<Cell<D>>,
+    pub(crate) pending: Vec<Cell<D>>,
     /// Boxes that were dropped, if they are to be kept.
     leaves: Vec<Cell<D>>,
-    open: Vec<usize>,
-    memory: Memory<D>,
+    pub(crate) open: Vec<usize>,
+    pub(crate) memory: Memory<D>,
 }
 
 impl<const D: usize> PairWorkspace<D> {
@@ -67,12 +68,12 @@ impl<const D: usize> Default for PairWorkspace<D> {
 }
 
 /// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
-pub(super) struct Search<'a, const D: usize> {
+pub(crate) struct Search<'a, const D: usize> {
     pub(super) couple: Couple<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
     pub(super) upper: f64,
-    pub(super) best: Point<D>,
+    pub(crate) best: Point<D>,
     /// Nothing in the boxes that were dropped is less.
     pub(super) dropped: f64,
     /// What values may be off by [m].
@@ -82,7 +83,7 @@ pub(super) struct Search<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Search<'a, D> {
-    pub(super) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
+    pub(crate) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
         Self {
             couple,
             goal,
@@ -96,7 +97,7 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// Searches everywhere, from the middle of what the boxes of both have in common.
-    pub(super) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
+    pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
         self.best = self.couple.root(0.0).centre();
         if let (Goal::Sign { .. }, Some(gap)) = (self.goal, self.couple.gap_of_boxes()) {
             // Half of it is what both values are at least, somewhere between.
@@ -106,6 +107,14 @@ impl<'a, const D: usize> Search<'a, D> {
             }
         }
         self.run_within(0.0, workspace).0
+    }
+
+    /// Improves the best point, from `start`.
+    pub(super) fn descend(&mut self, start: Point<D>) {
+        let (value, p) = descend(&mut self.couple, start, self.goal, self.slack);
+        if value < self.upper {
+            (self.upper, self.best) = (value, p);
+        }
     }
 
     /// Searches everywhere, and `margin` around it; also returns the box that it searched.

@@ -12,6 +12,7 @@ use super::search::{PairWorkspace, Search};
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
+use crate::manifold::Names;
 use crate::placed::Placed;
 
 /// Room for motion around what is searched, as a share of its size: a body that moves
@@ -49,6 +50,7 @@ const GROWTH: usize = 2;
 pub struct Track<const D: usize> {
     shapes: [Shape<D>; 2],
     cover: Option<Cover<D>>,
+    pub(crate) names: Names<D>,
 }
 
 /// Boxes in the frame of the first shape that hold all places at which the separation
@@ -67,7 +69,7 @@ impl<const D: usize> Track<D> {
     /// Two shapes of which nothing is known yet.
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
-        Self { shapes: [a, b], cover: None }
+        Self { shapes: [a, b], cover: None, names: Names::new() }
     }
 
     /// The shapes.
