@@ -16,6 +16,8 @@ pub(super) struct Grid<const D: usize> {
     counts: [usize; D],
     /// Where each cube's points begin in `members`, and the end.
     starts: Vec<u32>,
+    /// Where those end that were not taken out.
+    ends: Vec<u32>,
     members: Vec<u32>,
 }
 
@@ -27,8 +29,14 @@ impl<const D: usize> Grid<D> {
         let (min, extent) = aabb.map_or((Point::constant(0.0), Point::constant(0.0)), |aabb| {
             (aabb.min, aabb.max - aabb.min)
         });
-        let mut grid =
-            Self { min, side, counts: [1; D], starts: Vec::new(), members: Vec::new() };
+        let mut grid = Self {
+            min,
+            side,
+            counts: [1; D],
+            starts: Vec::new(),
+            ends: Vec::new(),
+            members: Vec::new(),
+        };
         loop {
             for k in 0..D {
                 grid.counts[k] = (extent[k] / grid.side) as usize + 1;
@@ -47,12 +55,12 @@ impl<const D: usize> Grid<D> {
         for place in 1..grid.starts.len() {
             grid.starts[place] += grid.starts[place - 1];
         }
-        let mut next = grid.starts.clone();
+        grid.ends = grid.starts.clone();
         grid.members = vec![0; number];
         for (i, p) in points.enumerate() {
             let place = grid.place(p);
-            grid.members[next[place] as usize] = i as u32;
-            next[place] += 1;
+            grid.members[grid.ends[place] as usize] = i as u32;
+            grid.ends[place] += 1;
         }
         grid
     }
@@ -67,8 +75,35 @@ impl<const D: usize> Grid<D> {
         self.cube(p).iter().zip(self.counts).rfold(0, |place, (k, count)| place * count + k)
     }
 
-    /// Calls `visit` with all points that are within a side of `p`, and some others.
-    pub(super) fn near(&self, p: Point<D>, mut visit: impl FnMut(usize)) {
+    /// Takes out the points within a side of `p`, and maybe some others, of which
+    /// `is_wanted` says so.
+    pub(super) fn take(&mut self, p: Point<D>, mut is_wanted: impl FnMut(usize) -> bool) {
+        self.each_place(p, |grid, place| {
+            let (start, mut end) = (grid.starts[place] as usize, grid.ends[place] as usize);
+            let mut i = start;
+            while i < end {
+                if is_wanted(grid.members[i] as usize) {
+                    end -= 1;
+                    grid.members.swap(i, end);
+                } else {
+                    i += 1;
+                }
+            }
+            grid.ends[place] = end as u32;
+        });
+    }
+
+    /// Calls `visit` with the points that were taken out within a side of `p`, and maybe
+    /// some others.
+    pub(super) fn taken(&mut self, p: Point<D>, mut visit: impl FnMut(usize)) {
+        self.each_place(p, |grid, place| {
+            let (end, all) = (grid.ends[place] as usize, grid.starts[place + 1] as usize);
+            grid.members[end..all].iter().for_each(|&member| visit(member as usize));
+        });
+    }
+
+    /// Calls `visit` with the cubes around a point.
+    fn each_place(&mut self, p: Point<D>, mut visit: impl FnMut(&mut Self, usize)) {
         let centre = self.cube(p);
         for code in 0..3_usize.pow(D as u32) {
             let (mut place, mut scale, mut rest, mut is_inside) = (0, 1, code, true);
@@ -80,10 +115,7 @@ impl<const D: usize> Grid<D> {
                 rest /= 3;
             }
             if is_inside {
-                let (start, end) = (self.starts[place], self.starts[place + 1]);
-                for &member in &self.members[start as usize..end as usize] {
-                    visit(member as usize);
-                }
+                visit(self, place);
             }
         }
     }

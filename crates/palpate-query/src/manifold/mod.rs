@@ -69,8 +69,8 @@ pub struct Manifold<const D: usize> {
     pub contacts: Vec<Contact<D>>,
     /// How many contacts each group has: those of one patch, with like normals.
     pub groups: Vec<usize>,
-    /// The separation and where it is found. Unless it is more than the margin, that is
-    /// among the contacts.
+    /// The separation and where it is found, which is the deepest contact's point unless
+    /// the separation is more than the margin.
     pub separation: Certified<Nearest<D>>,
     /// How many contacts there were beyond the most that were to be kept.
     pub dropped: usize,
@@ -151,6 +151,9 @@ fn spanning<const D: usize>(
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     drop_copies(&mut touches, settings.spacing);
+    if let Some(deepest) = touches.first().map(|member| member.touch) {
+        found.deepen(&deepest, &patches.couple);
+    }
     found.dropped = touches.len().saturating_sub(settings.most.max(1));
     keep_spread(&mut touches, settings.most.max(1));
     touches.sort_by(|one, other| {
@@ -169,6 +172,23 @@ fn spanning<const D: usize>(
     }
     found.separation.evaluations += patches.couple.evaluations;
     Ok(found)
+}
+
+impl<const D: usize> Manifold<D> {
+    /// Takes a contact as the best point if it is deeper.
+    fn deepen(&mut self, deepest: &Touch<D>, couple: &Couple<'_, D>) {
+        let slack = couple.slack(deepest.point.norm() + deepest.gap.abs());
+        let upper = deepest.gap + 2.0 * slack;
+        if upper < self.separation.upper {
+            let pose = &couple.world_from_frame;
+            self.separation.best = Nearest {
+                point: pose.transform_point(deepest.point),
+                normal: Some(pose.transform_vector(deepest.normal)),
+            };
+            self.separation.upper = upper;
+            self.separation.lower = self.separation.lower.min(upper);
+        }
+    }
 }
 
 impl ManifoldSettings {
@@ -198,8 +218,6 @@ struct Touch<const D: usize> {
 struct Member<const D: usize> {
     touch: Touch<D>,
     group: usize,
-    /// Whether it is the certified best point.
-    is_best: bool,
 }
 
 impl<const D: usize> Touch<D> {
@@ -232,11 +250,10 @@ impl<const D: usize> Touch<D> {
     }
 }
 
-/// Drops contacts next to a deeper one with a like normal; never the best point.
+/// Sorts contacts from the deepest, and drops those next to a deeper one with a like
+/// normal.
 fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
-    touches.sort_by(|one, other| {
-        other.is_best.cmp(&one.is_best).then(one.touch.gap.total_cmp(&other.touch.gap))
-    });
+    touches.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
     let mut kept = 0;
     for i in 0..touches.len() {
         let touch = touches[i].touch;

@@ -22,6 +22,9 @@ const ALIKE: f64 = 0.906;
 /// patch of its own; beyond it is the patch's slope.
 const SLOPE: f64 = 0.1;
 
+/// How precisely the deepest point of a patch is found, as a share of the margin.
+const PRECISE: f64 = 1e-3;
+
 /// Patches smaller than this many spacings are one contact, as are corners.
 const SMALL: f64 = 1.5;
 
@@ -32,7 +35,7 @@ const SHARP: f64 = 0.06;
 pub(super) struct Patches<'a, 'b, const D: usize> {
     pub(super) couple: Couple<'a, D>,
     pub(super) settings: &'b ManifoldSettings,
-    /// The first is the certified best point.
+    /// The certified best point is among them.
     pub(super) candidates: &'b [Touch<D>],
 }
 
@@ -41,10 +44,9 @@ impl<const D: usize> Patches<'_, '_, D> {
     pub(super) fn contacts(&mut self) -> Vec<Member<D>> {
         let candidates = self.candidates;
         let near = NEIGHBOURS * self.settings.spacing;
-        let grid = Grid::new(candidates.iter().map(|touch| touch.point), near);
-        let mut order: Vec<usize> = (1..candidates.len()).collect();
+        let mut grid = Grid::new(candidates.iter().map(|touch| touch.point), near);
+        let mut order: Vec<usize> = (0..candidates.len()).collect();
         order.sort_by(|&i, &k| candidates[i].gap.total_cmp(&candidates[k].gap));
-        order.insert(0, 0);
         let mut is_owned = vec![false; candidates.len()];
         let (mut members, mut contacts) = (Vec::new(), Vec::new());
         let mut group = 0;
@@ -52,13 +54,14 @@ impl<const D: usize> Patches<'_, '_, D> {
             if is_owned[seed] {
                 continue;
             }
-            is_owned[seed] = true;
             let first = &candidates[seed];
+            let is_near = |i: usize, p| distance(candidates[i].point, p) < near;
+            grid.take(first.point, |i| i == seed);
+            is_owned[seed] = true;
             let mut is_slope = false;
-            grid.near(first.point, |i| {
-                let deeper = candidates[i].gap < first.gap - SLOPE * self.settings.margin;
-                is_slope |=
-                    is_owned[i] && deeper && distance(candidates[i].point, first.point) < near;
+            grid.taken(first.point, |i| {
+                let is_deeper = candidates[i].gap < first.gap - SLOPE * self.settings.margin;
+                is_slope |= is_deeper && is_near(i, first.point);
             });
             if is_slope {
                 continue;
@@ -69,15 +72,14 @@ impl<const D: usize> Patches<'_, '_, D> {
             while next < members.len() {
                 let here = candidates[members[next]].point;
                 next += 1;
-                grid.near(here, |i| {
-                    let other = &candidates[i];
-                    if !is_owned[i]
-                        && distance(other.point, here) < near
-                        && other.normal.dot(first.normal) > ALIKE
-                    {
+                grid.take(here, |i| {
+                    let is_alike = candidates[i].normal.dot(first.normal) > ALIKE;
+                    let is_taken = is_alike && is_near(i, here);
+                    if is_taken {
                         is_owned[i] = true;
                         members.push(i);
                     }
+                    is_taken
                 });
             }
             self.span(seed, &members, group, &mut contacts);
@@ -95,11 +97,7 @@ impl<const D: usize> Patches<'_, '_, D> {
         contacts: &mut Vec<Member<D>>,
     ) {
         let spacing = self.settings.spacing;
-        let is_best = seed == 0;
-        let mut deepest = self.candidates[seed];
-        if !is_best {
-            deepest = self.deepest(&deepest);
-        }
+        let deepest = self.deepest(self.candidates[seed]);
         let points = || members.iter().map(|&i| self.candidates[i].point);
         let mut centre = Vector::ZERO;
         for p in points() {
@@ -112,7 +110,7 @@ impl<const D: usize> Patches<'_, '_, D> {
                 if far > best.0 { (far, *touch) } else { best }
             })
         };
-        contacts.push(Member { touch: deepest, group, is_best });
+        contacts.push(Member { touch: deepest, group });
         let (size, one) = farthest(&|p| distance(p, centre));
         if size < SMALL * spacing {
             return;
@@ -128,18 +126,18 @@ impl<const D: usize> Patches<'_, '_, D> {
                 |other: &Touch<D>| distance(other.point, corners[i].point) > SMALL * spacing;
             if corners[..i].iter().all(is_apart) {
                 let touch = self.sharpen(corners[i], centre);
-                contacts.push(Member { touch, group, is_best: false });
+                contacts.push(Member { touch, group });
             }
         }
     }
 
     /// The deepest point near a candidate.
-    fn deepest(&mut self, start: &Touch<D>) -> Touch<D> {
-        let goal = Goal::Least { tolerance: SLOPE * self.settings.margin };
+    fn deepest(&mut self, start: Touch<D>) -> Touch<D> {
+        let goal = Goal::Least { tolerance: PRECISE * self.settings.margin };
         let (_, p) = descend(&mut self.couple, start.point, goal, 0.0);
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
-        found.filter(|found| found.gap < start.gap).unwrap_or(*start)
+        found.filter(|found| found.gap < start.gap).unwrap_or(start)
     }
 
     /// Moves a corner outwards along the patch until the gap is the margin or the

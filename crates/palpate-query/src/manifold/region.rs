@@ -63,7 +63,8 @@ pub(super) fn find<const D: usize>(
         for i in unknown {
             let mut is_out = false;
             if open.get(lane) == Some(&i) {
-                let [a, b] = couple.model(memory, lane);
+                let models = couple.model(memory, lane);
+                let [a, b] = models;
                 lane += 1;
                 let (mut across, mut along) = (0.0, [0.0; 2]);
                 for (a, b) in a.gradient.iter().zip(b.gradient) {
@@ -82,7 +83,9 @@ pub(super) fn find<const D: usize>(
             }
             let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(parts[i].half[k]));
             if is_out {
-            } else if longest <= 0.5 * settings.spacing {
+                continue;
+            }
+            if longest <= 0.5 * settings.spacing {
                 small.push(parts[i]);
             } else {
                 let mut halves = [Cell::NOTHING; 8];

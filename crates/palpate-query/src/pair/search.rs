@@ -259,8 +259,10 @@ impl<'a, const D: usize> Search<'a, D> {
         self.couple.models(parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             // Boxes are off by a rounding where they meet.
-            let lower = least_of_larger(self.couple.model(memory, lane)) - self.slack;
+            let models = self.couple.model(memory, lane);
+            let lower = least_of_larger(models) - self.slack;
             parts[i].lower = parts[i].lower.max(lower);
+            parts[i].learn(&models);
         }
         for part in &*parts {
             if part.lower < threshold {
