@@ -37,6 +37,12 @@ pub enum QueryError {
     /// A pose with a number that is NaN or infinite.
     #[error("a pose must be finite")]
     Pose,
+    /// A name that no body of the world has, or no more.
+    #[error("there is no body {body} in this world")]
+    NoBody {
+        /// Its index.
+        body: usize,
+    },
     /// Two bodies that both go on without end.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,

@@ -45,6 +45,7 @@ mod placed;
 mod ray;
 mod sampler;
 mod search;
+mod world;
 
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
@@ -58,3 +59,4 @@ pub use pair::{
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};
+pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -87,7 +87,7 @@ pub fn minimum<const N: usize, const D: usize>(
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
-    let goal = Goal::Least { tolerance: limits.tolerance };
+    let goal = Goal::least(limits.tolerance);
     search(shape, element, goal, limits.budget, workspace)
 }
 
@@ -102,7 +102,7 @@ pub fn touches<const N: usize, const D: usize>(
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
-    let goal = Goal::Sign { tolerance: limits.tolerance };
+    let goal = Goal::sign(limits.tolerance);
     search(shape, element, goal, limits.budget, workspace)
 }
 

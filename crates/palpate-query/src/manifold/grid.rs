@@ -107,11 +107,11 @@ impl<const D: usize> Grid<D> {
         let centre = self.cube(p);
         for code in 0..3_usize.pow(D as u32) {
             let (mut place, mut scale, mut rest, mut is_inside) = (0, 1, code, true);
-            for k in 0..D {
-                let index = (centre[k] + rest % 3).wrapping_sub(1);
-                is_inside &= index < self.counts[k];
-                place += scale * index.min(self.counts[k]);
-                scale *= self.counts[k];
+            for (centre, count) in centre.into_iter().zip(self.counts) {
+                let index = (centre + rest % 3).wrapping_sub(1);
+                is_inside &= index < count;
+                place += scale * index.min(count);
+                scale *= count;
                 rest /= 3;
             }
             if is_inside {

@@ -81,8 +81,8 @@ pub struct Manifold<const D: usize> {
 /// Contacts that span the region in which two bodies touch, up to a gap of
 /// `settings.margin`.
 ///
-/// The separation is found to `limits.tolerance` first, and if it is proven to be more
-/// than the margin, there are no contacts. What is proven is that best point: that all
+/// The separation is found to `limits.tolerance` first; once it is proven to be more than
+/// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
 /// other parts of the region are found is not, if they are smaller than the spacing.
 /// Contacts are numbered from 0; [`Track::manifold`](crate::Track::manifold) names them.
 ///
@@ -118,23 +118,23 @@ pub fn manifold<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Manifold<D>, QueryError> {
+    settings.check()?;
     let couple = Couple::new(a.into(), b.into())?;
-    let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
+    let goal = settings.goal(limits);
     let mut search = Search::new(couple, goal, limits);
     let separation = search.run(workspace);
-    spanning(couple, search.best, separation, settings, limits, workspace)
+    let budget = limits.budget;
+    Ok(spanning(couple, (search.best, separation), settings, budget, workspace))
 }
 
 /// The manifold of a couple whose separation was found at `best`, in its frame.
 fn spanning<const D: usize>(
     mut couple: Couple<'_, D>,
-    best: Point<D>,
-    separation: Certified<Nearest<D>>,
+    (best, separation): (Point<D>, Certified<Nearest<D>>),
     settings: &ManifoldSettings,
-    limits: &Limits,
+    budget: u32,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Manifold<D>, QueryError> {
-    settings.check()?;
+) -> Manifold<D> {
     let mut found = Manifold {
         contacts: Vec::new(),
         groups: Vec::new(),
@@ -143,11 +143,10 @@ fn spanning<const D: usize>(
         is_whole: true,
     };
     if separation.lower > settings.margin {
-        return Ok(found);
+        return found;
     }
     let mut candidates = vec![Touch::at(&mut couple, best)];
-    found.is_whole =
-        region::find(&mut couple, settings, limits.budget, workspace, &mut candidates);
+    found.is_whole = region::find(&mut couple, settings, budget, workspace, &mut candidates);
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     drop_copies(&mut touches, settings.spacing);
@@ -171,7 +170,7 @@ fn spanning<const D: usize>(
         found.contacts.push(member.touch.contact(&couple, i as u64));
     }
     found.separation.evaluations += patches.couple.evaluations;
-    Ok(found)
+    found
 }
 
 impl<const D: usize> Manifold<D> {
@@ -192,7 +191,12 @@ impl<const D: usize> Manifold<D> {
 }
 
 impl ManifoldSettings {
-    fn check(&self) -> Result<(), QueryError> {
+    /// The separation, if it is within the margin.
+    fn goal(&self, limits: &Limits) -> Goal {
+        Goal::least_within(0.5 * self.margin, 0.5 * limits.tolerance)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
         for (what, value, is_fine) in [
             ("a margin", self.margin, self.margin.is_finite() && self.margin >= 0.0),
             ("a spacing", self.spacing, self.spacing.is_finite() && self.spacing > 0.0),

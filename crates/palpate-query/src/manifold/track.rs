@@ -27,11 +27,13 @@ impl<const D: usize> Track<D> {
         limits: &Limits,
         workspace: &mut PairWorkspace<D>,
     ) -> Result<Manifold<D>, QueryError> {
-        let separation = self.separation(poses, limits, workspace)?;
+        settings.check()?;
+        let goal = settings.goal(limits);
+        let (separation, best) = self.search(poses, goal, limits, workspace)?;
+        let found = (best, separation);
         let [a, b] = self.shapes();
         let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let best = poses[0].inverse().transform_point(separation.best.point);
-        let mut found = spanning(couple, best, separation, settings, limits, workspace)?;
+        let mut found = spanning(couple, found, settings, limits.budget, workspace);
         self.names.name(&mut found.contacts, poses, settings.spacing);
         Ok(found)
     }

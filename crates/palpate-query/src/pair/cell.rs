@@ -83,11 +83,10 @@ impl<const D: usize> Cell<D> {
     /// `parts`, and says how many there are then.
     #[inline]
     pub(crate) fn halve(&self, parts: &mut [Self], count: usize) -> usize {
-        let splits = self.splits();
         parts[count] = *self;
         let mut end = count + 1;
-        for k in 0..D {
-            if splits[k] {
+        for (k, is_split) in self.splits().into_iter().enumerate() {
+            if is_split {
                 for i in count..end {
                     let mut other = parts[i];
                     let half = 0.5 * other.half[k];

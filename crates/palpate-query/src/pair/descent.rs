@@ -42,7 +42,7 @@ pub(crate) fn descend<const D: usize>(
     let mut p = start;
     let mut here = couple.slopes(p);
     let mut value = here[0].0.max(here[1].0);
-    let mut step = value.abs().max(goal.tolerance());
+    let mut step = value.abs().max(goal.tolerance);
     let mut small_gains = 0;
     for _ in 0..STEPS {
         let share = share(here, step);
@@ -52,19 +52,19 @@ pub(crate) fn descend<const D: usize>(
         let next_value = there[0].0.max(there[1].0);
         if next_value < value {
             let gain = value - next_value;
-            // Whether bodies that are far apart overlap, boxes tell sooner.
-            let is_slow = matches!(goal, Goal::Sign { .. }) && gain < SLOW * next_value;
+            // Whether bodies that are far apart are so, boxes tell sooner.
+            let is_slow = gain < SLOW * (next_value - goal.apart);
             (p, here, value) = (next, there, next_value);
             if is_slow {
                 break;
             }
             step *= 2.5;
-            small_gains = if gain < 0.05 * goal.tolerance() { small_gains + 1 } else { 0 };
+            small_gains = if gain < 0.05 * goal.tolerance { small_gains + 1 } else { 0 };
         } else {
             step *= 0.25;
         }
         let is_enough = goal.is_hit(value + slack);
-        if is_enough || small_gains == 2 || step < 0.05 * goal.tolerance() {
+        if is_enough || small_gains == 2 || step < 0.05 * goal.tolerance {
             break;
         }
     }

@@ -70,7 +70,7 @@ pub fn separation<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
-    let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
+    let goal = Goal::least(0.5 * limits.tolerance);
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }
 
@@ -88,6 +88,6 @@ pub fn overlap<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
-    let goal = Goal::Sign { tolerance: 0.5 * limits.tolerance };
+    let goal = Goal::sign(0.5 * limits.tolerance);
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }

@@ -98,15 +98,20 @@ impl<'a, const D: usize> Search<'a, D> {
 
     /// Searches everywhere, from the middle of what the boxes of both have in common.
     pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
-        self.best = self.couple.root(0.0).centre();
-        if let (Goal::Sign { .. }, Some(gap)) = (self.goal, self.couple.gap_of_boxes()) {
-            // Half of it is what both values are at least, somewhere between.
-            self.slack = self.couple.slack(self.best.norm() + gap);
-            if 0.5 * gap > self.slack {
-                return self.answer(Stop::SignKnown, 0.5 * gap - self.slack);
-            }
+        match self.told_by_boxes() {
+            Some(answer) => answer,
+            None => self.run_within(0.0, workspace).0,
         }
-        self.run_within(0.0, workspace).0
+    }
+
+    /// The answer, if the boxes of both bodies are as far apart as matters.
+    pub(super) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
+        let gap = self.couple.gap_of_boxes()?;
+        self.best = self.couple.root(0.0).centre();
+        // One of both values is at least half of it, everywhere.
+        self.slack = self.couple.slack(self.best.norm() + gap);
+        let lower = 0.5 * gap - self.slack;
+        (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
     /// Improves the best point, from `start`.
@@ -203,14 +208,10 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// A box that holds all points that matter, and `margin` more: where neither `g` is
-    /// more than the best so far, or, if the sign is all that is asked for, than the
-    /// tolerance. Elsewhere one is.
+    /// more than the best so far, or than what is asked for. Elsewhere one is.
     pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
         let slack = self.couple.slack(self.best.norm() + self.upper.abs());
-        let least = match self.goal {
-            Goal::Least { .. } => self.upper.max(0.0),
-            Goal::Sign { tolerance } => self.upper.clamp(0.0, tolerance.max(0.0)),
-        };
+        let least = self.goal.most(self.upper);
         self.dropped = least + slack;
         let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
         self.couple.root(grown)
@@ -248,7 +249,7 @@ impl<'a, const D: usize> Search<'a, D> {
                 least = (value, part.centre);
             }
         }
-        if least.0 < self.upper - 0.25 * self.goal.tolerance() {
+        if least.0 < self.upper - 0.25 * self.goal.tolerance {
             self.descend(least.1);
         }
         let threshold = self.threshold();

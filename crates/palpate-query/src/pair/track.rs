@@ -95,10 +95,24 @@ impl<const D: usize> Track<D> {
         limits: &Limits,
         workspace: &mut PairWorkspace<D>,
     ) -> Result<Certified<Nearest<D>>, QueryError> {
+        let goal = Goal::least(0.5 * limits.tolerance);
+        Ok(self.search(poses, goal, limits, workspace)?.0)
+    }
+
+    /// The answer, and where it is in the first shape's coordinates.
+    pub(crate) fn search(
+        &mut self,
+        poses: [Pose<D>; 2],
+        goal: Goal,
+        limits: &Limits,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
         let [a, b] = &self.shapes;
         let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
         let mut search = Search::new(couple, goal, limits);
+        if let Some(answer) = search.told_by_boxes() {
+            return Ok((answer, search.best));
+        }
         search.keeps_leaves = true;
         let mut cover = self.cover.take();
         let answer = match &mut cover {
@@ -120,7 +134,7 @@ impl<const D: usize> Track<D> {
             workspace.take_known(&mut cover.cells);
         }
         self.cover = cover;
-        Ok(answer)
+        Ok((answer, search.best))
     }
 }
 
