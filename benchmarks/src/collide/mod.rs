@@ -6,6 +6,7 @@
 mod manifolds;
 mod pairs;
 mod triangles;
+mod worlds;
 
 use std::error::Error;
 use std::time::Instant;
@@ -24,6 +25,8 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     pairs::measure(&mut rows)?;
     eprintln!("measuring manifolds …");
     manifolds::measure(&mut rows)?;
+    eprintln!("measuring worlds …");
+    worlds::measure(&mut rows)?;
     Ok(rows)
 }
 

@@ -36,9 +36,7 @@ pub(super) fn find<const D: usize>(
     let mut small = Vec::new();
     let mut parts = [Cell::NOTHING; BLOCK];
     let mut values = [[0.0; BLOCK]; 2];
-    pending.clear();
-    let count = Cell::unknown(&root).grid(&mut parts);
-    pending.extend_from_slice(&parts[..count]);
+    Cell::unknown(&root).grid(pending);
     let mut is_whole = true;
     while !pending.is_empty() {
         is_whole =

@@ -44,6 +44,11 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
+    /// The shape's box, in its own coordinates.
+    pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
+        self.aabb
+    }
+
     /// A box of the frame that holds the shape.
     pub(crate) fn aabb(&self) -> Option<Aabb<D>> {
         let aabb = self.aabb?;

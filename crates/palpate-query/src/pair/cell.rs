@@ -102,22 +102,27 @@ impl<const D: usize> Cell<D> {
         end
     }
 
-    /// The box in parts of similar sides, as many as fit into a block; how many there are.
-    pub(crate) fn grid(&self, parts: &mut [Self; BLOCK]) -> usize {
-        parts[0] = *self;
-        let mut count = 1;
-        while count << D <= BLOCK {
-            let whole = *parts;
-            let mut end = 0;
-            for cell in &whole[..count] {
-                end = cell.halve(parts, end);
+    /// Fills `cells` with the parts of the box, of similar sides, as many as fit into a
+    /// block.
+    pub(crate) fn grid(&self, cells: &mut Vec<Self>) {
+        cells.clear();
+        cells.push(*self);
+        let mut first = 0;
+        while (cells.len() - first) << D <= BLOCK {
+            let end = cells.len();
+            for i in first..end {
+                let mut parts = [Self::NOTHING; 8];
+                let count = cells[i].halve(&mut parts, 0);
+                cells.extend_from_slice(&parts[..count]);
             }
-            if end == count {
+            if cells.len() - end == end - first {
+                // A point has no parts.
+                cells.truncate(end);
                 break;
             }
-            count = end;
+            first = end;
         }
-        count
+        cells.drain(..first);
     }
 }
 

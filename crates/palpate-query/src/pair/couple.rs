@@ -177,10 +177,16 @@ impl<'a, const D: usize> Couple<'a, D> {
         grown.reduce(|a, b| common(&a, &b)).unwrap_or(nowhere)
     }
 
-    /// How far the boxes of both bodies are apart, if they are [m].
+    /// How far the boxes of both bodies are apart along a side of either, if they are [m].
     pub(crate) fn gap_of_boxes(&self) -> Option<f64> {
-        let both = self.root(0.0);
-        let gap = (0..D).fold(0.0_f64, |gap, k| gap.max(both.min[k] - both.max[k]));
+        let inside_out = |both: Aabb<D>| {
+            (0..D).fold(f64::NEG_INFINITY, |gap, k| gap.max(both.min[k] - both.max[k]))
+        };
+        let [Some(a), Some(b)] = self.aabbs else { return None };
+        let mut gap = inside_out(common(&a, &b));
+        if let Some(second) = self.bodies[1].own_box() {
+            gap = gap.max(inside_out(common(&a.placed(&self.second_from_frame), &second)));
+        }
         (gap > 0.0).then_some(gap)
     }
 }

@@ -128,14 +128,16 @@ impl<'a, const D: usize> Search<'a, D> {
         margin: f64,
         workspace: &mut PairWorkspace<D>,
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
-        self.descend(self.couple.root(0.0).centre());
+        let both = self.couple.root(0.0);
+        self.slack = self.couple.slack(reach(&both));
+        self.descend(both.centre());
         let root = self.root(margin);
-        workspace.pending.clear();
-        let mut parts = [Cell::NOTHING; BLOCK];
-        let count = Cell::unknown(&root).grid(&mut parts);
-        workspace.pending.extend_from_slice(&parts[..count]);
-        workspace.leaves.clear();
         self.slack = self.couple.slack(reach(&root));
+        workspace.leaves.clear();
+        if self.goal.is_hit(self.upper + self.slack) {
+            return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
+        }
+        Cell::unknown(&root).grid(&mut workspace.pending);
         (self.refine(&root, workspace), root)
     }
 
