@@ -53,8 +53,8 @@ pub use element::Element;
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use pair::{
-    Escape, Nearest, PairWorkspace, PoseDerivative, Rates, Track, escape, overlap, rates,
-    separation,
+    Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
+    overlap, proof, rates, separation,
 };
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};
