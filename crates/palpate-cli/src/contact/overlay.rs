@@ -62,7 +62,8 @@ impl<const D: usize> Touched<D> {
             isolines = isolines.with_polyline(boxes.faint());
         }
         let is_seen = |contact: &&Contact<D>| {
-            plane.elevation(in_space((contact.point_a + contact.point_b) * 0.5)).abs() <= self.near
+            plane.elevation(in_space((contact.point_a + contact.point_b) * 0.5)).abs()
+                <= self.near
         };
         let contacts = |is_apart: bool| {
             let pairs = self.pairs.iter();
@@ -91,7 +92,10 @@ impl<const D: usize> Touched<D> {
 }
 
 /// Where the plane cuts the boxes of a proof: closed lines.
-fn cuts<const D: usize>(proof: &Proof<D>, plane: &Slice) -> impl Iterator<Item = Vec<[f64; 2]>> {
+fn cuts<const D: usize>(
+    proof: &Proof<D>,
+    plane: &Slice,
+) -> impl Iterator<Item = Vec<[f64; 2]>> {
     let world = proof.world_from_boxes;
     proof.boxes.iter().filter_map(move |part| {
         let Aabb { min, max } = part.aabb;

@@ -5,8 +5,8 @@
 
 use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof, Verdict,
-    World, WorldSettings, proof, separation,
+    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
+    Verdict, World, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
