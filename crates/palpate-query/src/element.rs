@@ -3,9 +3,9 @@
 
 //! Segments and triangles.
 
-use palpate_field::{LARGEST_LENGTH, Point, Vector};
+use palpate_field::{Point, Vector};
 
-use crate::error::QueryError;
+use crate::error::{QueryError, check_coordinates};
 
 /// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
 /// Points may coincide.
@@ -22,10 +22,8 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// If a coordinate is not finite or beyond 1e15 m.
     pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        for value in vertices.iter().flat_map(|vertex| vertex.0) {
-            if value.is_nan() || value.abs() > LARGEST_LENGTH {
-                return Err(QueryError::Coordinate { what: "a vertex", value });
-            }
+        for vertex in vertices {
+            check_coordinates("a vertex", vertex)?;
         }
         Ok(Self { vertices })
     }

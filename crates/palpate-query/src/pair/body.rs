@@ -8,6 +8,8 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
 use super::cell::reach;
+use crate::error::QueryError;
+use crate::placed::Placed;
 
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
@@ -47,6 +49,14 @@ impl<'a, const D: usize> Body<'a, D> {
     /// The shape's box, in its own coordinates.
     pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
         self.aabb
+    }
+
+    /// The shape in the frame of the world.
+    pub(crate) fn in_world(placed: Placed<'a, D>) -> Result<Self, QueryError> {
+        if !placed.world_from_body.is_finite() {
+            return Err(QueryError::Pose);
+        }
+        Ok(Self::new(placed.shape, placed.world_from_body.inverse()))
     }
 
     /// A box of the frame that holds the shape.

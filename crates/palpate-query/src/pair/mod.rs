@@ -22,7 +22,7 @@
 //! second order. Points are improved by minimax proximal steps: the maximum of the two
 //! tangent planes plus a parabola is least at a step along a mean of both gradients.
 
-mod body;
+pub(crate) mod body;
 pub(crate) mod cell;
 pub(crate) mod couple;
 pub(crate) mod descent;
