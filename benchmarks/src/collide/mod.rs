@@ -3,6 +3,7 @@
 
 //! Searches that prove where things touch.
 
+mod local;
 mod manifolds;
 mod pairs;
 mod triangles;
@@ -23,9 +24,11 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     for work in scenes::spatial()? {
         eprintln!("measuring triangles on {} …", work.name);
         triangles::measure(&work, &mut rows)?;
+        local::triangles(&work, &mut rows)?;
     }
     eprintln!("measuring pairs …");
     pairs::measure(&mut rows)?;
+    local::pairs(&mut rows)?;
     eprintln!("measuring manifolds …");
     manifolds::measure(&mut rows)?;
     eprintln!("measuring worlds …");

@@ -31,7 +31,7 @@ const FAR: f64 = 4.0;
 const STEPS: usize = 50;
 
 /// Two bodies.
-type Pair<'a, const D: usize> = [Placed<'a, D>; 2];
+pub(super) type Pair<'a, const D: usize> = [Placed<'a, D>; 2];
 
 /// A way of asking.
 type Ask<'a, const D: usize> = fn(
@@ -48,14 +48,20 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     of(spatial.iter().find(|work| work.name == "S3").ok_or_else(find("S3"))?, rows)?;
     let planar = scenes::planar()?;
     of(planar.iter().find(|work| work.name == "P3").ok_or_else(find("P3"))?, rows)?;
-    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
-    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let [plate, torus] = plate_and_torus()?;
     let pairs = placed([&plate, &torus], -0.001)?;
     ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)?;
     let bar = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.02]))?);
     let ring = Shape::from_kernel(Ring::new(0.2, 0.5)?);
     let pairs = placed([&bar, &ring], -0.001)?;
     ask("pair.sign.bar_ring.-1mm", overlap, 1e-7, &pairs, rows)
+}
+
+/// A thin plate, and a torus.
+pub(super) fn plate_and_torus() -> Result<[Shape<3>; 2], Box<dyn Error>> {
+    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    Ok([plate, torus])
 }
 
 /// The rows of a work against itself.
@@ -156,7 +162,7 @@ where
 
 /// The second body turned at random and moved along a random way to the first place at
 /// which the separation is `gap`, coming from afar.
-fn placed<'a, const D: usize>(
+pub(super) fn placed<'a, const D: usize>(
     [a, b]: [&'a Shape<D>; 2],
     gap: f64,
 ) -> Result<Vec<Pair<'a, D>>, Box<dyn Error>>

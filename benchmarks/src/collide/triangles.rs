@@ -15,7 +15,7 @@ use crate::random::Random;
 use crate::scenes::Work;
 
 /// How large triangles are: their corners lie in balls of these radii [m].
-const SIZES: [f64; 2] = [0.05, 0.3];
+pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
 
 /// Triangles of each size.
 const COUNT: usize = 400;
@@ -23,7 +23,7 @@ const COUNT: usize = 400;
 /// How far from the surface the balls' centres are at most, as a share of the size.
 const NEAR: f64 = 0.7;
 
-type Triangle = Element<3, 3>;
+pub(super) type Triangle = Element<3, 3>;
 
 /// A way of asking.
 type Ask = fn(&Shape<3>, &Triangle, &Limits, &mut Workspace<3, 3>) -> Certified<Point<3>>;
@@ -61,7 +61,7 @@ pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Err
 
 /// Triangles near the surface: points of a cube moved along the gradient to at most
 /// [`NEAR`] sizes from it, and three corners about each.
-fn near(shape: &Shape<3>, size: f64) -> Result<Vec<Triangle>, Box<dyn Error>> {
+pub(super) fn near(shape: &Shape<3>, size: f64) -> Result<Vec<Triangle>, Box<dyn Error>> {
     let mut random = Random::new(7);
     let mut triangles = Vec::with_capacity(COUNT);
     while triangles.len() < COUNT {
