@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use palpate::query::local::ElementMethod;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -56,6 +57,17 @@ Bounds are of the separation: between bodies that are exact outside, their dista
 bodies that overlap, minus the width of the widest ball in both. The truth lies between
 them, rounding included. A pair that the budget leaves open is undecided, with bounds.")]
     Contact(ContactOptions),
+    /// Follow a local search over a triangle or a segment, beside the proven minimum.
+    #[command(after_help = "\
+Examples:
+  palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99
+  palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99 \\
+    --method frank_wolfe --plot descent.png
+  palpate descend scenes/s3.json --segment -1,0,0 1,0.2,0.1 --method golden_section --json
+
+A local search finds an upper bound of the least value and proves nothing; what it
+missed is said.")]
+    Descend(DescendOptions),
     /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
     #[command(after_help = "\
 Examples:
@@ -184,6 +196,44 @@ pub(crate) struct EvalOptions {
     #[arg(long, requires = "points")]
     pub(crate) threads: Option<usize>,
     /// Print JSON: one object, or one a line.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Where a search goes down, and how.
+#[derive(Args, Debug)]
+pub(crate) struct DescendOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// The corners of a triangle, each with its coordinates joined by commas [m].
+    #[arg(
+        long,
+        value_name = "POINT",
+        num_args = 3,
+        required_unless_present = "segment",
+        allow_hyphen_values = true
+    )]
+    pub(crate) triangle: Vec<String>,
+    /// The ends of a segment [m].
+    #[arg(
+        long,
+        value_name = "POINT",
+        num_args = 2,
+        conflicts_with = "triangle",
+        allow_hyphen_values = true
+    )]
+    pub(crate) segment: Vec<String>,
+    /// The search: projected_gradient, frank_wolfe or golden_section.
+    #[arg(long, default_value_t = ElementMethod::ProjectedGradient)]
+    pub(crate) method: ElementMethod,
+    /// How far apart the proven bounds of the minimum may be [m]; a ten-thousandth of
+    /// the longest edge if left out.
+    #[arg(long)]
+    pub(crate) tolerance: Option<f64>,
+    /// Draw the path over the isolines on the element's plane: .svg or .png.
+    #[arg(long, value_name = "PICTURE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print JSON, with the points of the path.
     #[arg(long)]
     pub(crate) json: bool,
 }
