@@ -377,6 +377,62 @@ fn plot_refuses_maps_that_are_none() {
     }
 }
 
+/// Between two tips a descent stops; the other tip is lower, which the bounds prove.
+#[test]
+fn descend_says_what_was_missed() {
+    let folder = Folder::new();
+    let plot = folder.name("descent.svg");
+    let star = ["descend", "scenes/memoir_star.json", "--json", "--plot", &plot];
+    let corners = ["--triangle", "1.35,1.1", "1.8,0.45", "1.0,0.99"];
+    let answer = json(&[&star[..], &corners].concat());
+    let number = |value: &Value| value.as_f64().unwrap();
+    let [lower, upper] = ["lower_m", "upper_m"].map(|key| number(&answer["certified"][key]));
+    assert!(lower <= upper && upper - lower < 1e-3, "{answer}");
+    assert!(number(&answer["value_m"]) > upper + 0.04, "{answer}");
+    assert_eq!(number(&answer["missed_by_m"]), number(&answer["value_m"]) - upper);
+    assert_eq!(answer["path_m"][0], serde_json::json!([1.0, 0.99]));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    for word in ["projected_gradient", "triangle", "start", "best found", "proven minimum"] {
+        assert!(words.contains(&word), "{word} in {words:?}");
+    }
+    // In space, a segment: any plane through it.
+    let plot = folder.name("segment.png");
+    let segment = ["descend", "scenes/s3.json", "--segment", "-1,0,0", "1,0.2,0.1"];
+    let method = ["--method", "golden_section", "--plot", &plot];
+    let output = palpate(&[&segment[..], &method].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    assert!(text(&output).contains("missed by"), "{}", text(&output));
+    assert_eq!(&std::fs::read(&plot).unwrap()[1..4], b"PNG");
+    for wrong in [
+        &["--method", "newton"][..],
+        &["--tolerance", "nan"],
+        &["--triangle", "0,0,0", "1,0,0", "0,1,0"],
+    ] {
+        let output = palpate(&[&segment[..], wrong].concat());
+        assert_eq!(status(&output), 2, "{wrong:?}");
+        assert!(!errors(&output).is_empty());
+    }
+}
+
+/// As they stand in the guide, but for where pictures go.
+#[test]
+fn descents_of_the_guide_run() {
+    let folder = Folder::new();
+    let guide = include_str!("../../../docs/guide/memoir.md");
+    let commands = guide.lines().filter_map(|line| line.strip_prefix("palpate descend "));
+    let mut count = 0;
+    for command in commands {
+        let (arguments, picture) = command.split_once(" --plot ").unwrap();
+        let arguments: Vec<_> = arguments.split(' ').collect();
+        let plot = folder.name(picture);
+        let output = palpate(&[&["descend"], &arguments[..], &["--plot", &plot]].concat());
+        assert_eq!(status(&output), 0, "{command}: {}", errors(&output));
+        count += 1;
+    }
+    assert!(count > 0, "the guide has no descents");
+}
+
 /// The built-in scene, felt without waiting for the clock, twice the same.
 #[test]
 fn feel_reports_traces_and_draws() {
