@@ -415,6 +415,23 @@ fn descend_says_what_was_missed() {
     }
 }
 
+/// Two bodies that overlap on one side alone: the start decides what is found.
+#[test]
+fn descend_between_bodies_finds_what_is_near_its_start() {
+    let bodies = ["descend", "scenes/memoir_two_bodies.json", "--json"];
+    let starts = ["--start", "-0.2,0.5", "--start", "0.15,0.4"];
+    for method in ["alternating_projection", "minimax_proximal"] {
+        let answer = json(&[&bodies[..], &starts, &["--method", method]].concat());
+        let value = |i: usize| answer["descents"][i]["value_m"].as_f64().unwrap();
+        assert!(value(0) > 0.009 && value(1) <= 0.0, "{answer}");
+        let lower = answer["certified"]["separation_lower_m"].as_f64().unwrap();
+        assert!((lower + 0.05).abs() < 1e-3 && lower <= 2.0 * value(1), "{answer}");
+    }
+    let one = palpate(&["descend", "scenes/s1.json", "--start", "1,1,1"]);
+    assert_eq!(status(&one), 2);
+    assert!(errors(&one).contains("two bodies or more, this has 1"));
+}
+
 /// As they stand in the guide, but for where pictures go.
 #[test]
 fn descents_of_the_guide_run() {

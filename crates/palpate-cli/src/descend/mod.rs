@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate descend`: a local search over an element, beside the proven minimum.
+//! `palpate descend`: a local search over an element or between two bodies, beside what is
+//! proven.
+
+mod pair;
 
 use std::io::Write;
 use std::path::Path;
+use std::str::FromStr;
 
 use palpate::field::{Point, Shape, Vector};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
 use palpate::query::local::{Descent, ElementMethod};
-use palpate::query::{Certified, Element, Limits, Workspace, minimum};
+use palpate::query::{Certified, Element, Limits, QueryError, Workspace, minimum};
 use palpate::scene::{BuiltScene, World};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::arguments::DescendOptions;
 use crate::input::{self, joined, promise_in_words};
@@ -39,7 +43,9 @@ fn over_points<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    if options.triangle.is_empty() {
+    if !options.start.is_empty() {
+        pair::between(options, scene)
+    } else if options.triangle.is_empty() {
         descend(options, scene, &element::<2, D>(&options.segment)?)
     } else {
         descend(options, scene, &element::<3, D>(&options.triangle)?)
@@ -71,8 +77,11 @@ fn descend<const N: usize, const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    let limits = limits(options.tolerance, element)?;
-    let method = options.method;
+    let edges = element.vertices().iter().zip(element.vertices().iter().skip(1));
+    let last = (element.vertices()[0] - element.vertices()[N - 1]).norm();
+    let longest = edges.fold(last, |longest, (a, b)| longest.max((*a - *b).norm()));
+    let limits = limits(options.tolerance, longest)?;
+    let method = method(options, ElementMethod::ProjectedGradient)?;
     let answer = Answer {
         method,
         found: method.descend(&scene.whole, element),
@@ -86,16 +95,19 @@ where
     Ok(Outcome::Yes)
 }
 
-fn limits<const N: usize, const D: usize>(
-    tolerance: Option<f64>,
-    element: &Element<N, D>,
-) -> Result<Limits, Failure> {
-    let [first, .., last] = element.vertices().as_slice() else {
-        return Err(Failure::input("an element has two points at least"));
-    };
-    let edges = element.vertices().windows(2).map(|pair| (pair[0] - pair[1]).norm());
-    let longest = edges.fold((*first - *last).norm(), f64::max);
-    let tolerance = tolerance.unwrap_or(TOLERANCE * longest);
+/// The method that is asked for, or `first`.
+fn method<T: FromStr<Err = QueryError>>(
+    options: &DescendOptions,
+    first: T,
+) -> Result<T, Failure> {
+    let name = options.method.as_deref();
+    name.map_or(Ok(first), str::parse)
+        .map_err(|error| Failure::input(format!("--method: {error}")))
+}
+
+/// Those of the search with a proof, about something of this size [m].
+fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
+    let tolerance = tolerance.unwrap_or(TOLERANCE * size);
     // Written so that what is no number is refused.
     if tolerance >= 0.0 && tolerance.is_finite() {
         Ok(Limits { tolerance, ..Limits::default() })
@@ -103,6 +115,27 @@ fn limits<const N: usize, const D: usize>(
         let rule = "--tolerance must be finite and zero or more";
         Err(Failure::input(format!("{rule}, got {tolerance:?} m")))
     }
+}
+
+/// What a local search found, for JSON.
+fn described<const D: usize>(found: &Descent<D>) -> Value {
+    let path: Vec<_> = found.path.iter().map(|p| p.0.to_vec()).collect();
+    json!({
+        "best_point_m": found.best.0.to_vec(),
+        "value_m": found.value,
+        "steps": found.steps,
+        "evaluations": found.evaluations,
+        "path_m": path,
+    })
+}
+
+/// A length as figures have it.
+fn written(length: f64) -> String {
+    /// Of a metre.
+    const ROUND: f64 = 1e5;
+    // Zero has no sign.
+    let rounded = (length * ROUND).round() / ROUND + 0.0;
+    format!("{rounded:.5} m").replace('-', "−")
 }
 
 impl<const D: usize> Answer<D> {
@@ -115,21 +148,14 @@ impl<const D: usize> Answer<D> {
         let Self { method, found, certified } = self;
         let mut out = std::io::stdout().lock();
         if as_json {
-            let path: Vec<_> = found.path.iter().map(|p| p.0.to_vec()).collect();
-            let answer = json!({
-                "method": method.name(),
-                "best_point_m": found.best.0.to_vec(),
-                "value_m": found.value,
-                "steps": found.steps,
-                "evaluations": found.evaluations,
-                "path_m": path,
-                "certified": {
-                    "best_point_m": certified.best.0.to_vec(),
-                    "lower_m": certified.lower,
-                    "upper_m": certified.upper,
-                    "evaluations": certified.evaluations,
-                },
-                "missed_by_m": self.missed_by(),
+            let mut answer = described(found);
+            answer["method"] = method.name().into();
+            answer["missed_by_m"] = self.missed_by().into();
+            answer["certified"] = json!({
+                "best_point_m": certified.best.0.to_vec(),
+                "lower_m": certified.lower,
+                "upper_m": certified.upper,
+                "evaluations": certified.evaluations,
             });
             writeln!(out, "{answer:#}")?;
             return Ok(());
@@ -179,8 +205,7 @@ where
         .with_markers(Markers::new("start", found.path.first().map(on_plane))?)
         .with_markers(Markers::new("best found", [on_plane(&found.best)])?)
         .with_markers(Markers::new("proven minimum", [on_plane(&certified.best)])?);
-    let [value, lower, upper] = [found.value, certified.lower, certified.upper]
-        .map(|value| format!("{value:.5} m").replace('-', "−"));
+    let [value, lower, upper] = [found.value, certified.lower, certified.upper].map(written);
     let promise = promise_in_words(shape.promise());
     let caption = format!("{promise}. Found: {value}; proven: {lower} to {upper}.");
     Ok(Figure::new(title(scene)).with_caption(caption).with_isolines(isolines))
