@@ -4,59 +4,10 @@
 //! The program as its users run it.
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use common::{Folder, errors, json, palpate, status, text};
 use serde_json::Value;
-
-fn palpate(arguments: &[&str]) -> Output {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    Command::new(env!("CARGO_BIN_EXE_palpate"))
-        .args(arguments)
-        .current_dir(repository)
-        .output()
-        .unwrap()
-}
-
-fn status(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = palpate(arguments);
-    assert_eq!(status(&output), 0, "{}", errors(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// A folder of its own for a test's files.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn name(&self, name: &str) -> String {
-        self.path(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        std::fs::write(self.path(name), text).unwrap();
-        self.name(name)
-    }
-}
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
