@@ -7,32 +7,40 @@
 use std::num::NonZero;
 use std::thread;
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, ShapeError};
-use palpate_query::{Certified, Limits, Nearest, PairWorkspace, Stop, overlap, separation};
+use palpate_field::ShapeError;
+use palpate_query::{
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Stop, overlap, separation,
+};
 use palpate_testkit::kernels::Space;
 use palpate_testkit::recall::{GAPS, Pair, Row, Turned, in_space, in_the_plane, rows};
 
-/// Of so many searches, one may spend its budget.
-const SEARCHES_A_FAILURE: usize = 1000;
+/// The share of searches that may spend their budget: for the sign, and for a separation
+/// to a tenth of a millimetre, which fields creased everywhere (`bumpy_ball_frame`) miss.
+const SIGNS_SPENT: f64 = 0.001;
+const SEPARATIONS_SPENT: f64 = 0.01;
 
 /// Of so many rows, the truth of one is proven anew.
 const ROWS_A_PROOF: usize = 100;
 
-/// What is wrong with answers, and how many searches spent their budget.
+const SEPARATION: &str = "separation";
+const SIGN: &str = "overlap";
+const BUILT: &str = "overlap of the built motion";
+
+/// What was asked of rows, and what is wrong with the answers.
 #[derive(Default)]
 struct Report {
-    searches: usize,
-    spent: Vec<String>,
+    rows: usize,
     wrong: Vec<String>,
+    signs_spent: Vec<String>,
+    separations_spent: Vec<String>,
 }
 
 impl Report {
     fn add(&mut self, other: Self) {
-        self.searches += other.searches;
-        self.spent.extend(other.spent);
+        self.rows += other.rows;
         self.wrong.extend(other.wrong);
+        self.signs_spent.extend(other.signs_spent);
+        self.separations_spent.extend(other.separations_spent);
     }
 }
 
@@ -69,7 +77,7 @@ where
     whole
 }
 
-/// Both answers for a row.
+/// Asks for a row whether the bodies overlap, and for their separation.
 fn answers<const D: usize>(
     pair: &Pair<D>,
     row: &Row<D>,
@@ -77,41 +85,42 @@ fn answers<const D: usize>(
 ) -> Result<Report, ShapeError>
 where
     Space: Turned<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
 {
     let limits = Limits::default();
-    let [a, b] = row.bodies(pair)?;
-    let mut report = Report::default();
-    let mut judge = |what: &str, answer: &Certified<Nearest<D>>, is_hit: Option<bool>| {
-        report.searches += 1;
+    let [a, b] = &pair.bodies;
+    let there = Placed::new(b, row.pose()?);
+    let built = b.clone().placed(&row.pose()?)?;
+    let mut report = Report { rows: 1, ..Report::default() };
+    let mut ask = |what: &str, answer: Result<Certified<Nearest<D>>, QueryError>| {
         let complaint = format!("{what} of {row}: {answer:?}");
-        if answer.stop == Stop::BudgetSpent {
-            report.spent.push(complaint.clone());
-        }
-        let is_within = answer.lower <= row.truth.upper && row.truth.lower <= answer.upper;
-        let has_sign = answer.stop == Stop::BudgetSpent || is_hit == answer.is_hit();
+        let Ok(answer) = answer else { return report.wrong.push(complaint) };
+        let is_spent = answer.stop == Stop::BudgetSpent;
+        // The box of a built motion is larger, and so are some separations less.
+        let is_less = what == BUILT;
+        let is_right = answer.is_hit() == Some(row.truth.upper < 0.0);
+        // All gaps are larger than the tolerance: the sign must be known.
+        let has_sign = is_right || answer.is_hit().is_none() && (is_spent || is_less);
+        let is_above = is_less || row.truth.lower <= answer.upper;
+        let is_within = is_above && answer.lower <= row.truth.upper;
         let is_narrow =
             answer.stop != Stop::Converged || answer.upper - answer.lower <= limits.tolerance;
-        if !(is_within && has_sign && is_narrow) {
+        if !(has_sign && is_within && is_narrow) {
             report.wrong.push(complaint);
+        } else if is_spent && what == SEPARATION {
+            report.separations_spent.push(complaint);
+        } else if is_spent {
+            report.signs_spent.push(complaint);
         }
     };
-    let is_hit = Some(row.truth.upper < 0.0);
-    match (overlap(&a, &b, &limits, workspace), separation(&a, &b, &limits, workspace)) {
-        (Ok(sign), Ok(whole)) => {
-            // All gaps are larger than the tolerance: both must know the sign.
-            judge("overlap", &sign, is_hit);
-            judge("separation", &whole, is_hit);
-        }
-        refused => report.wrong.push(format!("{row}: {refused:?}")),
-    }
+    ask(SEPARATION, separation(a, there, &limits, workspace));
+    ask(SIGN, overlap(a, there, &limits, workspace));
+    ask(BUILT, overlap(a, &built, &limits, workspace));
     Ok(report)
 }
 
 fn replay<const D: usize>(pairs: &[Pair<D>]) -> Report
 where
     Space: Turned<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
 {
     let rows = rows::<D>().unwrap();
     let expected: usize = pairs.iter().map(|pair| pair.rows).sum();
@@ -124,11 +133,18 @@ where
 }
 
 fn assert_all_right(report: &Report) {
-    let Report { searches, spent, wrong } = report;
-    let lines = |what: &[String]| what.iter().take(20).map(|line| format!("\n{line}")).collect::<String>();
-    assert!(wrong.is_empty(), "{} of {searches} are wrong{}", wrong.len(), lines(wrong));
-    let allowed = searches / SEARCHES_A_FAILURE;
-    assert!(spent.len() <= allowed, "{} of {searches} are spent{}", spent.len(), lines(spent));
+    let some = |what: &[String]| {
+        what.iter().take(20).map(|line| format!("\n{line}")).collect::<String>()
+    };
+    let Report { rows, wrong, signs_spent, separations_spent } = report;
+    assert!(wrong.is_empty(), "{} of {rows} rows are wrong{}", wrong.len(), some(wrong));
+    for (what, spent, share) in [
+        (SIGN, signs_spent, 2.0 * SIGNS_SPENT),
+        (SEPARATION, separations_spent, SEPARATIONS_SPENT),
+    ] {
+        let is_few = spent.len() as f64 <= share * *rows as f64;
+        assert!(is_few, "{} of {rows}, {what}, are spent{}", spent.len(), some(spent));
+    }
 }
 
 #[test]
@@ -153,7 +169,7 @@ where
     on_rows(pairs, &some, |pair, row, _| {
         let again = row.prove(pair)?;
         let is_within = row.truth.lower <= again.upper && again.lower <= row.truth.upper;
-        let mut report = Report { searches: 1, ..Report::default() };
+        let mut report = Report { rows: 1, ..Report::default() };
         if !(is_within && again.has_sign()) {
             report.wrong.push(format!("{row} is {again:?} now; see `cargo xtask oracle`"));
         }
@@ -165,7 +181,7 @@ where
 fn what_is_known_of_poses_is_found_again() -> Result<(), ShapeError> {
     let mut report = proven_anew(&in_space()?);
     report.add(proven_anew(&in_the_plane()?));
-    assert!(report.searches >= 120);
+    assert!(report.rows >= 120);
     assert_all_right(&report);
     Ok(())
 }

@@ -17,7 +17,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use palpate_field::{Aabb, Point, Shape, Vector};
+use palpate_field::{Aabb, Point, Pose, Shape, Vector};
 
 /// Roundings of places, of distances to boxes and of radii, relative to the largest
 /// coordinate.
@@ -56,75 +56,100 @@ impl Interval {
     }
 }
 
-/// Bounds the separation of `bodies` until `is_enough`, or `cells` were looked at.
+/// Bounds the separation of two shapes, each where its pose `world_from_body` puts it,
+/// until `is_enough`, or `cells` were looked at.
 ///
 /// # Panics
 ///
 /// If neither body is bounded, or a field's steepness is known in a region alone.
 pub fn separation<const D: usize>(
-    bodies: [&Shape<D>; 2],
+    bodies: [(&Shape<D>, Pose<D>); 2],
     cells: usize,
     is_enough: impl Fn(&Interval) -> bool,
 ) -> Interval {
-    let bodies = bodies.map(Body::new);
+    let bodies = bodies.map(|(shape, pose)| Body::new(shape, pose));
     let start = common(&bodies, 0.0).centre();
     let mut search = Search { bodies, best: f64::INFINITY, slack: 0.0 };
     search.polish(start, search.value(start).abs());
     // Farther from one of the boxes than the best value, that body's g is more than it.
     let margin = search.best.max(0.0) * (1.0 + ROUNDINGS);
     let root = common(&search.bodies, margin + ROUNDINGS * search.reach(start.norm() + margin));
-    search.slack = search.rounding(search.reach(root.centre().norm()));
+    let reach = search.reach(root.centre().norm());
+    search.slack = search.bodies.iter().map(|body| body.rounding(reach)).fold(0.0, f64::max);
     search.halve(root, cells, is_enough)
 }
 
 /// A field, and what makes `g` of it.
 struct Body<'a, const D: usize> {
     shape: &'a Shape<D>,
+    world_from_body: Pose<D>,
+    body_from_world: Pose<D>,
     lipschitz: f64,
+    /// In the shape's coordinates.
     aabb: Option<Aabb<D>>,
 }
 
 impl<'a, const D: usize> Body<'a, D> {
-    fn new(shape: &'a Shape<D>) -> Self {
+    fn new(shape: &'a Shape<D>, world_from_body: Pose<D>) -> Self {
         let promise = shape.promise();
         assert!(promise.region.is_none(), "a field that is steeper elsewhere: {shape:?}");
         Self {
             shape,
+            world_from_body,
+            body_from_world: world_from_body.inverse(),
             lipschitz: promise.lipschitz.max(1.0),
             aabb: promise.bounds.map(|bounds| bounds.aabb),
         }
     }
 
-    /// From the nearest point of the box to `p`; zero inside.
-    fn from_box(&self, p: Point<D>) -> Vector<f64, D> {
+    /// From the nearest point of the box to a point in the shape's coordinates; zero
+    /// inside.
+    fn from_box(&self, local: Point<D>) -> Vector<f64, D> {
         self.aabb.map_or(Vector::ZERO, |aabb| {
-            Vector(std::array::from_fn(|k| p[k] - p[k].clamp(aabb.min[k], aabb.max[k])))
+            Vector(std::array::from_fn(|k| local[k] - local[k].clamp(aabb.min[k], aabb.max[k])))
         })
     }
 
     fn value(&self, p: Point<D>) -> f64 {
-        let inner = self.shape.distance(p) / self.lipschitz;
-        let outside = self.from_box(p).norm();
+        let local = self.body_from_world.transform_point(p);
+        let inner = self.shape.distance(local) / self.lipschitz;
+        let outside = self.from_box(local).norm();
         if outside > 0.0 { inner.max(outside) } else { inner }
     }
 
     fn slope(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
-        let (f, gradient) = self.shape.distance_gradient(p);
+        let local = self.body_from_world.transform_point(p);
+        let (f, gradient) = self.shape.distance_gradient(local);
         let inner = f / self.lipschitz;
-        let away = self.from_box(p);
+        let away = self.from_box(local);
         let outside = away.norm();
-        if outside > 0.0 && outside > inner {
+        let (value, slope) = if outside > 0.0 && outside > inner {
             (outside, away * (1.0 / outside))
         } else {
             (inner, gradient * (1.0 / self.lipschitz))
-        }
+        };
+        (value, self.world_from_body.transform_vector(slope))
+    }
+
+    /// The farthest from the world's or the shape's origin that the shape is [m].
+    fn reach(&self) -> f64 {
+        let radius = self.shape.promise().bounds.map_or(0.0, |b| b.radius_about_origin());
+        radius + self.world_from_body.translation.norm()
+    }
+
+    /// What `g` may be off by within `reach` of the world's origin [m].
+    fn rounding(&self, reach: f64) -> f64 {
+        let reach = reach + self.world_from_body.translation.norm();
+        self.shape.promise().rounding.within(reach) + ROUNDINGS * reach
     }
 }
 
 /// What both boxes have in common, grown by `margin`; between them, if nothing.
 fn common<const D: usize>(bodies: &[Body<'_, D>; 2], margin: f64) -> Aabb<D> {
-    let boxes: Vec<Aabb<D>> =
-        bodies.iter().filter_map(|body| body.aabb.map(|aabb| aabb.grown(margin))).collect();
+    let grown = |body: &Body<'_, D>| {
+        body.aabb.map(|aabb| aabb.placed(&body.world_from_body).grown(margin))
+    };
+    let boxes: Vec<Aabb<D>> = bodies.iter().filter_map(grown).collect();
     let [first, others @ ..] = &boxes[..] else { panic!("both bodies are unbounded") };
     let mut whole = *first;
     for other in others {
@@ -179,15 +204,8 @@ impl<const D: usize> Search<'_, D> {
 
     /// The largest distance from the origin that matters about there [m].
     fn reach(&self, distance: f64) -> f64 {
-        let farthest = |body: &Body<'_, D>| {
-            body.shape.promise().bounds.map_or(0.0, |bounds| bounds.radius_about_origin())
-        };
-        distance + self.best.abs() + farthest(&self.bodies[0]) + farthest(&self.bodies[1])
-    }
-
-    fn rounding(&self, reach: f64) -> f64 {
-        let of = |body: &Body<'_, D>| body.shape.promise().rounding.within(reach);
-        of(&self.bodies[0]).max(of(&self.bodies[1])) + ROUNDINGS * reach
+        let [a, b] = &self.bodies;
+        distance + self.best.abs() + a.reach() + b.reach()
     }
 
     fn interval(&self, lower: f64) -> Interval {
@@ -289,7 +307,7 @@ fn steps<const D: usize>(
 #[cfg(test)]
 mod tests {
     use palpate_field::kernel::{Ball, Cuboid};
-    use palpate_field::{Shape, ShapeError, Vector};
+    use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 
     use super::separation;
 
@@ -297,13 +315,17 @@ mod tests {
     fn balls_and_a_box_are_as_far_apart_as_they_are() -> Result<(), ShapeError> {
         let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
         let small = Shape::from_kernel(Ball::new(0.3)?);
-        let block = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.6, 0.8]))?);
+        let block = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4, 0.8]))?);
+        let turn = Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 2.0)?;
         for gap in [0.01, -0.02] {
-            let way = Vector([0.48, 0.6, 0.64]) * (0.8 + gap);
-            let other = small.clone().translated(way)?;
-            let beside = block.clone().translated(Vector([0.7 + gap, 0.1, -0.1]))?;
-            for pair in [[&ball, &other], [&ball, &beside]] {
-                let answer = separation(pair, 200_000, |interval| interval.is_within(0.05));
+            let centre = Pose::new(turn, Vector([3.0, 0.5, -1.0]));
+            let way = Pose::translation(Vector([0.48, 0.6, 0.64]) * (0.8 + gap));
+            let beside = Pose::translation(Vector([0.1, 0.7 + gap, -0.1]));
+            for (other, way) in [(&small, way), (&block, beside)] {
+                let answer =
+                    separation([(&ball, centre), (other, centre * way)], 200_000, |s| {
+                        s.is_within(0.05)
+                    });
                 assert!(answer.lower <= gap && gap <= answer.upper, "{answer:?}");
                 assert!(answer.is_within(0.05), "{answer:?}");
             }

@@ -125,15 +125,23 @@ impl<const D: usize> Row<D>
 where
     Space: Turned<D>,
 {
-    /// The bodies as they are in this row.
+    /// Where the second body is, `world_from_body`.
     ///
     /// # Errors
     ///
     /// If the rotation is none.
-    pub fn bodies(&self, pair: &Pair<D>) -> Result<[Shape<D>; 2], ShapeError> {
-        let pose = Pose::new(<Space as Turned<D>>::rotation(&self.turn)?, self.offset);
-        let [a, b] = pair.bodies.clone();
-        Ok([a, b.placed(&pose)?])
+    pub fn pose(&self) -> Result<Pose<D>, ShapeError> {
+        Ok(Pose::new(<Space as Turned<D>>::rotation(&self.turn)?, self.offset))
+    }
+
+    fn separation(
+        &self,
+        pair: &Pair<D>,
+        cells: usize,
+        is_enough: impl Fn(&Interval) -> bool,
+    ) -> Result<Interval, ShapeError> {
+        let [a, b] = &pair.bodies;
+        Ok(separation([(a, Pose::identity()), (b, self.pose()?)], cells, is_enough))
     }
 
     /// The separation of the row's bodies, proven anew.
@@ -142,8 +150,7 @@ where
     ///
     /// If the rotation is none.
     pub fn prove(&self, pair: &Pair<D>) -> Result<Interval, ShapeError> {
-        let [a, b] = self.bodies(pair)?;
-        Ok(separation([&a, &b], CELLS, |interval| interval.is_within(SHARE)))
+        self.separation(pair, CELLS, |interval| interval.is_within(SHARE))
     }
 }
 
@@ -256,9 +263,8 @@ where
     let (mut near, mut far) = (0.0, FAR);
     let mut is_less = |apart: f64| {
         row.offset = Vector((towards + way * apart).0.map(|x| rounded(x, GRID)));
-        let [a, b] = row.bodies(pair).ok()?;
-        let known = separation([&a, &b], HASTE, |s| s.upper < gap || s.lower >= gap);
-        Some(known.upper < gap)
+        let is_enough = |known: &Interval| known.upper < gap || known.lower >= gap;
+        row.separation(pair, HASTE, is_enough).ok().map(|known| known.upper < gap)
     };
     if is_less(near) != Some(true) || is_less(far) != Some(false) {
         return Ok(None);

@@ -4,7 +4,7 @@
 //! The pairs: what is thin, long, hollow, pierced, smooth, bent, or only a bound.
 
 use palpate_field::kernel::{
-    Ball, Capsule, CappedCone, Cuboid, CuboidFrame, CutHollowSphere, Cylinder, Ellipsoid,
+    Ball, CappedCone, Capsule, Cuboid, CuboidFrame, CutHollowSphere, Cylinder, Ellipsoid,
     HalfSpace, Heart, HexagonalPrism, Link, Moon, Octahedron, Polygon, RegularPolygon,
     RegularStar, Ring, RoundCone, RoundedCross, RoundedCuboid, Segment, Simplex, Torus,
 };
@@ -99,7 +99,8 @@ fn hollow_box() -> Result<Shape<3>> {
 }
 
 fn simplex() -> Result<Shape<3>> {
-    let corners = [[0.2, -0.1, -0.1], [-0.15, -0.12, 0.1], [-0.05, 0.25, 0.02], [0.0, 0.0, 0.3]];
+    let corners =
+        [[0.2, -0.1, -0.1], [-0.15, -0.12, 0.1], [-0.05, 0.25, 0.02], [0.0, 0.0, 0.3]];
     Ok(Shape::from_kernel(Simplex::new(corners.map(Vector).to_vec())?))
 }
 
