@@ -71,7 +71,7 @@ where
         let threads: Vec<_> =
             (0..threads).map(|first| scope.spawn(move || of_thread(first))).collect();
         for thread in threads {
-            whole.add(thread.join().unwrap());
+            whole.add(thread.join().expect("no panic"));
         }
     });
     whole
@@ -122,7 +122,7 @@ fn replay<const D: usize>(pairs: &[Pair<D>]) -> Report
 where
     Space: Turned<D>,
 {
-    let rows = rows::<D>().unwrap();
+    let rows = rows::<D>().expect("rows");
     let expected: usize = pairs.iter().map(|pair| pair.rows).sum();
     assert!(rows.len() * 100 >= expected * 99, "{} of {expected} rows", rows.len());
     for row in &rows {
@@ -165,7 +165,8 @@ where
     Space: Turned<D>,
 {
     // A step that is prime to the number of threads.
-    let some: Vec<Row<D>> = rows().unwrap().into_iter().step_by(ROWS_A_PROOF + 1).collect();
+    let some: Vec<Row<D>> =
+        rows().expect("rows").into_iter().step_by(ROWS_A_PROOF + 1).collect();
     on_rows(pairs, &some, |pair, row, _| {
         let again = row.prove(pair)?;
         let is_within = row.truth.lower <= again.upper && again.lower <= row.truth.upper;

@@ -104,7 +104,7 @@ impl<'a, const D: usize> Body<'a, D> {
 
     /// From the nearest point of the box to a point in the shape's coordinates; zero
     /// inside.
-    fn from_box(&self, local: Point<D>) -> Vector<f64, D> {
+    fn away_from_box(&self, local: Point<D>) -> Vector<f64, D> {
         self.aabb.map_or(Vector::ZERO, |aabb| {
             Vector(std::array::from_fn(|k| local[k] - local[k].clamp(aabb.min[k], aabb.max[k])))
         })
@@ -113,7 +113,7 @@ impl<'a, const D: usize> Body<'a, D> {
     fn value(&self, p: Point<D>) -> f64 {
         let local = self.body_from_world.transform_point(p);
         let inner = self.shape.distance(local) / self.lipschitz;
-        let outside = self.from_box(local).norm();
+        let outside = self.away_from_box(local).norm();
         if outside > 0.0 { inner.max(outside) } else { inner }
     }
 
@@ -121,7 +121,7 @@ impl<'a, const D: usize> Body<'a, D> {
         let local = self.body_from_world.transform_point(p);
         let (f, gradient) = self.shape.distance_gradient(local);
         let inner = f / self.lipschitz;
-        let away = self.from_box(local);
+        let away = self.away_from_box(local);
         let outside = away.norm();
         let (value, slope) = if outside > 0.0 && outside > inner {
             (outside, away * (1.0 / outside))
