@@ -5,9 +5,10 @@
 //! true distances, and searches that may hardly look.
 
 use arbitrary::Unstructured;
-use palpate_field::{Point, Shape};
+use palpate_field::{Point, Pose, Shape};
 use palpate_query::{
-    Certified, Limits, Nearest, PairWorkspace, Placed, Stop, overlap, separation,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Stop, Track, escape,
+    overlap, separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -19,6 +20,9 @@ const POINTS: usize = 12;
 
 /// Steps along a line between two bodies.
 const STEPS: u32 = 100;
+
+/// Motions of a track.
+const MOTIONS: usize = 6;
 
 type Answer<const D: usize> = Certified<Nearest<D>>;
 
@@ -118,6 +122,10 @@ laws! {
         and separations_in_the_plane_are_no_more_than_distances, 700 times;
     hasty as ten_evaluations_in_space_prove_little_and_nothing_wrong
         and ten_evaluations_in_the_plane_prove_little_and_nothing_wrong, 700 times;
+    tracked as what_is_kept_of_bodies_that_move_in_space_stays_true
+        and what_is_kept_of_bodies_that_move_in_the_plane_stays_true, 250 times;
+    escaped as ways_out_of_bodies_in_space_lead_out
+        and ways_out_of_bodies_in_the_plane_lead_out, 30 times;
 }
 
 /// Posed, the bodies are as far apart as before. If the motion is built into the shapes,
@@ -253,4 +261,62 @@ fn hasty<const D: usize>(
         }
     }
     Ok(Ok(()))
+}
+
+/// What a track says after motions, small and large, under limits that allow little or
+/// much, is what a search that starts anew says.
+fn tracked<const D: usize>(
+    case: &mut Case<'_, D>,
+    u: &mut Unstructured<'_>,
+) -> arbitrary::Result<Verdict>
+where
+    Space: Turn<D>,
+{
+    let [a, b] = case.bodies.clone();
+    let mut track = Track::new(a.clone(), b.clone());
+    let mut poses = [draw::pose::<D>(u)?, draw::pose::<D>(u)?];
+    for _ in 0..MOTIONS {
+        let budget = *u.choose(&[10, 1000, 200_000])?;
+        let limits = Limits { budget, ..case.limits };
+        let warm = track.separation(poses, &limits, case.workspace);
+        let cold = case.of(Placed::new(&a, poses[0]), Placed::new(&b, poses[1]), 1.0);
+        let (Ok(warm), Ok(cold)) = (warm, cold) else {
+            return Ok(Err("bodies are refused".into()));
+        };
+        if warm.lower > cold.upper || cold.lower > warm.upper {
+            return Ok(Err(format!("{warm:?}, but anew {cold:?}: {a:?} {b:?}")));
+        }
+        let moved = &mut poses[u.choose_index(2)?];
+        let step = case.size * 10.0_f64.powf(draw::within(u, -6.0, 0.0)?);
+        moved.translation += draw::direction::<D>(u)? * step;
+        if u.ratio(1, 3)? {
+            moved.rotation = <Space as Turn<D>>::rotation(u)?;
+        }
+    }
+    Ok(Ok(()))
+}
+
+/// After a way out, bodies do not overlap, and no shorter way than what is said leads out.
+fn escaped<const D: usize>(
+    case: &mut Case<'_, D>,
+    _: &mut Unstructured<'_>,
+) -> arbitrary::Result<Verdict> {
+    let [a, b] = case.bodies.clone();
+    Ok((|| {
+        let error = |error: QueryError| error.to_string();
+        // It asks for hundreds of separations.
+        let limits = Limits { tolerance: 0.1 * case.size, budget: 1000 };
+        let Some(way) = escape(&a, &b, &limits, case.workspace).map_err(error)? else {
+            return Ok(());
+        };
+        let out = Pose::translation(way.direction * way.length);
+        let after = case.of(&a, Placed::new(&b, out), 1.0)?;
+        // A motion changes a separation by its length at most.
+        let is_short = way.at_least <= way.length && -case.answer.upper <= way.length;
+        let bits = 64.0 * f64::EPSILON * (case.size + way.length);
+        if after.upper >= -bits && is_short {
+            return Ok(());
+        }
+        Err(format!("{way:?} leads to {after:?} from {:?}: {a:?} {b:?}", case.answer))
+    })())
 }

@@ -164,7 +164,7 @@ fn proven_anew<const D: usize>(pairs: &[Pair<D>]) -> Report
 where
     Space: Turned<D>,
 {
-    // A step that is prime to the number of threads.
+    // One more, so that it is not the same of every pair.
     let some: Vec<Row<D>> =
         rows().expect("rows").into_iter().step_by(ROWS_A_PROOF + 1).collect();
     on_rows(pairs, &some, |pair, row, _| {

@@ -344,8 +344,8 @@ where
     })
 }
 
-/// Two bounded shapes of trees of at most `depth`, the second somewhere about the first;
-/// `None` if what was drawn has no bounds.
+/// Two shapes of trees of at most `depth`, one of them bounded at least, the second
+/// somewhere about the first; `None` if what was drawn has no bounds.
 pub fn two<const D: usize>(
     u: &mut Unstructured<'_>,
     depth: usize,
@@ -357,8 +357,8 @@ where
     let (Ok(a), Ok(b)) = (a.shape(), b.shape()) else { return Ok(None) };
     let away = direction::<D>(u)? * (size(&a) * 2.0 * unit(u)?);
     let Ok(b) = b.translated(away) else { return Ok(None) };
-    let are_bounded = a.promise().bounds.is_some() && b.promise().bounds.is_some();
-    Ok(are_bounded.then_some([a, b]))
+    let is_bounded = a.promise().bounds.is_some() || b.promise().bounds.is_some();
+    Ok(is_bounded.then_some([a, b]))
 }
 
 /// The size of a scene with the shape in it [m].
