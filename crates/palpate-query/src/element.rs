@@ -7,6 +7,10 @@ use palpate_field::{Point, Vector};
 
 use crate::error::{QueryError, check_coordinates};
 
+/// A triangle has no area if its height is no more than so many roundings of its largest
+/// coordinate: fewer than searches allow for anyway.
+const FLAT_ROUNDINGS: f64 = 4.0;
+
 /// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
 /// Points may coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +66,23 @@ impl<const N: usize, const D: usize> Element<N, D> {
         weights
     }
 
+    /// A triangle without an area as its longest edge, whose second end is there twice, so
+    /// that its first two halves are all of it; `weights` are those of its centre.
+    pub(crate) fn flattened(&self, weights: &[f64; N]) -> Option<Self> {
+        let middle = (0..N).find(|&k| N == 3 && weights[k] == 0.0)?;
+        let v = |k: usize| self.vertices[(middle + k) % N];
+        let (edge, side) = (v(2) - v(1), v(0) - v(1));
+        let squared = edge.dot(edge);
+        let share = if squared > 0.0 { side.dot(edge) / squared } else { 0.0 };
+        let off = side - edge * share;
+        let largest = self.vertices.iter().fold(0.0_f64, |m, v| m.max(v.dot(*v)));
+        let rounding = FLAT_ROUNDINGS * f64::EPSILON;
+        let is_flat = off.dot(off) <= rounding * rounding * largest;
+        let mut vertices = [v(2); N];
+        vertices[0] = v(1);
+        is_flat.then_some(Self { vertices })
+    }
+
     /// The point with these parts of the vertices.
     #[inline]
     pub(crate) fn at(&self, weights: &[f64; N]) -> Point<D> {
@@ -85,7 +106,8 @@ impl<const N: usize, const D: usize> Element<N, D> {
     }
 
     /// The parts of half the size that make up the element, all similar to it: two of a
-    /// segment, four of a triangle. Unused places hold the last.
+    /// segment, four of a triangle. Unused places hold the last. Of a triangle with two
+    /// equal last vertices, the first two are all of it.
     #[inline]
     pub(crate) fn halves(&self) -> [Self; 4] {
         let v = &self.vertices;

@@ -123,6 +123,7 @@ fn search<const N: usize, const D: usize>(
         goal,
         budget,
         weights,
+        parts: if N == 2 { 2 } else { 4 },
         radius,
         upper: f64::INFINITY,
         best: centre,
@@ -138,6 +139,8 @@ struct Search<'a, const N: usize, const D: usize> {
     budget: u32,
     /// Of each vertex in a cell's centre.
     weights: [f64; N],
+    /// How many halves of a cell make it up.
+    parts: usize,
     radius: f64,
     /// The least value found, what it may be off by included, and where.
     upper: f64,
@@ -175,8 +178,12 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         if let Some(stop) = self.goal.reached(lower, self.upper) {
             return self.answer(lower, stop);
         }
+        let flat = element.flattened(&self.weights);
+        if let Some(flat) = &flat {
+            (self.weights, self.parts) = (flat.centre_weights(), 2);
+        }
         let mut whole = Cell {
-            element: *element,
+            element: flat.unwrap_or(*element),
             radius: self.radius,
             lower,
             height: FIRST_HEIGHTS[0] * self.radius,
@@ -224,14 +231,13 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// Halves the cells of which least is known, a block of parts.
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let parts_of_one = if N == 2 { 2 } else { 4 };
         let mut parts = [cells[0]; SHORT];
         let mut count = 0;
         while count < SHORT && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
             let parent = cells.swap_remove(lowest);
-            for element in &parent.element.halves()[..parts_of_one] {
+            for element in &parent.element.halves()[..self.parts] {
                 let (radius, level) = (0.5 * parent.radius, parent.level + 1);
                 parts[count] = Cell { element: *element, radius, level, ..parent };
                 count += 1;

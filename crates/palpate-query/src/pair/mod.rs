@@ -65,7 +65,7 @@ pub use track::Track;
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn separation<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -83,7 +83,7 @@ pub fn separation<'a, const D: usize>(
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn overlap<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
