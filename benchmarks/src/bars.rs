@@ -55,6 +55,7 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("manifold.boxes.p50_ns", 100_000.0),
     ("manifold.peg.p50_ns", 400_000.0),
     ("manifold.bar_torus.p50_ns", 20_000.0),
+    ("parry.ball_torus.manifold.ours_over_parry", 0.005),
     ("world.1000_bodies.step_ns", 10_000_000.0),
 ];
 

@@ -6,6 +6,7 @@
 mod local;
 mod manifolds;
 mod pairs;
+mod peers;
 mod triangles;
 mod worlds;
 
@@ -29,6 +30,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     eprintln!("measuring pairs …");
     pairs::measure(&mut rows)?;
     local::pairs(&mut rows)?;
+    peers::measure(&mut rows)?;
     eprintln!("measuring manifolds …");
     manifolds::measure(&mut rows)?;
     eprintln!("measuring worlds …");
