@@ -12,7 +12,7 @@ use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 use super::fastest;
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes::Work;
+use crate::scenes::{self, Work};
 
 /// How large triangles are: their corners lie in balls of these radii [m].
 pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
@@ -28,8 +28,13 @@ pub(super) type Triangle = Element<3, 3>;
 /// A way of asking.
 type Ask = fn(&Shape<3>, &Triangle, &Limits, &mut Workspace<3, 3>) -> Certified<Point<3>>;
 
+/// Adds the rows of triangles.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    scenes::spatial()?.iter().try_for_each(|work| of(work, rows))
+}
+
 /// Adds the rows of a work.
-pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn of(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
     let questions: [(&str, Ask, f64); 2] =
         [("hit", touches, 1e-4), ("minimum_1pc", minimum, 1e-2)];
