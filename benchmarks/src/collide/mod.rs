@@ -60,7 +60,7 @@ pub(crate) trait Turn<const D: usize> {
 
 impl Turn<2> for Space {
     fn any(random: &mut Random) -> Result<Rotation<2>, ShapeError> {
-        Rotation::from_angle(random.between(-3.2, 3.2))
+        Rotation::from_angle(random.between(0.0, 6.0))
     }
 
     fn by(_: &mut Random, angle: f64) -> Result<Rotation<2>, ShapeError> {
@@ -70,9 +70,8 @@ impl Turn<2> for Space {
 
 impl Turn<3> for Space {
     fn any(random: &mut Random) -> Result<Rotation<3>, ShapeError> {
-        let quaternion: [f64; 4] = random.point([0.0; 4], 1.0);
-        let size = quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
-        Rotation::from_quaternion(quaternion.map(|q| q / size))
+        let axis = Vector(random.point([0.0; 3], 1.0));
+        Rotation::from_axis_angle(axis, random.between(0.0, 6.0))
     }
 
     fn by(random: &mut Random, angle: f64) -> Result<Rotation<3>, ShapeError> {

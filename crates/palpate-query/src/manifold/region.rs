@@ -3,6 +3,7 @@
 
 //! The region in which two bodies touch, box by box.
 
+use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Point, Vector};
 
 use super::{ManifoldSettings, Touch};
@@ -49,45 +50,24 @@ pub(super) fn find<const D: usize>(
         parts[..count].copy_from_slice(&pending[first..]);
         pending.truncate(first);
         couple.values(&parts[..count], memory, &mut values);
+        let mut is_open = [false; BLOCK];
+        for (i, part) in parts[..count].iter().enumerate() {
+            let ([a, b], radius) = ([values[0][i], values[1][i]], part.radius());
+            is_open[i] = a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + slack);
+        }
         open.clear();
-        open.extend((0..count).filter(|&i| {
-            let ([a, b], radius) = ([values[0][i], values[1][i]], parts[i].radius());
-            a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + slack)
-        }));
-        // Where fields are known by their values alone, nothing more is ruled out.
-        let unknown = open.clone();
+        open.extend((0..count).filter(|&i| is_open[i]));
         couple.models(&parts[..count], open, memory);
-        let mut lane = 0;
-        for i in unknown {
-            let mut is_out = false;
-            if open.get(lane) == Some(&i) {
-                let models = couple.model(memory, lane);
-                let [a, b] = models;
-                lane += 1;
-                let (mut across, mut along) = (0.0, [0.0; 2]);
-                for (a, b) in a.gradient.iter().zip(b.gradient) {
-                    across += (a - b).abs();
-                    along = [along[0] + a.abs(), along[1] + b.abs()];
-                }
-                let between = across + (a.lower + b.upper).max(a.upper + b.lower);
-                let is_flat =
-                    a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.margin;
-                // The middle of a flat patch is spanned by its rim.
-                let is_inside = a.value + along[0] + a.upper < half_margin
-                    && b.value + along[1] + b.upper < half_margin;
-                is_out = least_of_larger([a, b]) > limit
-                    || (a.value - b.value).abs() > between + 2.0 * slack
-                    || is_flat && is_inside;
-            }
-            let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(parts[i].half[k]));
-            if is_out {
-                continue;
-            }
+        for (lane, &i) in open.iter().enumerate() {
+            is_open[i] = !is_ruled_out(couple.model(memory, lane), settings.margin, slack);
+        }
+        for part in (0..count).filter(|&i| is_open[i]).map(|i| &parts[i]) {
+            let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
             if longest <= 0.5 * settings.spacing {
-                small.push(parts[i]);
+                small.push(*part);
             } else {
                 let mut halves = [Cell::NOTHING; 8];
-                let count = parts[i].halve(&mut halves, 0);
+                let count = part.halve(&mut halves, 0);
                 pending.extend_from_slice(&halves[..count]);
             }
         }
@@ -96,6 +76,23 @@ pub(super) fn find<const D: usize>(
         settle(couple, cells, settings.margin, memory, candidates);
     }
     is_whole
+}
+
+/// `true` if a box holds no part of the surface between that matters, by its models:
+/// none at all, none within the margin, or the middle of a flat patch, which its rim spans.
+fn is_ruled_out([a, b]: [Model; 2], margin: f64, slack: f64) -> bool {
+    let (mut across, mut along) = (0.0, [0.0; 2]);
+    for (a, b) in a.gradient.iter().zip(b.gradient) {
+        across += (a - b).abs();
+        along = [along[0] + a.abs(), along[1] + b.abs()];
+    }
+    let between = across + (a.lower + b.upper).max(a.upper + b.lower);
+    let is_flat = a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * margin;
+    let is_inside = a.value + along[0] + a.upper < 0.5 * margin
+        && b.value + along[1] + b.upper < 0.5 * margin;
+    is_flat && is_inside
+        || (a.value - b.value).abs() > between + 2.0 * slack
+        || least_of_larger([a, b]) > 0.5 * margin + slack
 }
 
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,

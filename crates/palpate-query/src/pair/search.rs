@@ -54,10 +54,11 @@ impl<const D: usize> PairWorkspace<D> {
 
     /// Moves all boxes that the last search left into `known`.
     pub(super) fn take_known(&mut self, known: &mut Vec<Cell<D>>) {
-        known.clear();
+        // Most of them are leaves, and there are many: they change places only.
+        std::mem::swap(known, &mut self.leaves);
+        self.leaves.clear();
         known.extend(self.cells.drain());
         known.append(&mut self.pending);
-        known.append(&mut self.leaves);
     }
 }
 
@@ -243,11 +244,15 @@ impl<'a, const D: usize> Search<'a, D> {
         let parts = &mut parts[..count];
         let mut values = [[0.0; BLOCK]; 2];
         self.couple.values(parts, &mut workspace.memory, &mut values);
+        let (mut radii, mut floors) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for (radius, part) in radii.iter_mut().zip(&*parts) {
+            *radius = part.radius();
+        }
+        self.couple.floors(&radii[..count], &workspace.memory, &values, &mut floors);
         let mut least = (f64::INFINITY, self.best);
         for (i, part) in parts.iter_mut().enumerate() {
             let value = values[0][i].max(values[1][i]);
-            let floor = self.couple.floor(part, i, &workspace.memory, &values);
-            part.lower = part.lower.max(floor - self.slack);
+            part.lower = part.lower.max(floors[i] - self.slack);
             if value < least.0 {
                 least = (value, part.centre);
             }
@@ -256,10 +261,10 @@ impl<'a, const D: usize> Search<'a, D> {
             self.descend(least.1);
         }
         let threshold = self.threshold();
-        let is_open = |part: &Cell<D>| part.lower < threshold && part.radius() <= largest;
         let PairWorkspace { open, memory, .. } = workspace;
         open.clear();
-        open.extend((0..count).filter(|&i| is_open(&parts[i])));
+        let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
+        open.extend((0..count).filter(is_open));
         self.couple.models(parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             // Boxes are off by a rounding where they meet.
