@@ -7,9 +7,9 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::kernel::{Cuboid, Torus};
-use palpate::field::{Rotation, Shape, Vector};
+use palpate::field::{Pose, Rotation, Shape, Vector};
 use palpate::query::{
-    Certified, Limits, Nearest, PairWorkspace, QueryError, overlap, separation,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, overlap, separation,
 };
 
 use super::fastest;
@@ -27,12 +27,12 @@ const PLACED: f64 = 1e-6;
 const FAR: f64 = 4.0;
 
 /// Two bodies.
-type Pair = [Shape<3>; 2];
+type Pair<'a> = [Placed<'a, 3>; 2];
 
 /// A way of asking.
-type Ask = fn(
-    &Shape<3>,
-    &Shape<3>,
+type Ask<'a> = fn(
+    Placed<'a, 3>,
+    Placed<'a, 3>,
     &Limits,
     &mut PairWorkspace<3>,
 ) -> Result<Certified<Nearest<3>>, QueryError>;
@@ -56,11 +56,11 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)
 }
 
-fn ask(
+fn ask<'a>(
     key: &str,
-    ask: Ask,
+    ask: Ask<'a>,
     tolerance: f64,
-    pairs: &[Pair],
+    pairs: &[Pair<'a>],
     rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
     let limits = Limits { tolerance, ..Limits::default() };
@@ -68,13 +68,13 @@ fn ask(
     let mut times = Vec::new();
     let (mut evaluations, mut undecided) = (0, 0);
     for [a, b] in pairs {
-        let answer = ask(a, b, &limits, &mut workspace)?;
+        let answer = ask(*a, *b, &limits, &mut workspace)?;
         evaluations += answer.evaluations;
         let is_known = answer.is_hit().is_some() || answer.upper - answer.lower <= tolerance;
         undecided += u32::from(!is_known);
         times.push(fastest(|| {
             // That it is no error was seen above.
-            let _ = black_box(ask(a, black_box(b), &limits, &mut workspace));
+            let _ = black_box(ask(*a, black_box(*b), &limits, &mut workspace));
         }));
     }
     super::summarise(key, &mut times, rows);
@@ -85,7 +85,7 @@ fn ask(
 
 /// The second body turned at random and moved along a random way to the first place at
 /// which the separation is `gap`, coming from afar.
-fn placed([a, b]: [&Shape<3>; 2], gap: f64) -> Result<Vec<Pair>, Box<dyn Error>> {
+fn placed<'a>([a, b]: [&'a Shape<3>; 2], gap: f64) -> Result<Vec<Pair<'a>>, Box<dyn Error>> {
     let mut random = Random::new(7);
     let mut workspace = PairWorkspace::new();
     let limits = Limits { tolerance: PLACED, budget: 1_000_000 };
@@ -96,20 +96,19 @@ fn placed([a, b]: [&Shape<3>; 2], gap: f64) -> Result<Vec<Pair>, Box<dyn Error>>
         let w = random.between(-1.0, 1.0);
         let size = (x * x + y * y + z * z + w * w).sqrt();
         let turn = Rotation::from_quaternion([x, y, z, w].map(|q| q / size))?;
-        let turned = b.clone().rotated(turn)?;
         let way = way * (1.0 / way.norm());
-        let at = |apart: f64| turned.clone().translated(way * apart);
+        let at = |apart: f64| Placed::new(b, Pose::new(turn, way * apart));
         let (mut near, mut far) = (0.0, FAR);
-        let deepest = separation(a, &at(near)?, &limits, &mut workspace)?;
+        let deepest = separation(a, at(near), &limits, &mut workspace)?;
         if deepest.upper > gap {
             continue;
         }
         while far - near > PLACED {
             let middle = 0.5 * (near + far);
-            let answer = separation(a, &at(middle)?, &limits, &mut workspace)?;
+            let answer = separation(a, at(middle), &limits, &mut workspace)?;
             if answer.lower > gap { far = middle } else { near = middle }
         }
-        pairs.push([a.clone(), at(far)?]);
+        pairs.push([a.into(), at(far)]);
     }
     Ok(pairs)
 }

@@ -26,6 +26,9 @@ pub enum QueryError {
         /// The length.
         value: f64,
     },
+    /// A pose with a number that is NaN or infinite.
+    #[error("a pose must be finite")]
+    Pose,
     /// Two bodies that both go on without end.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,

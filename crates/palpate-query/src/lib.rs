@@ -34,13 +34,13 @@
 //! # }
 //! ```
 
-mod body;
 mod certified;
 mod contact;
 mod element;
 mod error;
 mod goal;
 mod pair;
+mod placed;
 mod ray;
 mod sampler;
 mod search;
@@ -49,6 +49,7 @@ pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use element::Element;
 pub use error::QueryError;
-pub use pair::{Nearest, PairWorkspace, overlap, separation};
+pub use pair::{Nearest, PairWorkspace, PoseDerivative, overlap, separation};
+pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};

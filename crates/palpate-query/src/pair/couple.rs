@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Two bodies in one frame, asked a block at a time.
+
+use palpate_field::field::{EvaluateBlock, Field};
+use palpate_field::scalar::Model;
+use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Vector};
+
+use super::body::Body;
+use super::cell::Cell;
+use crate::error::QueryError;
+use crate::placed::Placed;
+
+/// Memory of questions to two bodies.
+#[derive(Debug)]
+pub(crate) struct Memory<const D: usize> {
+    locals: [[Point<D>; BLOCK]; 2],
+    points: Block<f64, D, BLOCK>,
+    boxes: Block<Model, D, BLOCK>,
+    values: Column<f64, BLOCK>,
+    models: [Column<Model, BLOCK>; 2],
+}
+
+impl<const D: usize> Memory<D> {
+    pub(crate) fn new() -> Self {
+        Self {
+            locals: [[Vector::ZERO; BLOCK]; 2],
+            points: Block::zero(),
+            boxes: Block::zero(),
+            values: Column::zero(),
+            models: [Column::zero(), Column::zero()],
+        }
+    }
+}
+
+/// Two bodies in the frame of the first, so that what is known of places stays true of
+/// it while both move.
+pub(crate) struct Couple<'a, const D: usize> {
+    pub(crate) bodies: [Body<'a, D>; 2],
+    /// Boxes of the frame that hold the bodies; one of them at least is there.
+    aabbs: [Option<Aabb<D>>; 2],
+    pub(crate) world_from_frame: Pose<D>,
+    /// From the frame to the second shape's coordinates.
+    pub(crate) second_from_frame: Pose<D>,
+    /// A gradient counts twice.
+    pub(crate) evaluations: u32,
+}
+
+impl<'a, const D: usize> Couple<'a, D>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
+        if !(a.world_from_body.is_finite() && b.world_from_body.is_finite()) {
+            return Err(QueryError::Pose);
+        }
+        let second_from_frame = b.world_from_body.inverse() * a.world_from_body;
+        let bodies =
+            [Body::new(a.shape, Pose::identity()), Body::new(b.shape, second_from_frame)];
+        let aabbs = bodies.map(|body| body.aabb());
+        if aabbs == [None, None] {
+            return Err(QueryError::Unbounded);
+        }
+        let world_from_frame = a.world_from_body;
+        Ok(Self { bodies, aabbs, world_from_frame, second_from_frame, evaluations: 0 })
+    }
+
+    /// What values may be off by within `reach` of the frame's origin [m].
+    pub(crate) fn slack(&self, reach: f64) -> f64 {
+        self.bodies[0].slack(reach).max(self.bodies[1].slack(reach))
+    }
+
+    /// `g` of both at a point of the frame, with gradients.
+    #[inline]
+    pub(crate) fn slopes(&mut self, p: Point<D>) -> [(f64, Vector<f64, D>); 2] {
+        self.evaluations += 4;
+        [self.bodies[0].slope(p), self.bodies[1].slope(p)]
+    }
+
+    /// `g` of both at the centres of cells.
+    pub(crate) fn values(
+        &mut self,
+        cells: &[Cell<D>],
+        memory: &mut Memory<D>,
+        values: &mut [[f64; BLOCK]; 2],
+    ) {
+        self.evaluations += 2 * cells.len() as u32;
+        for ((body, locals), values) in self.bodies.iter().zip(&mut memory.locals).zip(values) {
+            for (i, (cell, local)) in cells.iter().zip(&mut *locals).enumerate() {
+                *local = body.local(cell.centre);
+                memory.points.set(i, *local);
+            }
+            body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
+            for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
+                *value = body.value(*local, memory.values.get(i));
+            }
+        }
+    }
+
+    /// Models of both over those of the cells, asked for their values just before, that
+    /// `open` names; and which of these were asked, since fields may be known to be as
+    /// steep as promised in a part of space alone.
+    pub(crate) fn models(
+        &mut self,
+        cells: &[Cell<D>],
+        open: &mut Vec<usize>,
+        memory: &mut Memory<D>,
+    ) {
+        let [a, b] = &self.bodies;
+        let [of_a, of_b] = &memory.locals;
+        open.retain(|&i| {
+            let radius = cells[i].radius();
+            a.is_known(of_a[i], radius) && b.is_known(of_b[i], radius)
+        });
+        if open.is_empty() {
+            return;
+        }
+        self.evaluations += 2 * open.len() as u32;
+        for ((body, locals), models) in
+            self.bodies.iter().zip(&memory.locals).zip(&mut memory.models)
+        {
+            for (lane, &i) in open.iter().enumerate() {
+                memory.boxes.set(lane, body.cell(locals[i], cells[i].half));
+            }
+            body.shape.block_distances(&memory.boxes, open.len(), models);
+        }
+    }
+
+    /// The models of `f/L` of both in a lane.
+    #[inline]
+    pub(crate) fn model(&self, memory: &Memory<D>, lane: usize) -> [Model; 2] {
+        let [a, b] = &memory.models;
+        [self.bodies[0].scaled(a.get(lane)), self.bodies[1].scaled(b.get(lane))]
+    }
+
+    /// A box of the frame that holds all points at which both `g` are at most `least`.
+    pub(crate) fn root(&self, least: f64) -> Aabb<D> {
+        let grown = self.aabbs.iter().flatten().map(|aabb| aabb.grown(least));
+        let nowhere = Aabb { min: Vector::ZERO, max: Vector::ZERO };
+        grown.reduce(|a, b| common(&a, &b)).unwrap_or(nowhere)
+    }
+
+    /// How far the boxes of both bodies are apart, if they are [m].
+    pub(crate) fn gap_of_boxes(&self) -> Option<f64> {
+        let both = self.root(0.0);
+        let gap = (0..D).fold(0.0_f64, |gap, k| gap.max(both.min[k] - both.max[k]));
+        (gap > 0.0).then_some(gap)
+    }
+}
+
+/// What two boxes have in common; turned inside out where they are apart.
+fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
+    let mut both = *a;
+    for k in 0..D {
+        both.min[k] = a.min[k].max(b.min[k]);
+        both.max[k] = a.max[k].min(b.max[k]);
+    }
+    both
+}

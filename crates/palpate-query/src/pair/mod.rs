@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How far two fields are apart.
+//!
+//! With `g` of each body a lower bound of the distance to it, at most as steep as one,
+//!
+//! ```text
+//! separation = 2·min over p of max(g_a(p), g_b(p)).
+//! ```
+//!
+//! Apart, that is at most the distance of the bodies, and equal to it where both are
+//! exact outside: in the middle of the shortest way both are half of it. Overlapping, it
+//! is minus the width of the widest ball in the overlap: of the right sign, continuous,
+//! and not the way that parts them.
+//!
+//! The search is best-first over boxes, 64 at a time. At its centre a box has
+//! `max(g_a, g_b) − radius` as a bound. Smaller boxes are bounded by models: each is an
+//! affine function less a remainder, so is every mean of two, and
+//! `max ≥ λ·g_a + (1 − λ)·g_b`: of all these means the largest least value is taken.
+//! Where the surfaces face each other the gradients cancel, and what remains is of
+//! second order. Points are improved by minimax proximal steps: the maximum of the two
+//! tangent planes plus a parabola is least at a step along a mean of both gradients.
+
+mod body;
+mod cell;
+mod couple;
+mod descent;
+mod nearest;
+mod search;
+
+use palpate_field::BLOCK;
+use palpate_field::field::{EvaluateBlock, Field};
+use palpate_field::scalar::Model;
+
+use crate::certified::{Certified, Limits};
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::placed::Placed;
+use couple::Couple;
+use search::Search;
+
+pub use nearest::{Nearest, PoseDerivative};
+pub use search::PairWorkspace;
+
+/// The separation of two bodies [m], between bounds, to `limits.tolerance`.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+/// use palpate_query::{Limits, PairWorkspace, separation};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let a = Shape::from_kernel(Ball::new(1.0)?);
+/// let b = Shape::from_kernel(Ball::new(0.5)?).translated(Vector([1.2, 1.6]))?;
+/// let answer = separation(&a, &b, &Limits::default(), &mut PairWorkspace::new())?;
+/// assert!(answer.lower <= 0.5 && 0.5 <= answer.upper);
+/// assert!(answer.upper - answer.lower <= 1e-4);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If neither body is bounded, or a pose is not finite.
+pub fn separation<'a, const D: usize>(
+    a: impl Into<Placed<'a, D>>,
+    b: impl Into<Placed<'a, D>>,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Certified<Nearest<D>>, QueryError>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
+    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
+}
+
+/// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
+///
+/// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
+/// Bodies whose boxes are apart are told apart without asking them.
+///
+/// # Errors
+///
+/// If neither body is bounded, or a pose is not finite.
+pub fn overlap<'a, const D: usize>(
+    a: impl Into<Placed<'a, D>>,
+    b: impl Into<Placed<'a, D>>,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Certified<Nearest<D>>, QueryError>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    let goal = Goal::Sign { tolerance: 0.5 * limits.tolerance };
+    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
+}

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Best-first search over boxes for the least of `max(g_a, g_b)`.
+
+use std::collections::BinaryHeap;
+
+use palpate_field::field::{EvaluateBlock, Field};
+use palpate_field::scalar::Model;
+use palpate_field::{Aabb, BLOCK, Point, Vector};
+
+use super::Nearest;
+use super::cell::{Cell, least_of_larger};
+use super::couple::{Couple, Memory};
+use crate::certified::{Certified, Limits, Stop};
+use crate::goal::Goal;
+
+/// Boxes are bounded by models below this radius, as a share of the first box's: above,
+/// remainders are larger than radii.
+const SMALL: f64 = 0.25;
+
+/// Boxes that a workspace holds.
+const ROOM: usize = 1 << 16;
+
+/// Memory of searches between bodies, to be kept between them.
+#[derive(Debug)]
+pub struct PairWorkspace<const D: usize> {
+    /// Boxes that may hold less than the best, after those that only may no longer not.
+    pub(super) cells: BinaryHeap<Cell<D>>,
+    /// Boxes to be looked at as they are.
+    pub(super) pending: Vec<Cell<D>>,
+    /// Boxes that were dropped, if they are to be kept.
+    pub(super) leaves: Vec<Cell<D>>,
+    open: Vec<usize>,
+    pub(crate) memory: Memory<D>,
+}
+
+impl<const D: usize> PairWorkspace<D> {
+    /// Room for searches in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            cells: BinaryHeap::with_capacity(ROOM),
+            pending: Vec::with_capacity(ROOM),
+            leaves: Vec::new(),
+            open: Vec::with_capacity(BLOCK),
+            memory: Memory::new(),
+        }
+    }
+}
+
+impl<const D: usize> Default for PairWorkspace<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
+pub(super) struct Search<'a, const D: usize> {
+    pub(super) couple: Couple<'a, D>,
+    pub(super) goal: Goal,
+    budget: u32,
+    pub(super) upper: f64,
+    pub(super) best: Point<D>,
+    /// Nothing in the boxes that were dropped is less.
+    pub(super) dropped: f64,
+    /// What values may be off by [m].
+    pub(super) slack: f64,
+    /// Whether boxes that are dropped are to be kept.
+    pub(super) keeps_leaves: bool,
+}
+
+impl<'a, const D: usize> Search<'a, D>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
+{
+    pub(super) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
+        Self {
+            couple,
+            goal,
+            budget: limits.budget,
+            upper: f64::INFINITY,
+            best: Vector::ZERO,
+            dropped: f64::INFINITY,
+            slack: 0.0,
+            keeps_leaves: false,
+        }
+    }
+
+    /// Searches everywhere, from the middle of what the boxes of both have in common.
+    pub(super) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
+        self.best = self.couple.root(0.0).centre();
+        if let (Goal::Sign { .. }, Some(gap)) = (self.goal, self.couple.gap_of_boxes()) {
+            // Half of it is what both values are at least, somewhere between.
+            self.slack = self.couple.slack(self.best.norm() + gap);
+            if 0.5 * gap > self.slack {
+                return self.answer(Stop::SignKnown, 0.5 * gap - self.slack);
+            }
+        }
+        self.descend(self.best);
+        let root = self.root(0.0);
+        workspace.pending.clear();
+        let mut parts = [Cell::NOTHING; BLOCK];
+        let count = Cell::unknown(&root).grid(&mut parts);
+        workspace.pending.extend_from_slice(&parts[..count]);
+        self.refine(&root, workspace)
+    }
+
+    /// Searches the pending boxes, parts of `root`, and all that is found in them.
+    pub(super) fn refine(
+        &mut self,
+        root: &Aabb<D>,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Certified<Nearest<D>> {
+        let size = root.half_extents().norm();
+        self.slack = self.couple.slack(root.centre().norm() + size);
+        workspace.cells.clear();
+        loop {
+            let lowest = if workspace.pending.is_empty() {
+                workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower)
+            } else {
+                f64::NEG_INFINITY
+            };
+            let lower = lowest.min(self.dropped);
+            if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
+                return self.answer(stop, lower);
+            }
+            let is_full = workspace.cells.len() + BLOCK > ROOM;
+            let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
+            if is_empty || is_full || self.couple.evaluations >= self.budget {
+                let pending = workspace.pending.iter().map(|cell| cell.lower);
+                let lowest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
+                return self.answer(
+                    Stop::BudgetSpent,
+                    pending.fold(lowest.min(self.dropped), f64::min),
+                );
+            }
+            self.round(workspace, SMALL * size);
+        }
+    }
+
+    pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
+        let upper = self.upper + self.slack;
+        Certified {
+            best: Nearest::at(&mut self.couple, self.best, self.goal.tolerance()),
+            lower: 2.0 * lower.min(upper),
+            upper: 2.0 * upper,
+            stop,
+            evaluations: self.couple.evaluations,
+        }
+    }
+
+    /// Boxes with nothing below this need no more looking at.
+    fn threshold(&self) -> f64 {
+        self.goal.threshold(self.upper + self.slack)
+    }
+
+    /// A box that holds all points that matter, and `margin` more: where neither `g` is
+    /// more than the best so far, or, if the sign is all that is asked for, than the
+    /// tolerance. Elsewhere one is.
+    pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
+        let slack = self.couple.slack(self.best.norm() + self.upper.abs());
+        let least = match self.goal {
+            Goal::Least { .. } => self.upper.max(0.0),
+            Goal::Sign { tolerance } => self.upper.clamp(0.0, tolerance.max(0.0)),
+        };
+        self.dropped = least + slack;
+        let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
+        self.couple.root(grown)
+    }
+
+    /// Looks at a block of boxes: pending ones, or the parts of those of which least is
+    /// known.
+    fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
+        let mut parts = [Cell::NOTHING; BLOCK];
+        let mut count = 0;
+        if workspace.pending.is_empty() {
+            while count + (1 << D) <= BLOCK {
+                let Some(parent) = workspace.cells.pop() else { break };
+                if parent.lower >= self.threshold() {
+                    self.drop_cell(&parent, workspace);
+                } else {
+                    count = parent.halve(&mut parts, count);
+                }
+            }
+        } else {
+            let first = workspace.pending.len().saturating_sub(BLOCK);
+            for cell in workspace.pending.drain(first..) {
+                parts[count] = cell;
+                count += 1;
+            }
+        }
+        let parts = &mut parts[..count];
+        let mut values = [[0.0; BLOCK]; 2];
+        self.couple.values(parts, &mut workspace.memory, &mut values);
+        let mut least = (f64::INFINITY, self.best);
+        for (i, part) in parts.iter_mut().enumerate() {
+            let value = values[0][i].max(values[1][i]);
+            part.lower = part.lower.max(value - part.radius() - self.slack);
+            if value < least.0 {
+                least = (value, part.centre);
+            }
+        }
+        if least.0 < self.upper - 0.25 * self.goal.tolerance() {
+            self.descend(least.1);
+        }
+        let threshold = self.threshold();
+        let is_open = |part: &Cell<D>| part.lower < threshold && part.radius() <= largest;
+        let PairWorkspace { open, memory, .. } = workspace;
+        open.clear();
+        open.extend((0..count).filter(|&i| is_open(&parts[i])));
+        self.couple.models(parts, open, memory);
+        for (lane, &i) in open.iter().enumerate() {
+            // Boxes are off by a rounding where they meet.
+            let lower = least_of_larger(self.couple.model(memory, lane)) - self.slack;
+            parts[i].lower = parts[i].lower.max(lower);
+        }
+        for part in &*parts {
+            if part.lower < threshold {
+                workspace.cells.push(*part);
+            } else {
+                self.drop_cell(part, workspace);
+            }
+        }
+    }
+
+    fn drop_cell(&mut self, cell: &Cell<D>, workspace: &mut PairWorkspace<D>) {
+        self.dropped = self.dropped.min(cell.lower);
+        if self.keeps_leaves {
+            workspace.leaves.push(*cell);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Shapes that are somewhere in the world.
+
+use palpate_field::{Pose, Shape};
+
+/// A shape and where it is. A plain `&Shape` is one where it was built.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_query::{Limits, PairWorkspace, Placed, separation};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(1.0)?);
+/// let there = Placed::new(&ball, Pose::translation(Vector([0.0, 5.0, 0.0])));
+/// let apart = separation(&ball, there, &Limits::default(), &mut PairWorkspace::new())?;
+/// assert!(apart.lower <= 3.0 && 3.0 <= apart.upper);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<'a, const D: usize> {
+    /// The shape.
+    pub shape: &'a Shape<D>,
+    /// From the shape's coordinates to the world's.
+    pub world_from_body: Pose<D>,
+}
+
+impl<'a, const D: usize> Placed<'a, D> {
+    /// `shape` moved by `world_from_body`.
+    #[must_use]
+    pub fn new(shape: &'a Shape<D>, world_from_body: Pose<D>) -> Self {
+        Self { shape, world_from_body }
+    }
+}
+
+impl<'a, const D: usize> From<&'a Shape<D>> for Placed<'a, D> {
+    fn from(shape: &'a Shape<D>) -> Self {
+        Self::new(shape, Pose::identity())
+    }
+}
