@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use palpate_field::{Aabb, LARGEST_LENGTH, Point};
+use palpate_field::{Aabb, LARGEST_LENGTH, Point, Vector};
 
 use crate::error::MeshError;
 use crate::tree::BallTree;
@@ -96,7 +96,11 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     #[inline]
     #[must_use]
     pub fn corners(&self, element: usize) -> [Point<D>; N] {
-        self.elements[element].map(|index| self.vertices[index as usize])
+        let mut corners = [Vector::ZERO; N];
+        for (corner, index) in corners.iter_mut().zip(&self.elements[element]) {
+            *corner = self.vertices[*index as usize];
+        }
+        corners
     }
 
     /// The smallest box around the elements [m]; vertices that none names do not count.

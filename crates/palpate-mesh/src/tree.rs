@@ -40,11 +40,22 @@ impl<const D: usize> Level<D> {
         level
     }
 
-    /// One coordinate of all centres [m]; a multiple of eight of them.
+    /// The centres of the children of a node one level up [m].
+    ///
+    /// # Panics
+    ///
+    /// If there is no such node.
     #[inline]
     #[must_use]
-    pub fn coordinates(&self, axis: usize) -> &[f64] {
-        &self.centres[axis]
+    pub fn children(&self, node: usize) -> [Point<D>; FAN] {
+        let mut children = [Vector::ZERO; FAN];
+        for (axis, column) in self.centres.iter().enumerate() {
+            let column = &column[node * FAN..][..FAN];
+            for (child, x) in children.iter_mut().zip(column) {
+                child[axis] = *x;
+            }
+        }
+        children
     }
 
     /// The radii [m], rounded up; minus infinity where there is no ball.

@@ -92,7 +92,7 @@ where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let goal = Goal::Least { tolerance: limits.tolerance };
-    search(shape, element, goal, limits.budget, workspace)
+    search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
 /// Whether a field is at most zero anywhere on an element.
@@ -110,35 +110,37 @@ where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
     let goal = Goal::Sign { tolerance: limits.tolerance };
-    search(shape, element, goal, limits.budget, workspace)
+    search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
-fn search<const N: usize, const D: usize>(
+/// What is asked of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    pub(crate) goal: Goal,
+    pub(crate) budget: u32,
+    /// What is taken from all values [m].
+    pub(crate) level: f64,
+    /// Roundings are those of coordinates as large as this, at least [m].
+    pub(crate) reach: f64,
+}
+
+impl Terms {
+    fn new(goal: Goal, budget: u32) -> Self {
+        Self { goal, budget, level: 0.0, reach: 0.0 }
+    }
+}
+
+pub(crate) fn search<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
-    goal: Goal,
-    budget: u32,
+    terms: &Terms,
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>>
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
-    let weights = element.centre_weights();
-    let centre = element.at(&weights);
-    let radius = element.farthest(centre);
-    let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
-    let reach = centre.norm() + (1.0 + highest) * radius;
-    let search = Search {
-        sampler: Sampler::new(shape, &mut workspace.samples, reach),
-        goal,
-        budget,
-        weights,
-        radius,
-        upper: f64::INFINITY,
-        best: centre,
-        dropped: f64::INFINITY,
-    };
-    search.run(element, &mut workspace.cells)
+    Search::new(shape, element, terms, &mut workspace.samples)
+        .run(element, &mut workspace.cells)
 }
 
 /// A search under way.
@@ -156,14 +158,37 @@ struct Search<'a, const N: usize, const D: usize> {
     dropped: f64,
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D>
+impl<'a, const N: usize, const D: usize> Search<'a, N, D>
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
+    fn new(
+        shape: &'a Shape<D>,
+        element: &Element<N, D>,
+        terms: &Terms,
+        samples: &'a mut Samples<D>,
+    ) -> Self {
+        let weights = element.centre_weights();
+        let centre = element.at(&weights);
+        let radius = element.farthest(centre);
+        let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
+        let reach = terms.reach.max(centre.norm() + (1.0 + highest) * radius);
+        Self {
+            sampler: Sampler::new(shape, samples, reach, terms.level),
+            goal: terms.goal,
+            budget: terms.budget,
+            weights,
+            radius,
+            upper: f64::INFINITY,
+            best: centre,
+            dropped: f64::INFINITY,
+        }
+    }
+
     /// A value found on the element.
     #[inline]
     fn found(&mut self, p: Point<D>, value: f64) {
-        let value = value + self.sampler.slack;
+        let value = value + self.sampler.steepness.slack;
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
@@ -184,7 +209,7 @@ where
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
-        let lower = self.sampler.bound(centre, value, self.radius);
+        let lower = self.sampler.steepness.bound(centre, value, self.radius);
         if let Some(stop) = self.goal.reached(lower, self.upper) {
             return self.answer(lower, stop);
         }
@@ -224,7 +249,8 @@ where
                 None => self.found(p, value),
                 Some(_) if self.goal.is_hit(self.upper) => return,
                 Some(k) => {
-                    let lower = self.sampler.bound(p, value, cell.element.farthest(p));
+                    let lower =
+                        self.sampler.steepness.bound(p, value, cell.element.farthest(p));
                     if lower > cell.lower {
                         cell.lower = lower;
                         cell.height = heights[k.min(heights.len() - 1)];
@@ -291,7 +317,8 @@ where
     ) {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
-            part.lower = larger(part.lower, self.sampler.bound(*centre, *value, part.radius));
+            part.lower =
+                larger(part.lower, self.sampler.steepness.bound(*centre, *value, part.radius));
         }
     }
 
@@ -317,14 +344,19 @@ where
         let lifted = self.sampler.values(&points);
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
-            let lower =
-                self.sampler.bound(points[i], lifted[i], part.element.farthest(points[i]));
+            let lower = self.sampler.steepness.bound(
+                points[i],
+                lifted[i],
+                part.element.farthest(points[i]),
+            );
             if lower >= part.lower {
-                let nearly_all = values[i] - 0.25 * self.sampler.lipschitz * part.radius;
+                let nearly_all =
+                    values[i] - 0.25 * self.sampler.steepness.lipschitz * part.radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };
                 part.height = (grown * share * part.height).min(highest);
                 part.lower = lower;
-            } else if lower <= self.sampler.bound(centres[i], values[i], part.radius) {
+            } else if lower <= self.sampler.steepness.bound(centres[i], values[i], part.radius)
+            {
                 part.height *= SHRINK;
             }
         }
