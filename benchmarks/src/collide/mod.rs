@@ -16,7 +16,6 @@ use crate::scenes;
 /// All rows of the suite.
 pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
-    if std::env::var("ONLY_MESH").is_ok() { meshes::measure(&mut rows)?; return Ok(rows); }
     for work in scenes::spatial()? {
         eprintln!("measuring triangles on {} …", work.name);
         triangles::measure(&work, &mut rows)?;

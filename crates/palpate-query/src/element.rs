@@ -90,3 +90,8 @@ impl<const N: usize, const D: usize> Element<N, D> {
         ]
     }
 }
+
+/// How many [halves](Element::halves) an element has.
+pub(crate) const fn parts_of_one<const N: usize>() -> usize {
+    if N == 2 { 2 } else { 4 }
+}

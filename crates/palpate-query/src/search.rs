@@ -23,7 +23,7 @@ use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::element::Element;
+use crate::element::{Element, parts_of_one};
 use crate::goal::Goal;
 use crate::sampler::{Sampler, Samples, unit};
 
@@ -263,14 +263,13 @@ where
     /// Halves the cells of which least is known, a block of parts.
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let parts_of_one = if N == 2 { 2 } else { 4 };
         let mut parts = [cells[0]; SHORT];
         let mut count = 0;
         while count < SHORT && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
             let parent = cells.swap_remove(lowest);
-            for element in &parent.element.halves()[..parts_of_one] {
+            for element in &parent.element.halves()[..parts_of_one::<N>()] {
                 let (radius, level) = (0.5 * parent.radius, parent.level + 1);
                 parts[count] = Cell { element: *element, radius, level, ..parent };
                 count += 1;

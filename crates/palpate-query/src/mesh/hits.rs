@@ -13,7 +13,8 @@
 //!
 //! What is left of the elements is looked at 64 at a time: a point lifted off the centre
 //! along the gradient frees most (see [`search`](crate::search)), the lowest corner of the
-//! linear model hits most. Few remain to be searched one by one.
+//! linear model hits most. Those that stay open are halved twice and looked at again. Few
+//! remain to be searched one by one.
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{BLOCK, Block, Column, Gradients, LARGEST_LENGTH, Point, Pose, SHORT};
@@ -21,7 +22,7 @@ use palpate_mesh::{FAN, Mesh};
 
 use super::placed::PlacedMesh;
 use crate::certified::Limits;
-use crate::element::Element;
+use crate::element::{Element, parts_of_one};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
@@ -30,6 +31,9 @@ use crate::search::{Terms, Workspace, search};
 
 /// How high points are lifted off elements, in radii.
 const HEIGHT: f64 = 4.0;
+
+/// How often elements that stay open are halved together with others.
+const HALVINGS: u32 = 2;
 
 /// Memory of searches over meshes, to be kept between them: after the first on a mesh of
 /// some size, none allocates.
@@ -40,12 +44,22 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     slopes: Gradients<f64, D, BLOCK>,
     frontier: Vec<u32>,
     next: Vec<u32>,
-    open: Vec<u32>,
+    open: Vec<Part<N, D>>,
+    still_open: Vec<Part<N, D>>,
+    marks: Marks,
     hits: Vec<u32>,
     undecided: Vec<Undecided>,
-    /// A bit for each element, none set between searches.
-    marks: Vec<u64>,
     search: Workspace<N, D>,
+}
+
+/// An element or a part of one, where the field sees it.
+#[derive(Clone, Copy, Debug)]
+struct Part<const N: usize, const D: usize> {
+    name: u32,
+    element: Element<N, D>,
+    /// Of the smallest ball around it.
+    centre: Point<D>,
+    radius: f64,
 }
 
 impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
@@ -59,9 +73,10 @@ impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
             frontier: Vec::new(),
             next: Vec::new(),
             open: Vec::new(),
+            still_open: Vec::new(),
+            marks: Marks::default(),
             hits: Vec::new(),
             undecided: Vec::new(),
-            marks: Vec::new(),
             search: Workspace::new(),
         }
     }
@@ -158,23 +173,42 @@ where
         evaluations: 0,
     };
     let evaluations = sweep.run(limits, workspace);
-    sort(&mut workspace.hits, placed.mesh.elements().len(), &mut workspace.marks);
+    workspace.marks.move_to(&mut workspace.hits);
     workspace.undecided.sort_unstable_by_key(|undecided| undecided.element);
     Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
 }
 
-/// Sorts different numbers below `end` by setting and reading a bit for each: there may be
-/// thousands, and comparing them would take longer than finding them did.
-fn sort(numbers: &mut Vec<u32>, end: usize, marks: &mut Vec<u64>) {
-    marks.resize(marks.len().max(end.div_ceil(64)), 0);
-    for number in numbers.drain(..) {
-        marks[number as usize / 64] |= 1 << (number % 64);
+/// A bit for each element that touches: there may be thousands, and to sort them would take
+/// longer than finding them did.
+#[derive(Debug, Default)]
+struct Marks(Vec<u64>);
+
+impl Marks {
+    /// None set, of `count`.
+    fn reset(&mut self, count: usize) {
+        self.0.clear();
+        self.0.resize(count.div_ceil(64), 0);
     }
-    for (i, word) in marks.iter_mut().take(end.div_ceil(64)).enumerate() {
-        let mut rest = std::mem::take(word);
-        while rest != 0 {
-            numbers.push(64 * i as u32 + rest.trailing_zeros());
-            rest &= rest - 1;
+
+    #[inline]
+    fn set(&mut self, i: u32) {
+        self.0[i as usize / 64] |= 1 << (i % 64);
+    }
+
+    #[inline]
+    fn is_set(&self, i: u32) -> bool {
+        self.0[i as usize / 64] >> (i % 64) & 1 == 1
+    }
+
+    /// Writes those that are set into `list`, ascending.
+    fn move_to(&mut self, list: &mut Vec<u32>) {
+        list.clear();
+        for (i, word) in self.0.iter().enumerate() {
+            let mut rest = *word;
+            while rest != 0 {
+                list.push(64 * i as u32 + rest.trailing_zeros());
+                rest &= rest - 1;
+            }
         }
     }
 }
@@ -198,7 +232,7 @@ where
         + DifferentiateBlock<f64, D, SHORT>,
 {
     fn run(mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) -> u32 {
-        workspace.hits.clear();
+        workspace.marks.reset(self.mesh.elements().len());
         workspace.open.clear();
         workspace.undecided.clear();
         workspace.frontier.clear();
@@ -207,10 +241,10 @@ where
         for level in (0..self.mesh.tree().levels().len()).rev() {
             self.descend(level, workspace);
         }
-        // What the blocks leave open takes the place of the frontier.
-        workspace.frontier.clear();
-        for start in (0..workspace.open.len()).step_by(BLOCK) {
-            self.look_closer(start, workspace);
+        self.look_closer(workspace);
+        for _ in 0..HALVINGS {
+            halve(workspace);
+            self.look_closer(workspace);
         }
         self.search_rest(limits, workspace);
         self.evaluations
@@ -219,7 +253,7 @@ where
     /// Asks at the centres of all children of the frontier.
     fn descend(&mut self, level: usize, workspace: &mut MeshWorkspace<N, D>) {
         let tree = self.mesh.tree();
-        let MeshWorkspace { block, values, frontier, next, open, hits, .. } = workspace;
+        let MeshWorkspace { block, values, frontier, next, open, marks, .. } = workspace;
         let balls = &tree.levels()[level];
         next.clear();
         for group in frontier.chunks(BLOCK / FAN) {
@@ -242,10 +276,20 @@ where
                         continue;
                     }
                     match level {
-                        0 if value <= -self.steepness.slack => hits.push(tree.order()[child]),
-                        0 => open.push(child as u32),
+                        0 if value <= -self.steepness.slack => marks.set(tree.order()[child]),
+                        0 => {
+                            let (name, centre) = (tree.order()[child], block.get(lane));
+                            open.push(Part {
+                                name,
+                                element: self.element(name),
+                                centre,
+                                radius,
+                            });
+                        }
                         _ if value < -change => {
-                            hits.extend_from_slice(tree.elements_below(level, child));
+                            for &element in tree.elements_below(level, child) {
+                                marks.set(element);
+                            }
                         }
                         _ => next.push(child as u32),
                     }
@@ -255,48 +299,45 @@ where
         std::mem::swap(frontier, next);
     }
 
-    /// Asks once more about a block of the elements that are open, and puts those that it
-    /// leaves open on the frontier.
-    fn look_closer(&mut self, start: usize, workspace: &mut MeshWorkspace<N, D>) {
-        let tree = self.mesh.tree();
-        let MeshWorkspace { block, values, slopes, frontier, open, hits, .. } = workspace;
-        let open = &open[start..open.len().min(start + BLOCK)];
-        let balls = &tree.levels()[0];
-        for (lane, &leaf) in open.iter().enumerate() {
-            let centre = balls.centre(leaf as usize);
-            block.set(lane, self.field_from_mesh.transform_point(centre));
-        }
-        self.field.shape.block_gradients(block, open.len(), slopes);
-        let mut is_on_it = [false; BLOCK];
-        for (lane, &leaf) in open.iter().enumerate() {
-            let element = self.element(tree.order()[leaf as usize]);
-            let (centre, value) = (block.get(lane), slopes.distance.get(lane) - self.level);
-            let gradient = slopes.gradient.get(lane);
-            let rise = |corner: &Point<D>| (*corner - centre).dot(gradient);
-            let lowest =
-                element.vertices().iter().fold(element.vertices()[0], |low, corner| {
-                    if rise(corner) < rise(&low) { *corner } else { low }
-                });
-            is_on_it[lane] = value + rise(&lowest) <= 0.0;
-            let height = HEIGHT * balls.radii()[leaf as usize];
-            let lifted = centre + unit(gradient) * height;
-            block.set(lane, if is_on_it[lane] { lowest } else { lifted });
-        }
-        self.field.shape.block_distances(block, open.len(), values);
-        self.evaluations += 3 * open.len() as u32;
-        for (lane, &leaf) in open.iter().enumerate() {
-            let name = tree.order()[leaf as usize];
-            let (p, value) = (block.get(lane), values.get(lane) - self.level);
-            if is_on_it[lane] && value <= -self.steepness.slack {
-                hits.push(name);
-                continue;
+    /// Asks about the parts that are open, a block at a time, and keeps those that stay so.
+    fn look_closer(&mut self, workspace: &mut MeshWorkspace<N, D>) {
+        let MeshWorkspace { block, values, slopes, open, still_open, marks, .. } = workspace;
+        still_open.clear();
+        for parts in open.chunks(BLOCK) {
+            for (lane, part) in parts.iter().enumerate() {
+                block.set(lane, part.centre);
             }
-            let lower = self.steepness.bound(p, value, self.element(name).farthest(p));
-            let is_free = lower > 0.0;
-            if !is_free {
-                frontier.push(name);
+            self.field.shape.block_gradients(block, parts.len(), slopes);
+            let mut is_on_it = [false; BLOCK];
+            for (lane, part) in parts.iter().enumerate() {
+                let (value, gradient) =
+                    (slopes.distance.get(lane) - self.level, slopes.gradient.get(lane));
+                let rise = |p: Point<D>| (p - part.centre).dot(gradient);
+                let [first, rest @ ..] = part.element.vertices().as_slice() else { continue };
+                let lowest =
+                    rest.iter().fold(*first, |a, b| if rise(*b) < rise(a) { *b } else { a });
+                is_on_it[lane] = value + rise(lowest) <= 0.0;
+                let lifted = part.centre + unit(gradient) * (HEIGHT * part.radius);
+                block.set(lane, if is_on_it[lane] { lowest } else { lifted });
+                if value <= -self.steepness.slack {
+                    marks.set(part.name);
+                }
+            }
+            self.field.shape.block_distances(block, parts.len(), values);
+            self.evaluations += 3 * parts.len() as u32;
+            for (lane, part) in parts.iter().enumerate() {
+                let (p, value) = (block.get(lane), values.get(lane) - self.level);
+                if is_on_it[lane] && value <= -self.steepness.slack {
+                    marks.set(part.name);
+                }
+                let lower = self.steepness.bound(p, value, part.element.farthest(p));
+                let is_free = lower > 0.0;
+                if !is_free && !marks.is_set(part.name) {
+                    still_open.push(*part);
+                }
             }
         }
+        std::mem::swap(open, still_open);
     }
 
     /// Searches the elements that are still open, one by one.
@@ -307,12 +348,16 @@ where
             level: self.level,
             reach: self.reach,
         };
-        let MeshWorkspace { frontier, hits, undecided, search: memory, .. } = workspace;
-        for &name in &*frontier {
+        let MeshWorkspace { open, marks, undecided, search: memory, .. } = workspace;
+        open.dedup_by_key(|part| part.name);
+        for &Part { name, .. } in &*open {
+            if marks.is_set(name) {
+                continue;
+            }
             let answer = search(self.field.shape, &self.element(name), &terms, memory);
             self.evaluations += answer.evaluations;
             match answer.is_hit() {
-                Some(true) => hits.push(name),
+                Some(true) => marks.set(name),
                 Some(false) => {}
                 None => undecided.push(Undecided {
                     element: name,
@@ -332,4 +377,23 @@ where
         }
         Element { vertices }
     }
+}
+
+/// Halves the parts that are open.
+fn halve<const N: usize, const D: usize>(workspace: &mut MeshWorkspace<N, D>) {
+    let MeshWorkspace { open, still_open, marks, .. } = workspace;
+    still_open.clear();
+    for part in open.iter().filter(|part| !marks.is_set(part.name)) {
+        let weights = part.element.centre_weights();
+        let (name, radius) = (part.name, 0.5 * part.radius);
+        still_open.extend(
+            part.element.halves()[..parts_of_one::<N>()].iter().map(|&element| Part {
+                name,
+                element,
+                centre: element.at(&weights),
+                radius,
+            }),
+        );
+    }
+    std::mem::swap(open, still_open);
 }
