@@ -11,7 +11,8 @@
 //!   [`overlap`] whether they do.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
-//!   triangle, in two or three dimensions.
+//!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
+//! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
 //!
 //! ```
 //! use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
@@ -36,11 +37,13 @@
 
 mod certified;
 mod contact;
+mod contacts;
 mod element;
 mod error;
 mod goal;
 mod mesh;
 mod pair;
+mod patches;
 mod placed;
 mod ray;
 mod sampler;
@@ -48,9 +51,12 @@ mod search;
 
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
+pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
 pub use error::QueryError;
-pub use mesh::{MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_hits};
+pub use mesh::{
+    MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
+};
 pub use pair::{Nearest, PairWorkspace, PoseDerivative, overlap, separation};
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};

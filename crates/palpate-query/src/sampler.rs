@@ -90,6 +90,11 @@ where
         Self { shape, samples, steepness, level, evaluations: 0 }
     }
 
+    /// `true` if the field is a convex function.
+    pub(crate) fn is_convex(&self) -> bool {
+        self.shape.promise().convex
+    }
+
     /// The value at a point and its gradient.
     #[inline]
     pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {

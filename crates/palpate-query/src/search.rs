@@ -23,12 +23,14 @@ use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
+use crate::contact::Contact;
 use crate::element::{Element, parts_of_one};
 use crate::goal::Goal;
+use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{Sampler, Samples, unit};
 
 /// Heights that are tried first, in radii.
-const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
+pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 
 /// A cell's second height, as a share of its first.
 const LOWER: f64 = 0.4;
@@ -46,14 +48,16 @@ const ROOM: usize = 4096;
 
 /// A part of the element, and what is known of it.
 #[derive(Clone, Copy, Debug)]
-struct Cell<const N: usize, const D: usize> {
-    element: Element<N, D>,
-    radius: f64,
+pub(crate) struct Cell<const N: usize, const D: usize> {
+    pub(crate) element: Element<N, D>,
+    pub(crate) radius: f64,
     /// Nothing on the cell is less [m].
-    lower: f64,
+    pub(crate) lower: f64,
+    /// Something on the cell is no more [m].
+    pub(crate) upper: f64,
     /// How far samples are lifted [m], and which way.
     height: f64,
-    direction: Vector<f64, D>,
+    pub(crate) direction: Vector<f64, D>,
     /// How often the element was halved.
     level: u32,
 }
@@ -61,15 +65,22 @@ struct Cell<const N: usize, const D: usize> {
 /// Memory of searches, to be kept between them: it is allocated once.
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
-    cells: Vec<Cell<N, D>>,
-    samples: Samples<D>,
+    pub(crate) cells: Vec<Cell<N, D>>,
+    pub(crate) samples: Samples<D>,
+    pub(crate) patches: Patches<N, D>,
+    pub(crate) contacts: Vec<Contact<D>>,
 }
 
 impl<const N: usize, const D: usize> Workspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
     pub fn new() -> Self {
-        Self { cells: Vec::with_capacity(ROOM), samples: Samples::new() }
+        Self {
+            cells: Vec::with_capacity(ROOM),
+            samples: Samples::new(),
+            patches: Patches::new(),
+            contacts: Vec::with_capacity(MOST_CELLS),
+        }
     }
 }
 
@@ -144,25 +155,27 @@ where
 }
 
 /// A search under way.
-struct Search<'a, const N: usize, const D: usize> {
-    sampler: Sampler<'a, D>,
-    goal: Goal,
-    budget: u32,
+pub(crate) struct Search<'a, const N: usize, const D: usize> {
+    pub(crate) sampler: Sampler<'a, D>,
+    pub(crate) goal: Goal,
+    pub(crate) budget: u32,
     /// Of each vertex in a cell's centre.
-    weights: [f64; N],
-    radius: f64,
+    pub(crate) weights: [f64; N],
+    pub(crate) radius: f64,
     /// The least value found, what it may be off by included, and where.
-    upper: f64,
-    best: Point<D>,
+    pub(crate) upper: f64,
+    pub(crate) best: Point<D>,
     /// Nothing in the cells that were dropped is less.
-    dropped: f64,
+    pub(crate) dropped: f64,
+    /// Cells are kept for all that is below zero, and not for the least alone.
+    pub(crate) keeps_all: bool,
 }
 
 impl<'a, const N: usize, const D: usize> Search<'a, N, D>
 where
     dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
 {
-    fn new(
+    pub(crate) fn new(
         shape: &'a Shape<D>,
         element: &Element<N, D>,
         terms: &Terms,
@@ -182,7 +195,14 @@ where
             upper: f64::INFINITY,
             best: centre,
             dropped: f64::INFINITY,
+            keeps_all: false,
         }
+    }
+
+    /// Cells with nothing below this need no more looking at.
+    #[inline]
+    fn threshold(&self) -> f64 {
+        if self.keeps_all { f64::MIN_POSITIVE } else { self.goal.threshold(self.upper) }
     }
 
     /// A value found on the element.
@@ -194,7 +214,7 @@ where
         }
     }
 
-    fn answer(&self, lower: f64, stop: Stop) -> Certified<Point<D>> {
+    pub(crate) fn answer(&self, lower: f64, stop: Stop) -> Certified<Point<D>> {
         let (best, upper) = (self.best, self.upper);
         let lower = lower.min(upper);
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
@@ -205,24 +225,44 @@ where
         element: &Element<N, D>,
         cells: &mut Vec<Cell<N, D>>,
     ) -> Certified<Point<D>> {
-        cells.clear();
+        match self.begin(element) {
+            Err(answer) => answer,
+            Ok(whole) => {
+                cells.clear();
+                cells.push(whole);
+                self.finish(cells)
+            }
+        }
+    }
+
+    /// The whole element as a cell, unless a first look is all that is needed.
+    #[inline]
+    pub(crate) fn begin(
+        &mut self,
+        element: &Element<N, D>,
+    ) -> Result<Cell<N, D>, Certified<Point<D>>> {
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
         let lower = self.sampler.steepness.bound(centre, value, self.radius);
         if let Some(stop) = self.goal.reached(lower, self.upper) {
-            return self.answer(lower, stop);
+            return Err(self.answer(lower, stop));
         }
         let mut whole = Cell {
             element: *element,
             radius: self.radius,
             lower,
+            upper: self.upper,
             height: FIRST_HEIGHTS[0] * self.radius,
             direction: unit(gradient),
             level: 0,
         };
         self.look_around(&mut whole, centre);
-        cells.push(whole);
+        Ok(whole)
+    }
+
+    /// Searches cells until enough is known.
+    pub(crate) fn finish(&mut self, cells: &mut Vec<Cell<N, D>>) -> Certified<Point<D>> {
         loop {
             let lowest = cells.iter().fold(self.dropped, |low, cell| low.min(cell.lower));
             if let Some(stop) = self.goal.reached(lowest, self.upper) {
@@ -263,15 +303,26 @@ where
     /// Halves the cells of which least is known, a block of parts.
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let mut parts = [cells[0]; SHORT];
+        let mut parents = [cells[0]; SHORT];
         let mut count = 0;
-        while count < SHORT && !cells.is_empty() {
+        while count < SHORT / parts_of_one::<N>() && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            let parent = cells.swap_remove(lowest);
+            parents[count] = cells.swap_remove(lowest);
+            count += 1;
+        }
+        self.halve_each(&parents[..count], cells);
+    }
+
+    /// Halves `parents`, at most a block of parts, and keeps the parts that matter.
+    #[inline]
+    pub(crate) fn halve_each(&mut self, parents: &[Cell<N, D>], kept: &mut Vec<Cell<N, D>>) {
+        let mut parts = [parents[0]; SHORT];
+        let mut count = 0;
+        for parent in parents {
             for element in &parent.element.halves()[..parts_of_one::<N>()] {
                 let (radius, level) = (0.5 * parent.radius, parent.level + 1);
-                parts[count] = Cell { element: *element, radius, level, ..parent };
+                parts[count] = Cell { element: *element, radius, level, ..*parent };
                 count += 1;
             }
         }
@@ -296,10 +347,10 @@ where
             self.settle(parts, &centres, &values);
             self.lift(parts, &centres, &values, 1.0);
         }
-        let threshold = self.goal.threshold(self.upper);
+        let threshold = self.threshold();
         for part in parts {
             if part.lower < threshold && part.level < MOST_LEVELS {
-                cells.push(*part);
+                kept.push(*part);
             } else {
                 self.dropped = self.dropped.min(part.lower);
             }
@@ -316,6 +367,7 @@ where
     ) {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
+            part.upper = *value + self.sampler.steepness.slack;
             part.lower =
                 larger(part.lower, self.sampler.steepness.bound(*centre, *value, part.radius));
         }
@@ -331,7 +383,7 @@ where
         values: &[f64; SHORT],
         share: f64,
     ) {
-        let threshold = self.goal.threshold(self.upper);
+        let threshold = self.threshold();
         let is_open = |part: &Cell<N, D>| part.lower < threshold;
         if self.goal.is_hit(self.upper) || !parts.iter().any(is_open) {
             return;

@@ -17,11 +17,13 @@
 //! remain to be searched one by one.
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{BLOCK, Block, Column, Gradients, LARGEST_LENGTH, Point, Pose, SHORT};
-use palpate_mesh::{FAN, Mesh};
+use palpate_field::{BLOCK, Block, Column, Gradients, Point, SHORT, Shape};
+use palpate_mesh::FAN;
 
-use super::placed::PlacedMesh;
+use super::placed::{PlacedMesh, View};
 use crate::certified::Limits;
+use crate::contact::Contact;
+use crate::contacts::level;
 use crate::element::{Element, parts_of_one};
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -47,9 +49,10 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     open: Vec<Part<N, D>>,
     still_open: Vec<Part<N, D>>,
     marks: Marks,
-    hits: Vec<u32>,
-    undecided: Vec<Undecided>,
-    search: Workspace<N, D>,
+    pub(super) hits: Vec<u32>,
+    pub(super) undecided: Vec<Undecided>,
+    pub(super) contacts: Vec<Contact<D>>,
+    pub(super) search: Workspace<N, D>,
 }
 
 /// An element or a part of one, where the field sees it.
@@ -77,6 +80,7 @@ impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
             marks: Marks::default(),
             hits: Vec::new(),
             undecided: Vec::new(),
+            contacts: Vec::new(),
             search: Workspace::new(),
         }
     }
@@ -155,27 +159,39 @@ where
         + EvaluateBlock<f64, D, SHORT>
         + DifferentiateBlock<f64, D, SHORT>,
 {
-    let (field, placed) = (field.into(), mesh.into());
-    if !(0.0..=LARGEST_LENGTH).contains(&gap) {
-        return Err(QueryError::Length { value: gap });
-    }
-    let (field_from_mesh, reach) = placed.seen_from(&field)?;
-    let level = gap * field.shape.promise().lipschitz.max(1.0);
+    let evaluations = find(&field.into(), &mesh.into(), gap, limits, workspace)?;
+    Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
+}
+
+/// Finds the hits of a mesh and what is undecided, in its workspace.
+pub(super) fn find<const N: usize, const D: usize>(
+    field: &Placed<'_, D>,
+    placed: &PlacedMesh<'_, N, D>,
+    gap: f64,
+    limits: &Limits,
+    workspace: &mut MeshWorkspace<N, D>,
+) -> Result<u32, QueryError>
+where
+    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
+        + DifferentiateBlock<f64, D, BLOCK>
+        + EvaluateBlock<f64, D, SHORT>
+        + DifferentiateBlock<f64, D, SHORT>,
+{
+    let level = level(field.shape, gap)?;
+    let view = placed.seen_from(field)?;
     // No element is larger than the mesh.
     let highest = HEIGHT * placed.mesh.bounds().half_extents().norm();
     let sweep = Sweep {
-        field: &field,
-        mesh: placed.mesh,
-        field_from_mesh,
-        steepness: Steepness::new(field.shape, reach + highest, level),
+        shape: field.shape,
+        steepness: Steepness::new(field.shape, view.reach + highest, level),
+        view,
         level,
-        reach,
         evaluations: 0,
     };
     let evaluations = sweep.run(limits, workspace);
     workspace.marks.move_to(&mut workspace.hits);
     workspace.undecided.sort_unstable_by_key(|undecided| undecided.element);
-    Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
+    Ok(evaluations)
 }
 
 /// A bit for each element that touches: there may be thousands, and to sort them would take
@@ -215,12 +231,10 @@ impl Marks {
 
 /// A way through a mesh.
 struct Sweep<'a, const N: usize, const D: usize> {
-    field: &'a Placed<'a, D>,
-    mesh: &'a Mesh<N, D>,
-    field_from_mesh: Pose<D>,
+    shape: &'a Shape<D>,
+    view: View<'a, N, D>,
     steepness: Steepness<D>,
     level: f64,
-    reach: f64,
     evaluations: u32,
 }
 
@@ -232,13 +246,13 @@ where
         + DifferentiateBlock<f64, D, SHORT>,
 {
     fn run(mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) -> u32 {
-        workspace.marks.reset(self.mesh.elements().len());
+        workspace.marks.reset(self.view.mesh.elements().len());
         workspace.open.clear();
         workspace.undecided.clear();
         workspace.frontier.clear();
         // The top level is the children of one node that is not asked.
         workspace.frontier.push(0);
-        for level in (0..self.mesh.tree().levels().len()).rev() {
+        for level in (0..self.view.mesh.tree().levels().len()).rev() {
             self.descend(level, workspace);
         }
         self.look_closer(workspace);
@@ -252,7 +266,7 @@ where
 
     /// Asks at the centres of all children of the frontier.
     fn descend(&mut self, level: usize, workspace: &mut MeshWorkspace<N, D>) {
-        let tree = self.mesh.tree();
+        let tree = self.view.mesh.tree();
         let MeshWorkspace { block, values, frontier, next, open, marks, .. } = workspace;
         let balls = &tree.levels()[level];
         next.clear();
@@ -260,10 +274,11 @@ where
             let count = group.len() * FAN;
             for (lane, &node) in group.iter().enumerate() {
                 for (i, centre) in balls.children(node as usize).into_iter().enumerate() {
-                    block.set(lane * FAN + i, self.field_from_mesh.transform_point(centre));
+                    block
+                        .set(lane * FAN + i, self.view.field_from_mesh.transform_point(centre));
                 }
             }
-            self.field.shape.block_distances(block, count, values);
+            self.shape.block_distances(block, count, values);
             self.evaluations += count as u32;
             for (lane, &node) in group.iter().enumerate() {
                 let first = node as usize * FAN;
@@ -281,7 +296,7 @@ where
                             let (name, centre) = (tree.order()[child], block.get(lane));
                             open.push(Part {
                                 name,
-                                element: self.element(name),
+                                element: self.view.element(name),
                                 centre,
                                 radius,
                             });
@@ -307,7 +322,7 @@ where
             for (lane, part) in parts.iter().enumerate() {
                 block.set(lane, part.centre);
             }
-            self.field.shape.block_gradients(block, parts.len(), slopes);
+            self.shape.block_gradients(block, parts.len(), slopes);
             let mut is_on_it = [false; BLOCK];
             for (lane, part) in parts.iter().enumerate() {
                 let (value, gradient) =
@@ -323,7 +338,7 @@ where
                     marks.set(part.name);
                 }
             }
-            self.field.shape.block_distances(block, parts.len(), values);
+            self.shape.block_distances(block, parts.len(), values);
             self.evaluations += 3 * parts.len() as u32;
             for (lane, part) in parts.iter().enumerate() {
                 let (p, value) = (block.get(lane), values.get(lane) - self.level);
@@ -346,7 +361,7 @@ where
             goal: Goal::Sign { tolerance: limits.tolerance },
             budget: limits.budget,
             level: self.level,
-            reach: self.reach,
+            reach: self.view.reach,
         };
         let MeshWorkspace { open, marks, undecided, search: memory, .. } = workspace;
         open.dedup_by_key(|part| part.name);
@@ -354,7 +369,8 @@ where
             if marks.is_set(name) {
                 continue;
             }
-            let answer = search(self.field.shape, &self.element(name), &terms, memory);
+            let element = self.view.element(name);
+            let answer = search(self.shape, &element, &terms, memory);
             self.evaluations += answer.evaluations;
             match answer.is_hit() {
                 Some(true) => marks.set(name),
@@ -366,16 +382,6 @@ where
                 }),
             }
         }
-    }
-
-    /// An element where the field sees it.
-    #[inline]
-    fn element(&self, name: u32) -> Element<N, D> {
-        let mut vertices = self.mesh.corners(name as usize);
-        for vertex in &mut vertices {
-            *vertex = self.field_from_mesh.transform_point(*vertex);
-        }
-        Element { vertices }
     }
 }
 

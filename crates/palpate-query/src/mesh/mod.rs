@@ -3,8 +3,10 @@
 
 //! Meshes against fields.
 
+mod contacts;
 mod hits;
 mod placed;
 
+pub use contacts::{MeshContacts, mesh_contacts};
 pub use hits::{MeshHits, MeshWorkspace, Undecided, mesh_hits};
 pub use placed::PlacedMesh;

@@ -6,6 +6,7 @@
 use palpate_field::{LARGEST_LENGTH, Pose};
 use palpate_mesh::Mesh;
 
+use crate::element::Element;
 use crate::error::QueryError;
 use crate::placed::Placed;
 
@@ -25,12 +26,11 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
         Self { mesh, world_from_mesh }
     }
 
-    /// From the mesh's coordinates to those of a shape, and how large coordinates become
-    /// on the way [m].
+    /// The mesh where a field sees it.
     pub(super) fn seen_from(
         &self,
         field: &Placed<'_, D>,
-    ) -> Result<(Pose<D>, f64), QueryError> {
+    ) -> Result<View<'a, N, D>, QueryError> {
         let poses = [field.world_from_body, self.world_from_mesh];
         if !poses.iter().all(Pose::is_finite) {
             return Err(QueryError::Pose);
@@ -41,7 +41,29 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
         if reach > LARGEST_LENGTH {
             return Err(QueryError::Coordinate { what: "a mesh in the world", value: reach });
         }
-        Ok((field.world_from_body.inverse() * self.world_from_mesh, reach))
+        let field_from_mesh = field.world_from_body.inverse() * self.world_from_mesh;
+        Ok(View { mesh: self.mesh, field_from_mesh, reach })
+    }
+}
+
+/// A mesh where a field sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View<'a, const N: usize, const D: usize> {
+    pub(super) mesh: &'a Mesh<N, D>,
+    pub(super) field_from_mesh: Pose<D>,
+    /// How large coordinates become on the way [m].
+    pub(super) reach: f64,
+}
+
+impl<const N: usize, const D: usize> View<'_, N, D> {
+    /// An element in the field's coordinates.
+    #[inline]
+    pub(super) fn element(&self, name: u32) -> Element<N, D> {
+        let mut vertices = self.mesh.corners(name as usize);
+        for vertex in &mut vertices {
+            *vertex = self.field_from_mesh.transform_point(*vertex);
+        }
+        Element { vertices }
     }
 }
 

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Parts of an element with a minimum of their own.
+//!
+//! Water rises over the cells of an element. A cell is under water from its lower bound
+//! on, and joined with the cells under water that it may touch. Where two pools meet, a
+//! path between them must climb to the lower bound of the cell that joins them, at least.
+//! If that is higher than the floor found in each pool, by more than the tolerance, the
+//! shallower pool is a patch, complete as it is; else the two are one. What is
+//! left at the end, the deepest pool of each connected part, is a patch too.
+//!
+//! This is the persistence of minima (Edelsbrunner, Letscher and Zomorodian 2002), with
+//! bounds in the place of values, so that what is told apart is apart.
+
+use palpate_field::Point;
+
+use crate::search::Cell;
+
+/// The most cells that are looked at together: 16 to the edge of a triangle. Their number
+/// squared is the number of pairs that may touch.
+pub(crate) const MOST_CELLS: usize = 256;
+
+/// Room for the rounding of how far centres of cells are apart, relative to their radii.
+const ROUNDINGS: f64 = 1e-9;
+
+/// Memory of a division into patches.
+#[derive(Debug)]
+pub(crate) struct Patches<const N: usize, const D: usize> {
+    pub(crate) cells: Vec<Cell<N, D>>,
+    /// While cells are halved: those that become `cells`.
+    pub(crate) halves: Vec<Cell<N, D>>,
+    centres: Vec<Point<D>>,
+    /// Cells by their lower bounds; in the end the deepest of each patch.
+    order: Vec<u32>,
+    is_wet: Vec<bool>,
+    /// For each cell, one whose water it is connected with, and one of the same patch: in
+    /// the end both lead to the deepest.
+    water: Vec<u32>,
+    patch: Vec<u32>,
+}
+
+impl<const N: usize, const D: usize> Patches<N, D> {
+    pub(crate) fn new() -> Self {
+        let room = MOST_CELLS;
+        Self {
+            cells: Vec::with_capacity(room),
+            halves: Vec::with_capacity(room),
+            centres: Vec::with_capacity(room),
+            order: Vec::with_capacity(room),
+            is_wet: Vec::with_capacity(room),
+            water: Vec::with_capacity(room),
+            patch: Vec::with_capacity(room),
+        }
+    }
+
+    /// Finds the patches of `cells`, which are all of one size, and how many there are.
+    pub(crate) fn divide(&mut self, weights: &[f64; N], tolerance: f64) -> usize {
+        let (cells, count) = (&self.cells, self.cells.len());
+        self.centres.clear();
+        self.centres.extend(cells.iter().map(|cell| cell.element.at(weights)));
+        self.order.clear();
+        self.order.extend(0..count as u32);
+        self.order.sort_unstable_by(|&a, &b| {
+            let lower = |i: u32| cells[i as usize].lower;
+            lower(a).total_cmp(&lower(b)).then(a.cmp(&b))
+        });
+        self.is_wet.clear();
+        self.is_wet.resize(count, false);
+        for names in [&mut self.water, &mut self.patch] {
+            names.clear();
+            names.extend(0..count as u32);
+        }
+        for i in 0..count {
+            self.flood(self.order[i], tolerance);
+        }
+        let Self { cells, order, patch, .. } = self;
+        order.retain(|&i| patch[i as usize] == i);
+        order.sort_unstable_by(|&a, &b| {
+            let upper = |i: u32| cells[i as usize].upper;
+            upper(a).total_cmp(&upper(b)).then(a.cmp(&b))
+        });
+        order.len()
+    }
+
+    /// Puts a cell under water.
+    fn flood(&mut self, cell: u32, tolerance: f64) {
+        let Cell { lower, radius, .. } = self.cells[cell as usize];
+        let centre = self.centres[cell as usize];
+        let touching = 2.0 * radius * (1.0 + ROUNDINGS);
+        self.is_wet[cell as usize] = true;
+        for other in 0..self.cells.len() {
+            let apart = self.centres[other] - centre;
+            if !self.is_wet[other] || apart.dot(apart) > touching * touching {
+                continue;
+            }
+            let (a, b) = (root(&mut self.water, cell), root(&mut self.water, other as u32));
+            if a == b {
+                continue;
+            }
+            let floor = |i: u32| self.cells[i as usize].upper;
+            let (deep, shallow) = if floor(a) <= floor(b) { (a, b) } else { (b, a) };
+            // A cell that is alone has its floor above its bound, and is never apart.
+            if lower <= floor(shallow) + tolerance {
+                self.patch[shallow as usize] = deep;
+            }
+            self.water[shallow as usize] = deep;
+        }
+    }
+
+    /// The cells of a patch, into `cells`, and the one with the least value found. The patch
+    /// of which that is least comes first.
+    pub(crate) fn copy(&mut self, patch: usize, cells: &mut Vec<Cell<N, D>>) -> Cell<N, D> {
+        let deepest = self.order[patch];
+        cells.clear();
+        for (i, cell) in self.cells.iter().enumerate() {
+            if root(&mut self.patch, i as u32) == deepest {
+                cells.push(*cell);
+            }
+        }
+        self.cells[deepest as usize]
+    }
+}
+
+/// The last of those that each name the next; they are made to name it sooner.
+fn root(names: &mut [u32], mut name: u32) -> u32 {
+    while names[name as usize] != name {
+        let next = names[names[name as usize] as usize];
+        names[name as usize] = next;
+        name = next;
+    }
+    name
+}
