@@ -23,6 +23,10 @@ use crate::search::{Cell, Search, Terms, Workspace};
 /// radii: half a block each.
 const HEIGHTS: [f64; SHORT / 2] = [1.5, 4.0, 12.0, 40.0];
 
+/// An element that is not plain is looked at in as many cells at least: 8 to the edge of a
+/// triangle. Bumps that are narrower may hide between their centres.
+const FEW_CELLS: usize = 64;
+
 /// A point is this much off the surface, in parts of the coordinates, before the way to
 /// the surface is a direction.
 const DIRECTION: f64 = 1e-9;
@@ -51,9 +55,10 @@ pub struct ElementContacts<'a, const D: usize> {
 ///   that are no higher than it as far as their bounds tell, leads to a contact that is as
 ///   deep as it is, up to the tolerance.
 ///
-/// What is not promised: barriers narrower than the cells, a sixteenth of the element's
-/// edge if all of it is within the gap, may be overlooked; then the deeper of the two
-/// minima stands for both.
+/// What is not promised: two minima closer to each other than an eighth of a triangle's edge,
+/// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two
+/// between which no barrier can be proven with a thirty-second of the edge, or with
+/// `limits.budget`.
 ///
 /// A contact's normal points from the shape to the element. Its gap is the way to the
 /// surface point that Newton's method finds, the nearest one where the field is exact. It
@@ -170,7 +175,7 @@ where
         }
         let is_whole = patches.cells.len() == 1 && patches.cells[0].radius == self.radius;
         let mut all = self.answer(self.dropped, Stop::Converged);
-        for patch in 0..patches.divide(&self.weights, tolerance) {
+        for patch in 0..patches.divide(&self.weights, tolerance, |cell| cell.lower) {
             let deepest = patches.copy(patch, cells);
             self.dropped = f64::INFINITY;
             if !is_whole {
@@ -190,20 +195,30 @@ where
         Certified { evaluations: self.sampler.evaluations, ..all }
     }
 
-    /// Halves all cells until there are as many as are looked at together.
+    /// Halves all cells until there are as many patches as their values let expect, or as
+    /// many cells as are looked at together.
     fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
-        let Patches { cells, halves, .. } = patches;
         let parts = parts_of_one::<N>();
-        while let [first, ..] = cells[..]
-            && cells.len() * parts <= MOST_CELLS
+        let mut cells_of_whole = 1;
+        while let [first, ..] = patches.cells[..]
+            && patches.cells.len() * parts <= MOST_CELLS
             && first.radius * self.sampler.steepness.lipschitz > tolerance
             && self.sampler.evaluations < self.budget
         {
+            let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
             for parents in cells.chunks(SHORT / parts) {
                 self.halve_each(parents, halves);
             }
             std::mem::swap(cells, halves);
+            cells_of_whole *= parts;
+            if cells_of_whole >= FEW_CELLS {
+                let seen = patches.divide(&self.weights, tolerance, |cell| cell.upper);
+                let proven = patches.divide(&self.weights, tolerance, |cell| cell.lower);
+                if proven >= seen {
+                    return;
+                }
+            }
         }
     }
 

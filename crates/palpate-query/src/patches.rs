@@ -15,11 +15,11 @@
 
 use palpate_field::Point;
 
+use crate::sampler::unit;
 use crate::search::Cell;
 
-/// The most cells that are looked at together: 16 to the edge of a triangle. Their number
-/// squared is the number of pairs that may touch.
-pub(crate) const MOST_CELLS: usize = 256;
+/// The most cells that are looked at together: 32 to the edge of a triangle.
+pub(crate) const MOST_CELLS: usize = 1024;
 
 /// Room for the rounding of how far centres of cells are apart, relative to their radii.
 const ROUNDINGS: f64 = 1e-9;
@@ -30,8 +30,10 @@ pub(crate) struct Patches<const N: usize, const D: usize> {
     pub(crate) cells: Vec<Cell<N, D>>,
     /// While cells are halved: those that become `cells`.
     pub(crate) halves: Vec<Cell<N, D>>,
+    /// How far cells lie along a direction; they are sorted by it.
+    places: Vec<f64>,
     centres: Vec<Point<D>>,
-    /// Cells by their lower bounds; in the end the deepest of each patch.
+    /// Cells as they go under water; in the end the deepest of each patch.
     order: Vec<u32>,
     is_wet: Vec<bool>,
     /// For each cell, one whose water it is connected with, and one of the same patch: in
@@ -46,6 +48,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         Self {
             cells: Vec::with_capacity(room),
             halves: Vec::with_capacity(room),
+            places: Vec::with_capacity(room),
             centres: Vec::with_capacity(room),
             order: Vec::with_capacity(room),
             is_wet: Vec::with_capacity(room),
@@ -54,42 +57,67 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         }
     }
 
-    /// Finds the patches of `cells`, which are all of one size, and how many there are.
-    pub(crate) fn divide(&mut self, weights: &[f64; N], tolerance: f64) -> usize {
-        let (cells, count) = (&self.cells, self.cells.len());
-        self.centres.clear();
-        self.centres.extend(cells.iter().map(|cell| cell.element.at(weights)));
-        self.order.clear();
-        self.order.extend(0..count as u32);
-        self.order.sort_unstable_by(|&a, &b| {
-            let lower = |i: u32| cells[i as usize].lower;
-            lower(a).total_cmp(&lower(b)).then(a.cmp(&b))
+    /// Finds the patches of `cells`, which are all of one size, and how many there are. A
+    /// cell is under water from `shore` of it on, its lower bound if what is told apart is
+    /// to be so.
+    pub(crate) fn divide(
+        &mut self,
+        weights: &[f64; N],
+        tolerance: f64,
+        shore: impl Fn(&Cell<N, D>) -> f64,
+    ) -> usize {
+        self.sort_along_element(weights);
+        let Self { cells, order, .. } = self;
+        order.clear();
+        order.extend(0..cells.len() as u32);
+        order.sort_unstable_by(|&a, &b| {
+            let shore = |i: u32| shore(&cells[i as usize]);
+            shore(a).total_cmp(&shore(b)).then(a.cmp(&b))
         });
         self.is_wet.clear();
-        self.is_wet.resize(count, false);
+        self.is_wet.resize(self.cells.len(), false);
         for names in [&mut self.water, &mut self.patch] {
             names.clear();
-            names.extend(0..count as u32);
+            names.extend(0..self.cells.len() as u32);
         }
-        for i in 0..count {
-            self.flood(self.order[i], tolerance);
+        for i in 0..self.order.len() {
+            let cell = self.order[i];
+            self.flood(cell, shore(&self.cells[cell as usize]) - tolerance);
         }
         let Self { cells, order, patch, .. } = self;
         order.retain(|&i| patch[i as usize] == i);
         order.sort_unstable_by(|&a, &b| {
-            let upper = |i: u32| cells[i as usize].upper;
-            upper(a).total_cmp(&upper(b)).then(a.cmp(&b))
+            let floor = |i: u32| cells[i as usize].upper;
+            floor(a).total_cmp(&floor(b)).then(a.cmp(&b))
         });
         order.len()
     }
 
-    /// Puts a cell under water.
-    fn flood(&mut self, cell: u32, tolerance: f64) {
-        let Cell { lower, radius, .. } = self.cells[cell as usize];
-        let centre = self.centres[cell as usize];
-        let touching = 2.0 * radius * (1.0 + ROUNDINGS);
+    /// Sorts the cells along the longest edge, so that those that touch are not far apart.
+    fn sort_along_element(&mut self, weights: &[f64; N]) {
+        let Self { cells, places, centres, .. } = self;
+        let Some(first) = cells.first() else { return };
+        let edge = |i: usize| first.element.vertices[(i + 1) % N] - first.element.vertices[i];
+        let longest =
+            (1..N).fold(edge(0), |l, i| if edge(i).norm() > l.norm() { edge(i) } else { l });
+        let direction = unit(longest);
+        let place = |cell: &Cell<N, D>| cell.element.at(weights).dot(direction);
+        cells.sort_by(|a, b| place(a).total_cmp(&place(b)));
+        places.clear();
+        places.extend(cells.iter().map(place));
+        centres.clear();
+        centres.extend(cells.iter().map(|cell| cell.element.at(weights)));
+    }
+
+    /// Puts a cell under water, and joins those pools through it of which the shallower has
+    /// its floor at `least` or above.
+    fn flood(&mut self, cell: u32, least: f64) {
+        let (centre, place) = (self.centres[cell as usize], self.places[cell as usize]);
+        let touching = 2.0 * self.cells[cell as usize].radius * (1.0 + ROUNDINGS);
+        let start = self.places.partition_point(|&other| other < place - touching);
+        let end = self.places.partition_point(|&other| other <= place + touching);
         self.is_wet[cell as usize] = true;
-        for other in 0..self.cells.len() {
+        for other in start..end {
             let apart = self.centres[other] - centre;
             if !self.is_wet[other] || apart.dot(apart) > touching * touching {
                 continue;
@@ -100,8 +128,8 @@ impl<const N: usize, const D: usize> Patches<N, D> {
             }
             let floor = |i: u32| self.cells[i as usize].upper;
             let (deep, shallow) = if floor(a) <= floor(b) { (a, b) } else { (b, a) };
-            // A cell that is alone has its floor above its bound, and is never apart.
-            if lower <= floor(shallow) + tolerance {
+            // A cell that is alone has its floor above its shore, and is never apart.
+            if floor(shallow) >= least {
                 self.patch[shallow as usize] = deep;
             }
             self.water[shallow as usize] = deep;

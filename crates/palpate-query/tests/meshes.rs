@@ -234,7 +234,7 @@ fn bumps_joined_below_the_triangle_are_two_contacts_still() -> Result<(), ShapeE
     let dumbbell = Shape::union([
         bump(-1.0, 0.0, 0.5)?,
         bump(1.0, 0.0, 0.5)?,
-        Shape::from_kernel(Cuboid::new(Vector([1.2, 0.2, 0.2]))?),
+        Shape::from_kernel(Cuboid::new(Vector([2.4, 0.4, 0.4]))?),
     ])?;
     assert_eq!(on_triangle(&dumbbell, 0.1, 0.0).len(), 2);
     Ok(())
@@ -242,14 +242,14 @@ fn bumps_joined_below_the_triangle_are_two_contacts_still() -> Result<(), ShapeE
 
 #[test]
 fn flats_and_ridges_touch_once() -> Result<(), ShapeError> {
-    let plate = Shape::from_kernel(Cuboid::new(Vector([2.0, 0.3, 1.0]))?);
+    let plate = Shape::from_kernel(Cuboid::new(Vector([4.0, 0.6, 2.0]))?);
     for height in [0.3, 0.29, 0.25] {
         assert_eq!(on_triangle(&plate, height, 0.0).len(), 1);
     }
     // An edge along x, upwards.
     let turn = palpate_field::Rotation::from_axis_angle(Vector([1.0, 0.0, 0.0]), 0.785)?;
     let ridge = plate.rotated(turn)?;
-    for height in [0.5, 0.8] {
+    for height in [0.5, 0.8, 0.9] {
         assert_eq!(on_triangle(&ridge, height, 0.0).len(), 1);
     }
     Ok(())
@@ -257,8 +257,8 @@ fn flats_and_ridges_touch_once() -> Result<(), ShapeError> {
 
 #[test]
 fn contacts_come_in_the_same_order_each_time() -> Result<(), Box<dyn std::error::Error>> {
-    let grid = |x: i32, z: i32| bump(0.4 * f64::from(x), 0.4 * f64::from(z), 0.25);
-    let bumps = (-2..=2).flat_map(|x| (-2..=2).map(move |z| grid(x, z)));
+    let grid = |x: i32, z: i32| bump(1.2 * f64::from(x), 1.2 * f64::from(z), 0.5);
+    let bumps = (-1..=1).flat_map(|x| (-1..=1).map(move |z| grid(x, z)));
     let bumps = Shape::union(bumps.collect::<Result<Vec<_>, _>>()?)?;
     let corners = [[-2.0, 0.2, -2.0], [2.0, 0.2, -2.0], [2.0, 0.2, 2.0], [-2.0, 0.2, 2.0]];
     let floor = TriangleMesh::new(corners.map(Vector).to_vec(), vec![[0, 2, 1], [0, 3, 2]])?;
@@ -266,7 +266,7 @@ fn contacts_come_in_the_same_order_each_time() -> Result<(), Box<dyn std::error:
     let mut workspace = MeshWorkspace::new();
     let first = mesh_contacts(&bumps, &floor, 0.0, &limits, &mut workspace)?.contacts.to_vec();
     // Those on the diagonal touch both triangles.
-    assert_eq!(first.len(), 25 + 5);
+    assert_eq!(first.len(), 9 + 3);
     let again = mesh_contacts(&bumps, &floor, 0.0, &limits, &mut workspace)?;
     assert_eq!(again.contacts, first);
     let fresh = &mut MeshWorkspace::new();
@@ -276,7 +276,7 @@ fn contacts_come_in_the_same_order_each_time() -> Result<(), Box<dyn std::error:
 
 #[test]
 fn the_field_and_the_mesh_may_both_be_moved() -> Result<(), Box<dyn std::error::Error>> {
-    let square = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.5]))?);
+    let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
     let line = Outline::new(vec![Vector([-3.0, 0.0]), Vector([3.0, 0.0])], vec![[0, 1]])?;
     let quarter = palpate_field::Rotation::from_angle(std::f64::consts::FRAC_PI_2)?;
     let field = Placed::new(&square, Pose::new(quarter, Vector([10.0, 2.0])));

@@ -31,10 +31,27 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     if !bytes.starts_with(b"glTF") || length < HEADER {
         return Err(malformed("it does not begin as binary glTF does"));
     }
-    let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(malformed)?;
+    let Gltf { document, blob } =
+        Gltf::from_slice_without_validation(bytes).map_err(malformed)?;
+    let document = validated(document)?;
     let mut scene = Scene { blob: blob.unwrap_or_default(), ..Scene::default() };
     scene.place_all(&document)?;
     Ok(TriangleMesh::new(scene.vertices, scene.triangles)?)
+}
+
+/// The document, if it agrees with itself. The validation of gltf 1.4 itself takes for
+/// granted that primitives name accessors that exist.
+fn validated(document: Document) -> Result<Document, ReadProblem> {
+    let json = document.into_json();
+    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for accessor in primitives.flat_map(|primitive| primitive.attributes.values()) {
+        let (accessor, count) = (accessor.value(), json.accessors.len());
+        if accessor >= count {
+            let problem = format!("a mesh names accessor {accessor}, and there are {count}");
+            return Err(malformed(problem));
+        }
+    }
+    Document::from_json(json).map_err(malformed)
 }
 
 fn malformed(problem: impl std::fmt::Display) -> ReadProblem {
