@@ -44,6 +44,8 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("triangle.minimum_1pc.S1.ns", 600.0),
     ("triangle.minimum_1pc.S2.ns", 1200.0),
     ("triangle.minimum_1pc.S3.ns", 3200.0),
+    ("segment.hit.wrench.over_triangle", 1.0),
+    ("segment.minimum_1pc.wrench.over_triangle", 1.0),
     ("mesh.hits_888.S3.p50_ns", 12_000.0),
     ("mesh.hits_100k.S3.p50_ns", 75_000.0),
     ("outline.hits_888.wrench.over_mesh", 1.0),

@@ -11,6 +11,7 @@ mod gallery;
 mod hand_csv;
 mod input;
 mod mass;
+mod mesh;
 mod outcome;
 mod picture;
 mod plot;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Gallery(options) => gallery::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Mass(options) => mass::run(&options),
+        Command::Mesh(options) => mesh::run(&options),
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(&options),
     };
