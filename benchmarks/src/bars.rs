@@ -57,6 +57,11 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("pair.separation.S3_S3.1mm.p50_ns", 45_000.0),
     ("pair.separation.S3_S3.0.1mm.p50_ns", 55_000.0),
     ("pair.sign.plate_torus.-1mm.p50_ns", 2_500.0),
+    ("pair.warm_1mm.S3_S3.p50_ns", 7_000.0),
+    ("manifold.boxes.p50_ns", 100_000.0),
+    ("manifold.peg.p50_ns", 400_000.0),
+    ("manifold.bar_torus.p50_ns", 20_000.0),
+    ("world.1000_bodies.step_ns", 10_000_000.0),
 ];
 
 /// Prints all rows and how they stand against their bars, or the rows as JSON.

@@ -7,8 +7,7 @@ use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
-use palpate::field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate::field::{BLOCK, Point, Pose, Rotation, SHORT, Shape, Vector};
+use palpate::field::{Point, Pose, Rotation, Shape, Vector};
 use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Limits, MeshWorkspace, PlacedMesh, mesh_hits};
 
@@ -58,13 +57,7 @@ fn measure_one<const N: usize, const D: usize>(
     mesh: &Mesh<N, D>,
     poses: &[Pose<D>],
     rows: &mut Rows,
-) -> Result<(), Box<dyn Error>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<(), Box<dyn Error>> {
     let radius = mesh.bounds().half_extents()[0];
     let limits = Limits { tolerance: TOLERANCE * radius, ..Limits::default() };
     let mut workspace = MeshWorkspace::new();

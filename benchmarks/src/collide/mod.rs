@@ -3,9 +3,11 @@
 
 //! Searches that prove where things touch.
 
+mod manifolds;
 mod meshes;
 mod pairs;
 mod triangles;
+mod worlds;
 
 use std::error::Error;
 use std::time::Instant;
@@ -36,6 +38,10 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     meshes::measure(&mut rows)?;
     eprintln!("measuring pairs …");
     pairs::measure(&mut rows)?;
+    eprintln!("measuring manifolds …");
+    manifolds::measure(&mut rows)?;
+    eprintln!("measuring worlds …");
+    worlds::measure(&mut rows)?;
     Ok(rows)
 }
 

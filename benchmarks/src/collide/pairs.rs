@@ -5,11 +5,12 @@
 
 use std::error::Error;
 use std::hint::black_box;
+use std::time::Instant;
 
 use palpate::field::kernel::{Cuboid, Torus};
 use palpate::field::{Pose, Rotation, Shape, Vector};
 use palpate::query::{
-    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, overlap, separation,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, overlap, separation,
 };
 
 use super::fastest;
@@ -53,7 +54,61 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
     let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
     let pairs = placed([&plate, &torus], -0.001)?;
-    ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)
+    ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)?;
+    follow("pair.warm_1mm.S3_S3", 1e-3, &placed([s3, s3], -0.005)?, rows)
+}
+
+/// Each pair moved on by 0.1 mm and turned by 0.1 mrad again and again, and followed.
+fn follow(
+    key: &str,
+    tolerance: f64,
+    pairs: &[Pair<'_>],
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
+    const STEPS: usize = 50;
+    let limits = Limits { tolerance, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let mut random = Random::new(7);
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    for [a, b] in pairs {
+        let mut track = Track::new(a.shape.clone(), b.shape.clone());
+        let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
+        let axis: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
+        let turn = Pose::rotation(Rotation::from_axis_angle(axis, 1e-4)?);
+        let mut here = b.world_from_body;
+        let mut poses = Vec::with_capacity(STEPS);
+        for _ in 0..STEPS {
+            here = Pose::translation(way * (1e-4 / way.norm())) * here * turn;
+            poses.push(here);
+        }
+        let mut fastest = vec![f64::INFINITY; STEPS];
+        for _ in 0..super::REPEATS {
+            track.forget();
+            track.separation(
+                [a.world_from_body, b.world_from_body],
+                &limits,
+                &mut workspace,
+            )?;
+            for (pose, fastest) in poses.iter().zip(&mut fastest) {
+                let start = Instant::now();
+                let answer = black_box(track.separation(
+                    [a.world_from_body, *pose],
+                    &limits,
+                    &mut workspace,
+                )?);
+                *fastest = fastest.min(start.elapsed().as_nanos() as f64);
+                evaluations += answer.evaluations;
+                undecided += u32::from(answer.upper - answer.lower > tolerance);
+            }
+        }
+        times.append(&mut fastest);
+    }
+    let asked = (times.len() * super::REPEATS) as f64;
+    super::summarise(key, &mut times, rows);
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / asked);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    Ok(())
 }
 
 fn ask<'a>(

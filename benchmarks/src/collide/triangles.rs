@@ -7,8 +7,7 @@
 use std::error::Error;
 use std::hint::black_box;
 
-use palpate::field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate::field::{Point, SHORT, Shape, Vector};
+use palpate::field::{Point, Shape, Vector};
 use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 
 use super::fastest;
@@ -37,10 +36,7 @@ pub(super) fn measure<const N: usize, const D: usize>(
     work: &Work<D>,
     half: f64,
     rows: &mut Rows,
-) -> Result<(), Box<dyn Error>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<(), Box<dyn Error>> {
     // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
     let questions: [(&str, Ask<N, D>, f64); 2] =
         [("hit", touches, 1e-4), ("minimum_1pc", minimum, 1e-2)];

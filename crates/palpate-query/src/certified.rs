@@ -38,7 +38,7 @@ impl<T> Certified<T> {
 pub enum Stop {
     /// The bounds are no further apart than the tolerance.
     Converged,
-    /// It is proven whether anything is at most zero.
+    /// It is proven whether anything is at most zero, or at most what counts as touching.
     SignKnown,
     /// The budget of evaluations, or the room of the workspace, came to its end first.
     BudgetSpent,

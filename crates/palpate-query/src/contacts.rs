@@ -7,7 +7,6 @@
 //! divided into [patches](crate::patches), each with a minimum of its own, and each is
 //! searched by itself.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
@@ -90,12 +89,9 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut Workspace<N, D>,
-) -> Result<ElementContacts<'w, D>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<ElementContacts<'w, D>, QueryError> {
     let terms = Terms {
-        goal: Goal::Least { tolerance: limits.tolerance },
+        goal: Goal::least(limits.tolerance),
         budget: limits.budget,
         level: level(shape, gap)?,
         reach: 0.0,
@@ -122,30 +118,24 @@ pub(crate) fn append<const N: usize, const D: usize>(
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
     out: &mut Vec<Contact<D>>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Point<D>> {
     let first = out.len();
     let Workspace { cells, samples, patches, .. } = workspace;
-    let tolerance = terms.goal.tolerance();
+    let tolerance = terms.goal.tolerance;
     let mut search = Search::new(shape, element, terms, samples);
     let answer = search.patches(element, patches, cells, |answer| {
         if answer.lower <= 0.0 && answer.upper <= tolerance.max(0.0) {
             out.push(at(shape, answer.best));
         }
     });
-    out[first..].sort_by(|a, b| a.gap.total_cmp(&b.gap));
+    out[first..].sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
     for (id, contact) in out[first..].iter_mut().enumerate() {
         contact.id = id as u64;
     }
     Certified { lower: answer.lower + terms.level, upper: answer.upper + terms.level, ..answer }
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// Tells what is known of each patch of an element, and returns what is known of all.
     fn patches(
         &mut self,
@@ -154,7 +144,7 @@ where
         cells: &mut Vec<Cell<N, D>>,
         mut tell: impl FnMut(&Certified<Point<D>>),
     ) -> Certified<Point<D>> {
-        let tolerance = self.goal.tolerance();
+        let tolerance = self.goal.tolerance;
         let whole = match self.begin(element) {
             Err(answer) => {
                 tell(&answer);

@@ -26,9 +26,23 @@ pub enum QueryError {
         /// The length.
         value: f64,
     },
+    /// A setting that is negative, zero or not finite.
+    #[error("{what} must be finite and positive, got {value:?} m")]
+    Setting {
+        /// What is set.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
     /// A pose with a number that is NaN or infinite.
     #[error("a pose must be finite")]
     Pose,
+    /// A name that no body of the world has, or no more.
+    #[error("there is no body {body} in this world")]
+    NoBody {
+        /// Its index.
+        body: usize,
+    },
     /// Two bodies that both go on without end.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,

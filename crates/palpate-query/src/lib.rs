@@ -41,6 +41,7 @@ mod contacts;
 mod element;
 mod error;
 mod goal;
+mod manifold;
 mod mesh;
 mod pair;
 mod patches;
@@ -48,16 +49,22 @@ mod placed;
 mod ray;
 mod sampler;
 mod search;
+mod world;
 
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
 pub use error::QueryError;
+pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{
     MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
 };
-pub use pair::{Nearest, PairWorkspace, PoseDerivative, overlap, separation};
+pub use pair::{
+    Escape, Nearest, PairWorkspace, PoseDerivative, Rates, Track, escape, overlap, rates,
+    separation,
+};
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};
+pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -102,7 +102,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
             (1..N).fold(edge(0), |l, i| if edge(i).norm() > l.norm() { edge(i) } else { l });
         let direction = unit(longest);
         let place = |cell: &Cell<N, D>| cell.element.at(weights).dot(direction);
-        cells.sort_by(|a, b| place(a).total_cmp(&place(b)));
+        cells.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)));
         places.clear();
         places.extend(cells.iter().map(place));
         centres.clear();

@@ -8,7 +8,6 @@
 //! and there are many. Then points lifted off the ray along the gradient help: the ball
 //! that a value proves empty about such a point is larger, and the ray leaves it later.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
@@ -113,10 +112,7 @@ pub fn ray<const D: usize>(
     shape: &Shape<D>,
     ray: &Ray<D>,
     limits: &Limits,
-) -> Certified<Option<RayHit<D>>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Option<RayHit<D>>> {
     let mut samples = Samples::new();
     let mut advance = Advance {
         sampler: Sampler::new(shape, &mut samples, ray.origin.norm(), 0.0),
@@ -136,10 +132,7 @@ struct Advance<'a, const D: usize> {
     witness: Option<f64>,
 }
 
-impl<const D: usize> Advance<'_, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+impl<const D: usize> Advance<'_, D> {
     fn run(&mut self, limits: &Limits) -> Certified<Option<RayHit<D>>> {
         let (length, gap) = (self.ray.length, limits.tolerance);
         let (mut free, mut previous, mut is_short) = (0.0, f64::INFINITY, false);

@@ -73,11 +73,7 @@ pub(crate) struct Sampler<'a, const D: usize> {
     pub(crate) evaluations: u32,
 }
 
-impl<'a, const D: usize> Sampler<'a, D>
-where
-    dyn palpate_field::field::Field<D>: palpate_field::field::EvaluateBlock<f64, D, SHORT>
-        + palpate_field::field::DifferentiateBlock<f64, D, SHORT>,
-{
+impl<'a, const D: usize> Sampler<'a, D> {
     /// For points at most `reach` from the origin [m], and values from `level` on.
     #[inline]
     pub(crate) fn new(

@@ -19,7 +19,6 @@
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
@@ -98,11 +97,8 @@ pub fn minimum<const N: usize, const D: usize>(
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
-    let goal = Goal::Least { tolerance: limits.tolerance };
+) -> Certified<Point<D>> {
+    let goal = Goal::least(limits.tolerance);
     search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
@@ -116,11 +112,8 @@ pub fn touches<const N: usize, const D: usize>(
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
-    let goal = Goal::Sign { tolerance: limits.tolerance };
+) -> Certified<Point<D>> {
+    let goal = Goal::sign(limits.tolerance);
     search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
@@ -146,10 +139,7 @@ pub(crate) fn search<const N: usize, const D: usize>(
     element: &Element<N, D>,
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Certified<Point<D>> {
     Search::new(shape, element, terms, &mut workspace.samples)
         .run(element, &mut workspace.cells)
 }
@@ -171,10 +161,7 @@ pub(crate) struct Search<'a, const N: usize, const D: usize> {
     pub(crate) keeps_all: bool,
 }
 
-impl<'a, const N: usize, const D: usize> Search<'a, N, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, SHORT> + DifferentiateBlock<f64, D, SHORT>,
-{
+impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     pub(crate) fn new(
         shape: &'a Shape<D>,
         element: &Element<N, D>,

@@ -3,11 +3,11 @@
 
 //! Meshes and outlines on random trees, against samples of all elements and against each
 //! element asked by itself; contacts of bumps, flats and ridges.
+#![allow(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid};
-use palpate_field::{BLOCK, Point, Pose, SHORT, Shape, ShapeError, Vector};
+use palpate_field::{Point, Pose, Shape, ShapeError, Vector};
 use palpate_mesh::{Mesh, MeshError, Outline, TriangleMesh};
 use palpate_query::{
     Contact, Element, Limits, MeshContacts, MeshWorkspace, Placed, PlacedMesh, QueryError,
@@ -64,10 +64,6 @@ fn mesh<const N: usize, const D: usize>(
 fn on_trees<const N: usize, const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
 {
     let mut workspace = MeshWorkspace::new();
     let mut alone = Workspace::new();
@@ -136,13 +132,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
     pose: Pose<D>,
     gap: f64,
     limits: &Limits,
-) -> Result<(), String>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<(), String> {
     let (mut workspace, mut alone) = (MeshWorkspace::new(), Workspace::new());
     let placed = PlacedMesh::new(mesh, pose);
     let all = mesh_contacts(shape, placed, gap, limits, &mut workspace).unwrap();

@@ -3,9 +3,6 @@
 
 //! Where the elements of a mesh touch a field.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{BLOCK, SHORT};
-
 use super::hits::{MeshWorkspace, Undecided, find};
 use super::placed::PlacedMesh;
 use crate::certified::Limits;
@@ -65,18 +62,12 @@ pub fn mesh_contacts<'a, 'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut MeshWorkspace<N, D>,
-) -> Result<MeshContacts<'w, D>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<MeshContacts<'w, D>, QueryError> {
     let (field, placed) = (field.into(), mesh.into());
     let mut evaluations = find(&field, &placed, gap, limits, workspace)?;
     let view = placed.seen_from(&field)?;
     let terms = Terms {
-        goal: Goal::Least { tolerance: limits.tolerance },
+        goal: Goal::least(limits.tolerance),
         budget: limits.budget,
         level: level(field.shape, gap)?,
         reach: view.reach,

@@ -16,8 +16,7 @@
 //! linear model hits most. Those that stay open are halved twice and looked at again. Few
 //! remain to be searched one by one.
 
-use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
-use palpate_field::{BLOCK, Block, Column, Gradients, Point, SHORT, Shape};
+use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
 use palpate_mesh::FAN;
 
 use super::placed::{PlacedMesh, View};
@@ -152,13 +151,7 @@ pub fn mesh_hits<'a, 'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut MeshWorkspace<N, D>,
-) -> Result<MeshHits<'w>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<MeshHits<'w>, QueryError> {
     let evaluations = find(&field.into(), &mesh.into(), gap, limits, workspace)?;
     Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
 }
@@ -170,13 +163,7 @@ pub(super) fn find<const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &mut MeshWorkspace<N, D>,
-) -> Result<u32, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+) -> Result<u32, QueryError> {
     let level = level(field.shape, gap)?;
     let view = placed.seen_from(field)?;
     // No element is larger than the mesh.
@@ -238,13 +225,7 @@ struct Sweep<'a, const N: usize, const D: usize> {
     evaluations: u32,
 }
 
-impl<const N: usize, const D: usize> Sweep<'_, N, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK>
-        + DifferentiateBlock<f64, D, BLOCK>
-        + EvaluateBlock<f64, D, SHORT>
-        + DifferentiateBlock<f64, D, SHORT>,
-{
+impl<const N: usize, const D: usize> Sweep<'_, N, D> {
     fn run(mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) -> u32 {
         workspace.marks.reset(self.view.mesh.elements().len());
         workspace.open.clear();
@@ -358,7 +339,7 @@ where
     /// Searches the elements that are still open, one by one.
     fn search_rest(&mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) {
         let terms = Terms {
-            goal: Goal::Sign { tolerance: limits.tolerance },
+            goal: Goal::sign(limits.tolerance),
             budget: limits.budget,
             level: self.level,
             reach: self.view.reach,

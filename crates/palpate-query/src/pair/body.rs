@@ -7,6 +7,8 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
+use super::cell::reach;
+
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
@@ -42,6 +44,11 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
+    /// The shape's box, in its own coordinates.
+    pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
+        self.aabb
+    }
+
     /// A box of the frame that holds the shape.
     pub(crate) fn aabb(&self) -> Option<Aabb<D>> {
         let aabb = self.aabb?;
@@ -49,7 +56,7 @@ impl<'a, const D: usize> Body<'a, D> {
             None => aabb,
             Some(pose) => {
                 let placed = aabb.placed(&pose.inverse());
-                placed.grown(self.geometry(corner(&placed)))
+                placed.grown(self.geometry(reach(&placed)))
             }
         })
     }
@@ -73,6 +80,14 @@ impl<'a, const D: usize> Body<'a, D> {
         match &self.body_from_frame {
             None => p,
             Some(pose) => pose.transform_point(p),
+        }
+    }
+
+    /// A point of the frame, from one in the shape's coordinates.
+    pub(crate) fn in_frame(&self, local: Point<D>) -> Point<D> {
+        match &self.body_from_frame {
+            None => local,
+            Some(pose) => pose.inverse().transform_point(local),
         }
     }
 
@@ -129,6 +144,18 @@ impl<'a, const D: usize> Body<'a, D> {
     pub(crate) fn slope(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let local = self.local(p);
         let (f, gradient) = self.shape.distance_gradient(local);
+        self.slope_of(local, f, gradient)
+    }
+
+    /// `g` and its gradient in the frame, at a point in the shape's coordinates where the
+    /// field is `f` and has a gradient.
+    #[inline]
+    pub(crate) fn slope_of(
+        &self,
+        local: Point<D>,
+        f: f64,
+        gradient: Vector<f64, D>,
+    ) -> (f64, Vector<f64, D>) {
         let (outside, away) = self.outside_box(local);
         let inner = if self.is_known(local, 0.0) { f * self.scale } else { outside };
         let (value, slope) =
@@ -154,9 +181,4 @@ impl<'a, const D: usize> Body<'a, D> {
             (f64::NEG_INFINITY, away)
         }
     }
-}
-
-/// The distance of a box's farthest corner from the origin [m].
-fn corner<const D: usize>(aabb: &Aabb<D>) -> f64 {
-    aabb.centre().norm() + aabb.half_extents().norm()
 }

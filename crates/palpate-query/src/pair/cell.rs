@@ -11,6 +11,12 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 /// Sides that are halved, as a share of the longest.
 const LONG_SIDE: f64 = 0.6;
 
+/// Sides along which fields change by less than this share of the most are level.
+const LEVEL: f64 = 0.01;
+
+/// A level side is at most so many times as long as the others.
+const THIN: f64 = 8.0;
+
 /// The last bits of a sum of models.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
@@ -22,11 +28,13 @@ pub(crate) struct Cell<const D: usize> {
     pub(crate) centre: Point<D>,
     /// Half of its sides.
     pub(crate) half: Vector<f64, D>,
+    /// Bit k: neither field seems to vary along side k.
+    pub(crate) level: u8,
 }
 
 impl<const D: usize> Cell<D> {
     pub(crate) const NOTHING: Self =
-        Self { lower: f64::NEG_INFINITY, centre: Vector::ZERO, half: Vector::ZERO };
+        Self { lower: f64::NEG_INFINITY, centre: Vector::ZERO, half: Vector::ZERO, level: 0 };
 
     /// A box of which nothing is known.
     pub(crate) fn unknown(aabb: &Aabb<D>) -> Self {
@@ -43,15 +51,42 @@ impl<const D: usize> Cell<D> {
         self.half.norm() * (1.0 + ROUNDINGS)
     }
 
+    /// Learns from models along which sides fields vary.
+    #[inline]
+    pub(crate) fn learn(&mut self, [a, b]: &[Model; 2]) {
+        let change = |k: usize| a.gradient[k].abs() + b.gradient[k].abs();
+        let most = (0..D).fold(0.0_f64, |most, k| most.max(change(k)));
+        self.level = 0;
+        for k in 0..D {
+            self.level |= u8::from(change(k) < LEVEL * most) << k;
+        }
+    }
+
+    /// Whether each side is to be halved: the long ones of those along which the fields
+    /// vary, or of all where the box is thin already.
+    #[inline]
+    fn splits(&self) -> [bool; D] {
+        let longest = |level: u8| {
+            let sides = (0..D).filter(|k| level & (1 << k) == 0);
+            sides.fold(0.0_f64, |longest, k| longest.max(self.half[k]))
+        };
+        let all = longest(0);
+        let varying = longest(self.level);
+        let is_thin = THIN * varying < all;
+        let (level, longest) = if is_thin { (0, all) } else { (self.level, varying) };
+        std::array::from_fn(|k| {
+            level & (1 << k) == 0 && (self.half[k] > LONG_SIDE * longest || longest == 0.0)
+        })
+    }
+
     /// Halves the box along its long sides, puts the parts after the first `count` of
     /// `parts`, and says how many there are then.
     #[inline]
     pub(crate) fn halve(&self, parts: &mut [Self], count: usize) -> usize {
-        let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(self.half[k]));
         parts[count] = *self;
         let mut end = count + 1;
-        for k in 0..D {
-            if self.half[k] > LONG_SIDE * longest || longest == 0.0 {
+        for (k, is_split) in self.splits().into_iter().enumerate() {
+            if is_split {
                 for i in count..end {
                     let mut other = parts[i];
                     let half = 0.5 * other.half[k];
@@ -67,23 +102,33 @@ impl<const D: usize> Cell<D> {
         end
     }
 
-    /// The box in parts of similar sides, as many as fit into a block; how many there are.
-    pub(crate) fn grid(&self, parts: &mut [Self; BLOCK]) -> usize {
-        parts[0] = *self;
-        let mut count = 1;
-        while count << D <= BLOCK {
-            let whole = *parts;
-            let mut end = 0;
-            for cell in &whole[..count] {
-                end = cell.halve(parts, end);
+    /// Fills `cells` with the parts of the box, of similar sides, as many as fit into a
+    /// block.
+    pub(crate) fn grid(&self, cells: &mut Vec<Self>) {
+        cells.clear();
+        cells.push(*self);
+        let mut first = 0;
+        while (cells.len() - first) << D <= BLOCK {
+            let end = cells.len();
+            for i in first..end {
+                let mut parts = [Self::NOTHING; 8];
+                let count = cells[i].halve(&mut parts, 0);
+                cells.extend_from_slice(&parts[..count]);
             }
-            if end == count {
+            if cells.len() - end == end - first {
+                // A point has no parts.
+                cells.truncate(end);
                 break;
             }
-            count = end;
+            first = end;
         }
-        count
+        cells.drain(..first);
     }
+}
+
+/// No point of a box is farther from the origin [m].
+pub(crate) fn reach<const D: usize>(aabb: &Aabb<D>) -> f64 {
+    aabb.centre().norm() + aabb.half_extents().norm()
 }
 
 /// The box of which least is known comes first.

@@ -3,9 +3,8 @@
 
 //! Two bodies in one frame, asked a block at a time.
 
-use palpate_field::field::{EvaluateBlock, Field};
 use palpate_field::scalar::Model;
-use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Vector};
+use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 
 use super::body::Body;
 use super::cell::Cell;
@@ -19,6 +18,7 @@ pub(crate) struct Memory<const D: usize> {
     points: Block<f64, D, BLOCK>,
     boxes: Block<Model, D, BLOCK>,
     values: Column<f64, BLOCK>,
+    slopes: Gradients<f64, D, BLOCK>,
     models: [Column<Model, BLOCK>; 2],
 }
 
@@ -29,6 +29,7 @@ impl<const D: usize> Memory<D> {
             points: Block::zero(),
             boxes: Block::zero(),
             values: Column::zero(),
+            slopes: Gradients::zero(),
             models: [Column::zero(), Column::zero()],
         }
     }
@@ -36,6 +37,7 @@ impl<const D: usize> Memory<D> {
 
 /// Two bodies in the frame of the first, so that what is known of places stays true of
 /// it while both move.
+#[derive(Clone, Copy)]
 pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) bodies: [Body<'a, D>; 2],
     /// Boxes of the frame that hold the bodies; one of them at least is there.
@@ -47,10 +49,7 @@ pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) evaluations: u32,
 }
 
-impl<'a, const D: usize> Couple<'a, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
+impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
         if !(a.world_from_body.is_finite() && b.world_from_body.is_finite()) {
             return Err(QueryError::Pose);
@@ -78,6 +77,21 @@ where
         [self.bodies[0].slope(p), self.bodies[1].slope(p)]
     }
 
+    /// A point of a body's surface near a point of the frame, in the frame.
+    pub(crate) fn surface_point(&self, body: usize, p: Point<D>) -> Option<Point<D>> {
+        let body = &self.bodies[body];
+        Some(body.in_frame(body.shape.surface_point(body.local(p))?))
+    }
+
+    /// From the middle of the first body's box to that of the second's; zero if one has
+    /// none.
+    pub(crate) fn between_centres(&self) -> Vector<f64, D> {
+        match self.aabbs {
+            [Some(a), Some(b)] => b.centre() - a.centre(),
+            _ => Vector::ZERO,
+        }
+    }
+
     /// `g` of both at the centres of cells.
     pub(crate) fn values(
         &mut self,
@@ -94,6 +108,28 @@ where
             body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
             for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
                 *value = body.value(*local, memory.values.get(i));
+            }
+        }
+    }
+
+    /// `g` of both at points, with gradients.
+    pub(crate) fn block_slopes(
+        &mut self,
+        points: &[Point<D>],
+        memory: &mut Memory<D>,
+        slopes: &mut [[(f64, Vector<f64, D>); BLOCK]; 2],
+    ) {
+        self.evaluations += 4 * points.len() as u32;
+        for (body, slopes) in self.bodies.iter().zip(slopes) {
+            for (i, p) in points.iter().enumerate() {
+                memory.points.set(i, body.local(*p));
+            }
+            body.shape.block_gradients(&memory.points, points.len(), &mut memory.slopes);
+            for (i, slope) in slopes[..points.len()].iter_mut().enumerate() {
+                let local = memory.points.get(i);
+                let (f, gradient) =
+                    (memory.slopes.distance.get(i), memory.slopes.gradient.get(i));
+                *slope = body.slope_of(local, f, gradient);
             }
         }
     }
@@ -141,10 +177,16 @@ where
         grown.reduce(|a, b| common(&a, &b)).unwrap_or(nowhere)
     }
 
-    /// How far the boxes of both bodies are apart, if they are [m].
+    /// How far the boxes of both bodies are apart along a side of either, if they are [m].
     pub(crate) fn gap_of_boxes(&self) -> Option<f64> {
-        let both = self.root(0.0);
-        let gap = (0..D).fold(0.0_f64, |gap, k| gap.max(both.min[k] - both.max[k]));
+        let inside_out = |both: Aabb<D>| {
+            (0..D).fold(f64::NEG_INFINITY, |gap, k| gap.max(both.min[k] - both.max[k]))
+        };
+        let [Some(a), Some(b)] = self.aabbs else { return None };
+        let mut gap = inside_out(common(&a, &b));
+        if let Some(second) = self.bodies[1].own_box() {
+            gap = gap.max(inside_out(common(&a.placed(&self.second_from_frame), &second)));
+        }
         (gap > 0.0).then_some(gap)
     }
 }

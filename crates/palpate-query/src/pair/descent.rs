@@ -3,11 +3,9 @@
 
 //! Minimax proximal steps: points at which the larger of two fields is less.
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Point, Vector};
+use palpate_field::{Point, Vector};
 
-use super::search::Search;
+use super::couple::Couple;
 use crate::goal::Goal;
 
 /// Steps of a descent at most.
@@ -20,7 +18,7 @@ const SLOW: f64 = 0.2;
 /// in the mean whose slope, times `step`, leads to where their larger one plus
 /// `|e|²/2 step` is least.
 #[inline]
-pub(super) fn share<const D: usize>(
+fn share<const D: usize>(
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
     step: f64,
 ) -> f64 {
@@ -33,45 +31,42 @@ pub(super) fn share<const D: usize>(
     }
 }
 
-impl<const D: usize> Search<'_, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
-    /// Improves the best point, from `start`.
-    pub(super) fn descend(&mut self, start: Point<D>) {
-        let mut p = start;
-        let mut here = self.couple.slopes(p);
-        let mut value = here[0].0.max(here[1].0);
-        let mut step = value.abs().max(self.goal.tolerance());
-        let mut small_gains = 0;
-        for _ in 0..STEPS {
-            let share = share(here, step);
-            let [(_, slope_a), (_, slope_b)] = here;
-            let next = p - (slope_a * share + slope_b * (1.0 - share)) * step;
-            let there = self.couple.slopes(next);
-            let next_value = there[0].0.max(there[1].0);
-            if next_value < value {
-                let gain = value - next_value;
-                // Whether bodies that are far apart overlap, boxes tell sooner.
-                let is_slow =
-                    matches!(self.goal, Goal::Sign { .. }) && gain < SLOW * next_value;
-                (p, here, value) = (next, there, next_value);
-                if is_slow {
-                    break;
-                }
-                step *= 2.5;
-                small_gains =
-                    if gain < 0.05 * self.goal.tolerance() { small_gains + 1 } else { 0 };
-            } else {
-                step *= 0.25;
-            }
-            let is_enough = self.goal.is_hit(value + self.slack);
-            if is_enough || small_gains == 2 || step < 0.05 * self.goal.tolerance() {
+/// A point from `start` on at which the larger of both is less, and its value there;
+/// values may be off by `slack`.
+pub(crate) fn descend<const D: usize>(
+    couple: &mut Couple<'_, D>,
+    start: Point<D>,
+    goal: Goal,
+    slack: f64,
+) -> (f64, Point<D>) {
+    let mut p = start;
+    let mut here = couple.slopes(p);
+    let mut value = here[0].0.max(here[1].0);
+    let mut step = value.abs().max(goal.tolerance);
+    let mut small_gains = 0;
+    for _ in 0..STEPS {
+        let share = share(here, step);
+        let [(_, slope_a), (_, slope_b)] = here;
+        let next = p - (slope_a * share + slope_b * (1.0 - share)) * step;
+        let there = couple.slopes(next);
+        let next_value = there[0].0.max(there[1].0);
+        if next_value < value {
+            let gain = value - next_value;
+            // Whether bodies that are far apart are so, boxes tell sooner.
+            let is_slow = gain < SLOW * (next_value - goal.apart);
+            (p, here, value) = (next, there, next_value);
+            if is_slow {
                 break;
             }
+            step *= 2.5;
+            small_gains = if gain < 0.05 * goal.tolerance { small_gains + 1 } else { 0 };
+        } else {
+            step *= 0.25;
         }
-        if value < self.upper {
-            (self.upper, self.best) = (value, p);
+        let is_enough = goal.is_hit(value + slack);
+        if is_enough || small_gains == 2 || step < 0.05 * goal.tolerance {
+            break;
         }
     }
+    (value, p)
 }

@@ -23,15 +23,14 @@
 //! tangent planes plus a parabola is least at a step along a mean of both gradients.
 
 mod body;
-mod cell;
-mod couple;
-mod descent;
+pub(crate) mod cell;
+pub(crate) mod couple;
+pub(crate) mod descent;
+mod escape;
 mod nearest;
-mod search;
-
-use palpate_field::BLOCK;
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
+mod rates;
+pub(crate) mod search;
+mod track;
 
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
@@ -40,8 +39,11 @@ use crate::placed::Placed;
 use couple::Couple;
 use search::Search;
 
-pub use nearest::{Nearest, PoseDerivative};
+pub use escape::{Escape, escape};
+pub use nearest::Nearest;
+pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
+pub use track::Track;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
@@ -67,11 +69,8 @@ pub fn separation<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Certified<Nearest<D>>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
-    let goal = Goal::Least { tolerance: 0.5 * limits.tolerance };
+) -> Result<Certified<Nearest<D>>, QueryError> {
+    let goal = Goal::least(0.5 * limits.tolerance);
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }
 
@@ -88,10 +87,7 @@ pub fn overlap<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Certified<Nearest<D>>, QueryError>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
-    let goal = Goal::Sign { tolerance: 0.5 * limits.tolerance };
+) -> Result<Certified<Nearest<D>>, QueryError> {
+    let goal = Goal::sign(0.5 * limits.tolerance);
     Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
 }

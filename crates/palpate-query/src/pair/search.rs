@@ -5,13 +5,12 @@
 
 use std::collections::BinaryHeap;
 
-use palpate_field::field::{EvaluateBlock, Field};
-use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, least_of_larger};
+use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
+use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
 use crate::goal::Goal;
 
@@ -26,12 +25,12 @@ const ROOM: usize = 1 << 16;
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best, after those that only may no longer not.
-    pub(super) cells: BinaryHeap<Cell<D>>,
+    cells: BinaryHeap<Cell<D>>,
     /// Boxes to be looked at as they are.
-    pub(super) pending: Vec<Cell<D>>,
+    pub(crate) pending: Vec<Cell<D>>,
     /// Boxes that were dropped, if they are to be kept.
-    pub(super) leaves: Vec<Cell<D>>,
-    open: Vec<usize>,
+    leaves: Vec<Cell<D>>,
+    pub(crate) open: Vec<usize>,
     pub(crate) memory: Memory<D>,
 }
 
@@ -42,10 +41,23 @@ impl<const D: usize> PairWorkspace<D> {
         Self {
             cells: BinaryHeap::with_capacity(ROOM),
             pending: Vec::with_capacity(ROOM),
-            leaves: Vec::new(),
+            leaves: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
             memory: Memory::new(),
         }
+    }
+
+    /// How many boxes the last search left.
+    pub(super) fn known(&self) -> usize {
+        self.cells.len() + self.pending.len() + self.leaves.len()
+    }
+
+    /// Moves all boxes that the last search left into `known`.
+    pub(super) fn take_known(&mut self, known: &mut Vec<Cell<D>>) {
+        known.clear();
+        known.extend(self.cells.drain());
+        known.append(&mut self.pending);
+        known.append(&mut self.leaves);
     }
 }
 
@@ -56,25 +68,22 @@ impl<const D: usize> Default for PairWorkspace<D> {
 }
 
 /// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
-pub(super) struct Search<'a, const D: usize> {
+pub(crate) struct Search<'a, const D: usize> {
     pub(super) couple: Couple<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
     pub(super) upper: f64,
-    pub(super) best: Point<D>,
+    pub(crate) best: Point<D>,
     /// Nothing in the boxes that were dropped is less.
     pub(super) dropped: f64,
     /// What values may be off by [m].
     pub(super) slack: f64,
-    /// Whether boxes that are dropped are to be kept.
+    /// Whether boxes that are dropped are kept.
     pub(super) keeps_leaves: bool,
 }
 
-impl<'a, const D: usize> Search<'a, D>
-where
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
-{
-    pub(super) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
+impl<'a, const D: usize> Search<'a, D> {
+    pub(crate) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
         Self {
             couple,
             goal,
@@ -88,22 +97,68 @@ where
     }
 
     /// Searches everywhere, from the middle of what the boxes of both have in common.
-    pub(super) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
+    pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
+        match self.told_by_boxes() {
+            Some(answer) => answer,
+            None => self.run_within(0.0, workspace).0,
+        }
+    }
+
+    /// The answer, if the boxes of both bodies are as far apart as matters.
+    pub(super) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
+        let gap = self.couple.gap_of_boxes()?;
         self.best = self.couple.root(0.0).centre();
-        if let (Goal::Sign { .. }, Some(gap)) = (self.goal, self.couple.gap_of_boxes()) {
-            // Half of it is what both values are at least, somewhere between.
-            self.slack = self.couple.slack(self.best.norm() + gap);
-            if 0.5 * gap > self.slack {
-                return self.answer(Stop::SignKnown, 0.5 * gap - self.slack);
+        // One of both values is at least half of it, everywhere.
+        self.slack = self.couple.slack(self.best.norm() + gap);
+        let lower = 0.5 * gap - self.slack;
+        (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
+    }
+
+    /// Improves the best point, from `start`.
+    pub(super) fn descend(&mut self, start: Point<D>) {
+        let (value, p) = descend(&mut self.couple, start, self.goal, self.slack);
+        if value < self.upper {
+            (self.upper, self.best) = (value, p);
+        }
+    }
+
+    /// Searches everywhere, and `margin` around it; also returns the box that it searched.
+    pub(super) fn run_within(
+        &mut self,
+        margin: f64,
+        workspace: &mut PairWorkspace<D>,
+    ) -> (Certified<Nearest<D>>, Aabb<D>) {
+        let both = self.couple.root(0.0);
+        self.slack = self.couple.slack(reach(&both));
+        self.descend(both.centre());
+        let root = self.root(margin);
+        self.slack = self.couple.slack(reach(&root));
+        workspace.leaves.clear();
+        if self.goal.is_hit(self.upper + self.slack) {
+            return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
+        }
+        Cell::unknown(&root).grid(&mut workspace.pending);
+        (self.refine(&root, workspace), root)
+    }
+
+    /// Takes over boxes, parts of `root`, of which something is known.
+    pub(super) fn keep(
+        &mut self,
+        cells: impl Iterator<Item = Cell<D>>,
+        root: &Aabb<D>,
+        workspace: &mut PairWorkspace<D>,
+    ) {
+        workspace.pending.clear();
+        workspace.leaves.clear();
+        self.slack = self.couple.slack(reach(root));
+        let threshold = self.threshold();
+        for cell in cells {
+            if cell.lower < threshold {
+                workspace.pending.push(cell);
+            } else {
+                self.drop_cell(&cell, workspace);
             }
         }
-        self.descend(self.best);
-        let root = self.root(0.0);
-        workspace.pending.clear();
-        let mut parts = [Cell::NOTHING; BLOCK];
-        let count = Cell::unknown(&root).grid(&mut parts);
-        workspace.pending.extend_from_slice(&parts[..count]);
-        self.refine(&root, workspace)
     }
 
     /// Searches the pending boxes, parts of `root`, and all that is found in them.
@@ -112,8 +167,7 @@ where
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
     ) -> Certified<Nearest<D>> {
-        let size = root.half_extents().norm();
-        self.slack = self.couple.slack(root.centre().norm() + size);
+        let largest = SMALL * root.half_extents().norm();
         workspace.cells.clear();
         loop {
             let lowest = if workspace.pending.is_empty() {
@@ -125,7 +179,7 @@ where
             if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
                 return self.answer(stop, lower);
             }
-            let is_full = workspace.cells.len() + BLOCK > ROOM;
+            let is_full = workspace.cells.len().max(workspace.leaves.len()) + BLOCK > ROOM;
             let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
             if is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
@@ -135,14 +189,14 @@ where
                     pending.fold(lowest.min(self.dropped), f64::min),
                 );
             }
-            self.round(workspace, SMALL * size);
+            self.round(workspace, largest);
         }
     }
 
     pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
         let upper = self.upper + self.slack;
         Certified {
-            best: Nearest::at(&mut self.couple, self.best, self.goal.tolerance()),
+            best: Nearest::at(&mut self.couple, self.best),
             lower: 2.0 * lower.min(upper),
             upper: 2.0 * upper,
             stop,
@@ -156,14 +210,10 @@ where
     }
 
     /// A box that holds all points that matter, and `margin` more: where neither `g` is
-    /// more than the best so far, or, if the sign is all that is asked for, than the
-    /// tolerance. Elsewhere one is.
+    /// more than the best so far, or than what is asked for. Elsewhere one is.
     pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
         let slack = self.couple.slack(self.best.norm() + self.upper.abs());
-        let least = match self.goal {
-            Goal::Least { .. } => self.upper.max(0.0),
-            Goal::Sign { tolerance } => self.upper.clamp(0.0, tolerance.max(0.0)),
-        };
+        let least = self.goal.most(self.upper);
         self.dropped = least + slack;
         let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
         self.couple.root(grown)
@@ -201,7 +251,7 @@ where
                 least = (value, part.centre);
             }
         }
-        if least.0 < self.upper - 0.25 * self.goal.tolerance() {
+        if least.0 < self.upper - 0.25 * self.goal.tolerance {
             self.descend(least.1);
         }
         let threshold = self.threshold();
@@ -212,8 +262,10 @@ where
         self.couple.models(parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             // Boxes are off by a rounding where they meet.
-            let lower = least_of_larger(self.couple.model(memory, lane)) - self.slack;
+            let models = self.couple.model(memory, lane);
+            let lower = least_of_larger(models) - self.slack;
             parts[i].lower = parts[i].lower.max(lower);
+            parts[i].learn(&models);
         }
         for part in &*parts {
             if part.lower < threshold {

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Contacts that span where two bodies touch.
+
+use std::error::Error;
+use std::hint::black_box;
+
+use palpate::field::kernel::{Cuboid, Cylinder, Torus};
+use palpate::field::{Pose, Shape, ShapeError, Vector};
+use palpate::query::{Limits, ManifoldSettings, PairWorkspace, Placed, manifold};
+
+use super::fastest;
+use crate::fields::Rows;
+
+/// Two bodies, where the second is, and up to which gap they touch [m].
+type Case = (&'static str, Shape<3>, Shape<3>, [f64; 3], f64);
+
+/// Two boxes face to face, 1 mm deep; a peg in a hole, 0.5 mm away all round; a bar
+/// across a torus, 1 mm deep.
+fn cases() -> Result<[Case; 3], ShapeError> {
+    let cuboid = |sides| Cuboid::new(Vector(sides)).map(Shape::from_kernel);
+    let cylinder = |radius, height| Cylinder::new(radius, height).map(Shape::from_kernel);
+    let plate = cuboid([0.6, 0.4, 0.6])?.difference([cylinder(0.1005, 1.0)?])?;
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let (large, small) = (cuboid([1.2, 0.8, 0.6])?, cuboid([0.6, 0.5, 0.4])?);
+    let (peg, bar) = (cylinder(0.1, 0.6)?, cuboid([1.2, 0.08, 0.08])?);
+    Ok([
+        ("boxes", large, small, [0.45, 0.3, 0.499], 2e-3),
+        ("peg", plate, peg, [0.0, 0.1, 0.0], 1e-3),
+        ("bar_torus", torus, bar, [0.0, 0.189, 0.0], 2e-3),
+    ])
+}
+
+/// Adds the rows of manifolds.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    for (name, a, b, place, margin) in cases()? {
+        let settings = ManifoldSettings { margin, spacing: 0.04, most: 32 };
+        let there = Placed::new(&b, Pose::translation(Vector(place)));
+        let found = manifold(&a, there, &settings, &limits, &mut workspace)?;
+        let time = fastest(|| {
+            // That it is no error was seen above.
+            let _ =
+                black_box(manifold(&a, black_box(there), &settings, &limits, &mut workspace));
+        });
+        let key = format!("manifold.{name}");
+        super::summarise(&key, &mut [time], rows);
+        let evaluations = f64::from(found.separation.evaluations);
+        rows.insert(format!("{key}.evaluations"), evaluations);
+        rows.insert(format!("{key}.contacts"), found.contacts.len() as f64);
+        rows.insert(format!("{key}.undecided"), f64::from(u8::from(!found.is_whole)));
+    }
+    Ok(())
+}

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Contacts that span the region in which two bodies touch.
+//!
+//! Two bodies touch along the surface `g_a = g_b` between them, where both are at most
+//! half the margin. Boxes that cannot hold a part of it are ruled out by values and
+//! models, as in the search for the separation, and those that remain are halved down to
+//! the spacing. Each then gives a candidate on the surface between. Candidates that are
+//! neighbours and have like normals make a patch, and of each patch the contacts are its
+//! deepest point and the corners that span it.
+
+mod grid;
+mod names;
+mod patch;
+mod region;
+mod track;
+
+use palpate_field::{Point, Vector};
+
+use crate::certified::{Certified, Limits};
+use crate::contact::Contact;
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::pair::couple::Couple;
+use crate::pair::search::Search;
+use crate::pair::{Nearest, PairWorkspace};
+use crate::placed::Placed;
+use grid::distance;
+use patch::Patches;
+
+pub(crate) use names::Names;
+
+/// Contacts closer than this many spacings, with normals within 37°, are copies.
+const COPIES: f64 = 1.5;
+const LIKE: f64 = 0.8;
+
+/// Which contacts are to be found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ManifoldSettings {
+    /// Up to this gap bodies count as touching [m].
+    pub margin: f64,
+    /// How finely the region is looked at [m]: what is smaller than that may be missed,
+    /// except for the certified best point, and contacts are at least as far apart.
+    pub spacing: f64,
+    /// The most contacts to keep: the deepest, and those that are farthest apart.
+    pub most: usize,
+}
+
+impl ManifoldSettings {
+    /// For bodies of about `size` [m]: a margin of 0.2 %, a spacing of 4 %, 32 contacts.
+    #[must_use]
+    pub fn of_size(size: f64) -> Self {
+        Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32 }
+    }
+}
+
+impl Default for ManifoldSettings {
+    /// For bodies of about a metre.
+    fn default() -> Self {
+        Self::of_size(1.0)
+    }
+}
+
+/// How two bodies touch.
+#[derive(Clone, Debug)]
+pub struct Manifold<const D: usize> {
+    /// The contacts, by group, and in each from the deepest.
+    pub contacts: Vec<Contact<D>>,
+    /// How many contacts each group has: those of one patch, with like normals.
+    pub groups: Vec<usize>,
+    /// The separation and where it is found, which is the deepest contact's point unless
+    /// the separation is more than the margin.
+    pub separation: Certified<Nearest<D>>,
+    /// How many contacts there were beyond the most that were to be kept.
+    pub dropped: usize,
+    /// `false` if the budget was spent before the whole region was looked at.
+    pub is_whole: bool,
+}
+
+/// Contacts that span the region in which two bodies touch, up to a gap of
+/// `settings.margin`.
+///
+/// The separation is found to `limits.tolerance` first; once it is proven to be more than
+/// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
+/// other parts of the region are found is not, if they are smaller than the spacing.
+/// Contacts are numbered from 0; [`Track::manifold`](crate::Track::manifold) names them.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Cuboid};
+/// use palpate_query::{Limits, ManifoldSettings, PairWorkspace, Placed, manifold};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let table = Shape::from_kernel(Cuboid::new(Vector([1.2, 0.8, 0.6]))?);
+/// let cube = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.4, 0.4]))?);
+/// // One millimetre into its top.
+/// let there = Placed::new(&cube, Pose::translation(Vector([0.1, 0.0, 0.499])));
+/// let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+/// let settings = ManifoldSettings::default();
+/// let touching = manifold(&table, there, &settings, &limits, &mut PairWorkspace::new())?;
+/// assert_eq!(touching.groups.len(), 1);
+/// for contact in &touching.contacts {
+///     assert!((contact.gap + 0.001).abs() < 1e-4);
+///     assert!((contact.normal - Vector([0.0, 0.0, 1.0])).norm() < 1e-6);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If neither body is bounded, or a pose or a setting is not finite, or the spacing not
+/// positive.
+pub fn manifold<'a, const D: usize>(
+    a: impl Into<Placed<'a, D>>,
+    b: impl Into<Placed<'a, D>>,
+    settings: &ManifoldSettings,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Manifold<D>, QueryError> {
+    settings.check()?;
+    let couple = Couple::new(a.into(), b.into())?;
+    let goal = settings.goal(limits);
+    let mut search = Search::new(couple, goal, limits);
+    let separation = search.run(workspace);
+    let budget = limits.budget;
+    Ok(spanning(couple, (search.best, separation), settings, budget, workspace))
+}
+
+/// The manifold of a couple whose separation was found at `best`, in its frame.
+fn spanning<const D: usize>(
+    mut couple: Couple<'_, D>,
+    (best, separation): (Point<D>, Certified<Nearest<D>>),
+    settings: &ManifoldSettings,
+    budget: u32,
+    workspace: &mut PairWorkspace<D>,
+) -> Manifold<D> {
+    let mut found = Manifold {
+        contacts: Vec::new(),
+        groups: Vec::new(),
+        separation,
+        dropped: 0,
+        is_whole: true,
+    };
+    if separation.lower > settings.margin {
+        return found;
+    }
+    let mut candidates = vec![Touch::at(&mut couple, best)];
+    found.is_whole = region::find(&mut couple, settings, budget, workspace, &mut candidates);
+    let mut patches = Patches { couple, settings, candidates: &candidates };
+    let mut touches = patches.contacts();
+    drop_copies(&mut touches, settings.spacing);
+    if let Some(deepest) = touches.first().map(|member| member.touch) {
+        found.deepen(&deepest, &patches.couple);
+    }
+    found.dropped = touches.len().saturating_sub(settings.most.max(1));
+    keep_spread(&mut touches, settings.most.max(1));
+    touches.sort_by(|one, other| {
+        (one.group, one.touch.gap)
+            .partial_cmp(&(other.group, other.touch.gap))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    for (i, member) in touches.iter().enumerate() {
+        if i == 0 || touches[i - 1].group != member.group {
+            found.groups.push(0);
+        }
+        if let Some(count) = found.groups.last_mut() {
+            *count += 1;
+        }
+        found.contacts.push(member.touch.contact(&couple, i as u64));
+    }
+    found.separation.evaluations += patches.couple.evaluations;
+    found
+}
+
+impl<const D: usize> Manifold<D> {
+    /// Takes a contact as the best point if it is deeper.
+    fn deepen(&mut self, deepest: &Touch<D>, couple: &Couple<'_, D>) {
+        let slack = couple.slack(deepest.point.norm() + deepest.gap.abs());
+        let upper = deepest.gap + 2.0 * slack;
+        if upper < self.separation.upper {
+            let pose = &couple.world_from_frame;
+            self.separation.best = Nearest {
+                point: pose.transform_point(deepest.point),
+                normal: Some(pose.transform_vector(deepest.normal)),
+            };
+            self.separation.upper = upper;
+            self.separation.lower = self.separation.lower.min(upper);
+        }
+    }
+}
+
+impl ManifoldSettings {
+    /// The separation, if it is within the margin.
+    fn goal(&self, limits: &Limits) -> Goal {
+        Goal::least_within(0.5 * self.margin, 0.5 * limits.tolerance)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
+        for (what, value, is_fine) in [
+            ("a margin", self.margin, self.margin.is_finite() && self.margin >= 0.0),
+            ("a spacing", self.spacing, self.spacing.is_finite() && self.spacing > 0.0),
+        ] {
+            if !is_fine {
+                return Err(QueryError::Setting { what, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A point between two bodies, in the couple's frame.
+#[derive(Clone, Copy, Debug)]
+struct Touch<const D: usize> {
+    point: Point<D>,
+    normal: Vector<f64, D>,
+    gap: f64,
+}
+
+/// A contact and the patch that it is of.
+#[derive(Clone, Copy, Debug)]
+struct Member<const D: usize> {
+    touch: Touch<D>,
+    group: usize,
+}
+
+impl<const D: usize> Touch<D> {
+    /// The point as it is. Where no gradient says which way, bodies are parted by their
+    /// centres, or else upwards.
+    fn at(couple: &mut Couple<'_, D>, point: Point<D>) -> Self {
+        let [(a, slope_a), (b, slope_b)] = couple.slopes(point);
+        let ways = [slope_a - slope_b, couple.between_centres(), Vector::unit(1)];
+        let way = ways.into_iter().find(|way| way.norm() > 1e-6).unwrap_or(ways[2]);
+        Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
+    }
+
+    /// The contact in world coordinates.
+    fn contact(&self, couple: &Couple<'_, D>, id: u64) -> Contact<D> {
+        let on = |body: usize, side: f64| {
+            let found = couple.surface_point(body, self.point);
+            let near =
+                found.filter(|p| distance(*p, self.point) <= 2.0 * self.gap.abs() + 1e-9);
+            near.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
+        };
+        let pose = &couple.world_from_frame;
+        let (point_a, point_b) = (on(0, -1.0), on(1, 1.0));
+        Contact {
+            point_a: pose.transform_point(point_a),
+            point_b: pose.transform_point(point_b),
+            normal: pose.transform_vector(self.normal),
+            gap: (point_b - point_a).dot(self.normal),
+            id,
+        }
+    }
+}
+
+/// Sorts contacts from the deepest, and drops those next to a deeper one with a like
+/// normal.
+fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
+    touches.sort_by(|one, other| one.touch.gap.total_cmp(&other.touch.gap));
+    let mut kept = 0;
+    for i in 0..touches.len() {
+        let touch = touches[i].touch;
+        let is_copy = touches[..kept].iter().any(|other| {
+            distance(other.touch.point, touch.point) < COPIES * spacing
+                && other.touch.normal.dot(touch.normal) > LIKE
+        });
+        if !is_copy {
+            touches.swap(kept, i);
+            kept += 1;
+        }
+    }
+    touches.truncate(kept);
+}
+
+/// Keeps the first `most` contacts in this order: the first, and then always the one
+/// that is farthest from those kept.
+fn keep_spread<const D: usize>(touches: &mut Vec<Member<D>>, most: usize) {
+    for kept in 1..most.min(touches.len()) {
+        let apart = |member: &Member<D>| {
+            let others = touches[..kept].iter();
+            others.fold(f64::INFINITY, |least, other| {
+                least.min(distance(other.touch.point, member.touch.point))
+            })
+        };
+        let farthest = (kept..touches.len())
+            .max_by(|&i, &k| apart(&touches[i]).total_cmp(&apart(&touches[k])).then(k.cmp(&i)));
+        if let Some(farthest) = farthest {
+            touches.swap(kept, farthest);
+        }
+    }
+    touches.truncate(most);
+}

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Patches of contact, and the few points that span each.
+
+use palpate_field::{Point, Vector};
+
+use super::grid::{Grid, distance};
+use super::region::{Towards, towards};
+use super::{ManifoldSettings, Member, Touch};
+use crate::goal::Goal;
+use crate::pair::couple::Couple;
+use crate::pair::descent::descend;
+
+/// Candidates nearer than this many spacings are neighbours.
+const NEIGHBOURS: f64 = 2.0;
+
+/// The cosine of how far normals of a patch may be from that of its first, 25°.
+const ALIKE: f64 = 0.906;
+
+/// By how much of the margin what is next to a patch may be less deep and still be a
+/// patch of its own; beyond it is the patch's slope.
+const SLOPE: f64 = 0.1;
+
+/// How precisely the deepest point of a patch is found, as a share of the margin.
+const PRECISE: f64 = 1e-3;
+
+/// Patches smaller than this many spacings are one contact, as are corners.
+const SMALL: f64 = 1.5;
+
+/// The last step of a corner, as a share of the spacing.
+const SHARP: f64 = 0.06;
+
+/// Candidates and what they are candidates of.
+pub(super) struct Patches<'a, 'b, const D: usize> {
+    pub(super) couple: Couple<'a, D>,
+    pub(super) settings: &'b ManifoldSettings,
+    /// The certified best point is among them.
+    pub(super) candidates: &'b [Touch<D>],
+}
+
+impl<const D: usize> Patches<'_, '_, D> {
+    /// The contacts of all patches.
+    pub(super) fn contacts(&mut self) -> Vec<Member<D>> {
+        let candidates = self.candidates;
+        let near = NEIGHBOURS * self.settings.spacing;
+        let mut grid = Grid::new(candidates.iter().map(|touch| touch.point), near);
+        let mut order: Vec<usize> = (0..candidates.len()).collect();
+        order.sort_by(|&i, &k| candidates[i].gap.total_cmp(&candidates[k].gap));
+        let mut is_owned = vec![false; candidates.len()];
+        let (mut members, mut contacts) = (Vec::new(), Vec::new());
+        let mut group = 0;
+        for seed in order {
+            if is_owned[seed] {
+                continue;
+            }
+            let first = &candidates[seed];
+            let is_near = |i: usize, p| distance(candidates[i].point, p) < near;
+            grid.take(first.point, |i| i == seed);
+            is_owned[seed] = true;
+            let mut is_slope = false;
+            grid.taken(first.point, |i| {
+                let is_deeper = candidates[i].gap < first.gap - SLOPE * self.settings.margin;
+                is_slope |= is_deeper && is_near(i, first.point);
+            });
+            if is_slope {
+                continue;
+            }
+            members.clear();
+            members.push(seed);
+            let mut next = 0;
+            while next < members.len() {
+                let here = candidates[members[next]].point;
+                next += 1;
+                grid.take(here, |i| {
+                    let is_alike = candidates[i].normal.dot(first.normal) > ALIKE;
+                    let is_taken = is_alike && is_near(i, here);
+                    if is_taken {
+                        is_owned[i] = true;
+                        members.push(i);
+                    }
+                    is_taken
+                });
+            }
+            self.span(seed, &members, group, &mut contacts);
+            group += 1;
+        }
+        contacts
+    }
+
+    /// Appends the contacts of one patch: its deepest, and its corners.
+    fn span(
+        &mut self,
+        seed: usize,
+        members: &[usize],
+        group: usize,
+        contacts: &mut Vec<Member<D>>,
+    ) {
+        let spacing = self.settings.spacing;
+        let deepest = self.deepest(self.candidates[seed]);
+        let points = || members.iter().map(|&i| self.candidates[i].point);
+        let mut centre = Vector::ZERO;
+        for p in points() {
+            centre += p * (1.0 / members.len() as f64);
+        }
+        let farthest = |measure: &dyn Fn(Point<D>) -> f64| {
+            let candidates = members.iter().map(|&i| &self.candidates[i]);
+            candidates.fold((f64::NEG_INFINITY, deepest), |best, touch| {
+                let far = measure(touch.point);
+                if far > best.0 { (far, *touch) } else { best }
+            })
+        };
+        contacts.push(Member { touch: deepest, group });
+        let (size, one) = farthest(&|p| distance(p, centre));
+        if size < SMALL * spacing {
+            return;
+        }
+        let (_, other) = farthest(&|p| distance(p, one.point));
+        let mut corners = vec![one, other];
+        if let Some(side) = square_to(deepest.normal, other.point - one.point) {
+            corners.push(farthest(&|p| (p - one.point).dot(side)).1);
+            corners.push(farthest(&|p| -(p - one.point).dot(side)).1);
+        }
+        for i in 0..corners.len() {
+            let is_apart =
+                |other: &Touch<D>| distance(other.point, corners[i].point) > SMALL * spacing;
+            if corners[..i].iter().all(is_apart) {
+                let touch = self.sharpen(corners[i], centre);
+                contacts.push(Member { touch, group });
+            }
+        }
+    }
+
+    /// The deepest point near a candidate.
+    fn deepest(&mut self, start: Touch<D>) -> Touch<D> {
+        let goal = Goal::least(PRECISE * self.settings.margin);
+        let (_, p) = descend(&mut self.couple, start.point, goal, 0.0);
+        let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
+        let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
+        found.filter(|found| found.gap < start.gap).unwrap_or(start)
+    }
+
+    /// Moves a corner outwards along the patch until the gap is the margin or the
+    /// bodies no longer face each other.
+    fn sharpen(&mut self, corner: Touch<D>, centre: Point<D>) -> Touch<D> {
+        let away = corner.point - centre;
+        let away = away - corner.normal * away.dot(corner.normal);
+        let outwards = away * (1.0 / away.norm().max(f64::MIN_POSITIVE));
+        let sideways = square_to(corner.normal, outwards).unwrap_or(Vector::ZERO);
+        let ways = [outwards, (outwards + sideways) * 0.7, (outwards - sideways) * 0.7];
+        let mut corner = corner;
+        let mut step = 0.5 * self.settings.spacing;
+        while step > SHARP * self.settings.spacing {
+            let moved = ways.iter().find_map(|way| {
+                let touch = self.settle(corner.point + *way * step, step)?;
+                let is_on = touch.normal.dot(corner.normal) > super::LIKE;
+                let is_out = (touch.point - corner.point).dot(outwards) > 0.3 * step;
+                (is_on && is_out).then_some(touch)
+            });
+            match moved {
+                Some(touch) => corner = touch,
+                None => step *= 0.5,
+            }
+        }
+        corner
+    }
+
+    /// The point of the surface between next to `p`, if it is within `far` and the
+    /// bodies touch there.
+    fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
+        let mut here = p;
+        for _ in 0..4 {
+            let slopes = self.couple.slopes(here);
+            match towards(here, slopes, self.settings.margin) {
+                Towards::There(touch) => return Some(touch),
+                Towards::Next(next) if distance(next, p) <= far => here = next,
+                _ => return None,
+            }
+        }
+        None
+    }
+}
+
+/// A vector square to both, in space; in the plane there is none.
+fn square_to<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Option<Vector<f64, D>> {
+    (D == 3).then(|| {
+        let mut square = Vector::ZERO;
+        for k in 0..D {
+            let (i, j) = ((k + 1) % D, (k + 2) % D);
+            square[k] = a[i] * b[j] - a[j] * b[i];
+        }
+        square
+    })
+}

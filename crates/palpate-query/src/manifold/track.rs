@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Contacts of bodies that move.
+
+use palpate_field::Pose;
+
+use super::{Manifold, ManifoldSettings, spanning};
+use crate::certified::Limits;
+use crate::error::QueryError;
+use crate::pair::couple::Couple;
+use crate::pair::{PairWorkspace, Track};
+use crate::placed::Placed;
+
+impl<const D: usize> Track<D> {
+    /// The contacts of both shapes at these poses, `world_from_body`, as
+    /// [`manifold`](crate::manifold) finds them, with names that stay: a contact that is
+    /// near one of the last time, on either body, keeps its `id`.
+    ///
+    /// # Errors
+    ///
+    /// As [`manifold`](crate::manifold).
+    pub fn manifold(
+        &mut self,
+        poses: [Pose<D>; 2],
+        settings: &ManifoldSettings,
+        limits: &Limits,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Result<Manifold<D>, QueryError> {
+        settings.check()?;
+        let goal = settings.goal(limits);
+        let (separation, best) = self.search(poses, goal, limits, workspace)?;
+        let found = (best, separation);
+        let [a, b] = self.shapes();
+        let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        let mut found = spanning(couple, found, settings, limits.budget, workspace);
+        self.names.name(&mut found.contacts, poses, settings.spacing);
+        Ok(found)
+    }
+}

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Two bodies that are asked again and again while they move.
+
+use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
+
+use super::Nearest;
+use super::cell::{Cell, reach};
+use super::couple::Couple;
+use super::search::{PairWorkspace, Search};
+use crate::certified::{Certified, Limits};
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::manifold::Names;
+use crate::placed::Placed;
+
+/// Room for motion around what is searched, as a share of its size: a body that moves
+/// farther is searched anew.
+const MARGIN: f64 = 0.05;
+
+/// A proof that has grown by this many times, and some, is begun anew.
+const GROWTH: usize = 2;
+
+/// Two shapes and what the last search proved of them, from which the next one starts.
+///
+/// That is a cover of all places that matter by boxes, each with a lower bound. A motion
+/// that moves no point of them by more than δ lowers no bound by more than δ, since
+/// distances are never steeper than one. So after a small motion most boxes need no
+/// looking at; a pose that jumps costs what the first one did.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_query::{Limits, PairWorkspace, Track};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let mut track = Track::new(ball.clone(), ball);
+/// let mut workspace = PairWorkspace::new();
+/// for step in 0..100 {
+///     let apart = 1.0 + 1e-4 * f64::from(step);
+///     let poses = [Pose::identity(), Pose::translation(Vector([apart, 0.0, 0.0]))];
+///     let answer = track.separation(poses, &Limits::default(), &mut workspace)?;
+///     assert!(answer.lower <= apart - 1.0 && apart - 1.0 <= answer.upper);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Track<const D: usize> {
+    shapes: [Shape<D>; 2],
+    cover: Option<Cover<D>>,
+    pub(crate) names: Names<D>,
+}
+
+/// Boxes in the frame of the first shape that hold all places at which the separation
+/// may be found, and what was known of them when the bodies were at a pose.
+#[derive(Clone, Debug)]
+struct Cover<const D: usize> {
+    cells: Vec<Cell<D>>,
+    root: Aabb<D>,
+    best: Point<D>,
+    second_from_frame: Pose<D>,
+    /// How many boxes the search needed that began it.
+    first: usize,
+}
+
+impl<const D: usize> Track<D> {
+    /// Two shapes of which nothing is known yet.
+    #[must_use]
+    pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
+        Self { shapes: [a, b], cover: None, names: Names::new() }
+    }
+
+    /// The shapes.
+    #[must_use]
+    pub fn shapes(&self) -> &[Shape<D>; 2] {
+        &self.shapes
+    }
+
+    /// Forgets what was proven: the next search starts anew.
+    pub fn forget(&mut self) {
+        self.cover = None;
+    }
+
+    /// The separation of both shapes at these poses, `world_from_body`, as
+    /// [`separation`](crate::separation) finds it.
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose is not finite.
+    pub fn separation(
+        &mut self,
+        poses: [Pose<D>; 2],
+        limits: &Limits,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Result<Certified<Nearest<D>>, QueryError> {
+        let goal = Goal::least(0.5 * limits.tolerance);
+        Ok(self.search(poses, goal, limits, workspace)?.0)
+    }
+
+    /// The answer, and where it is in the first shape's coordinates.
+    pub(crate) fn search(
+        &mut self,
+        poses: [Pose<D>; 2],
+        goal: Goal,
+        limits: &Limits,
+        workspace: &mut PairWorkspace<D>,
+    ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
+        let [a, b] = &self.shapes;
+        let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        let mut search = Search::new(couple, goal, limits);
+        if let Some(answer) = search.told_by_boxes() {
+            return Ok((answer, search.best));
+        }
+        search.keeps_leaves = true;
+        let mut cover = self.cover.take();
+        let answer = match &mut cover {
+            Some(cover) if cover.resume(&mut search, workspace) => {
+                search.refine(&cover.root, workspace)
+            }
+            _ => {
+                let size = couple.root(0.0).half_extents().norm();
+                let (answer, root) = search.run_within(MARGIN * size, workspace);
+                let first = workspace.known();
+                let (best, second_from_frame) = (search.best, couple.second_from_frame);
+                let cells = cover.map_or_else(Vec::new, |cover| cover.cells);
+                cover = Some(Cover { cells, root, best, second_from_frame, first });
+                answer
+            }
+        };
+        if let Some(cover) = &mut cover {
+            (cover.best, cover.second_from_frame) = (search.best, couple.second_from_frame);
+            workspace.take_known(&mut cover.cells);
+        }
+        self.cover = cover;
+        Ok((answer, search.best))
+    }
+}
+
+impl<const D: usize> Cover<D> {
+    /// Puts into `workspace` what is still known now that the bodies have moved; `false`
+    /// if they moved too far.
+    fn resume(&self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
+        if self.cells.len() > GROWTH * self.first + BLOCK {
+            return false;
+        }
+        search.descend(self.best);
+        let root = search.root(0.0);
+        if !(self.root.contains(root.min) && self.root.contains(root.max)) {
+            return false;
+        }
+        let slack = search.couple.slack(reach(&self.root));
+        let moved = self.displacement(&search.couple.second_from_frame) + slack;
+        let cells = self.cells.iter();
+        let cells = cells.map(|cell| Cell { lower: cell.lower - moved, ..*cell });
+        search.keep(cells, &self.root, workspace);
+        true
+    }
+
+    /// No point of the root is farther from where it was in the second shape [m].
+    fn displacement(&self, now: &Pose<D>) -> f64 {
+        let before = &self.second_from_frame;
+        let (centre, radius) = (self.root.centre(), self.root.half_extents().norm());
+        let turned = before
+            .rotation
+            .matrix()
+            .iter()
+            .zip(now.rotation.matrix())
+            .map(|(before, now)| (Vector(*now) - Vector(*before)).norm().powi(2));
+        let moved = now.transform_point(centre) - before.transform_point(centre);
+        (moved.norm() + turned.sum::<f64>().sqrt() * radius) * (1.0 + 1e-12)
+    }
+}

@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Many bodies, and where any two of them touch.
+//!
+//! Boxes around the bodies, grown by half the margin, are kept in an R-tree, which says
+//! which pairs are near; a pair is asked again only when one of its bodies has moved, from
+//! what was proven of it the last time. Pairs are independent of each other, so that
+//! threads change no bit of the answer.
+
+mod near;
+mod pool;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use palpate_field::{Aabb, Pose, Shape};
+use rayon::prelude::*;
+
+use crate::certified::{Limits, Stop};
+use crate::contact::Contact;
+use crate::error::QueryError;
+use crate::manifold::{Manifold, ManifoldSettings};
+use crate::pair::Track;
+use near::pairs_near;
+use pool::Pool;
+
+/// A body of a world, as [`World::add`] names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(usize);
+
+impl BodyId {
+    /// How many bodies were added before it.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// What a world's answers are to be like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldSettings {
+    /// Of each pair: the margin, how finely it is looked at, how many contacts.
+    pub manifold: ManifoldSettings,
+    /// Of each pair: how far apart the bounds may be, and the budget.
+    pub limits: Limits,
+}
+
+impl WorldSettings {
+    /// For bodies of about `size` [m].
+    #[must_use]
+    pub fn of_size(size: f64) -> Self {
+        let manifold = ManifoldSettings::of_size(size);
+        let limits = Limits { tolerance: 0.5 * manifold.margin, ..Limits::default() };
+        Self { manifold, limits }
+    }
+}
+
+/// What is known of two bodies that are near each other.
+#[derive(Clone, Debug)]
+pub struct Neighbours<const D: usize> {
+    /// The bodies, the one that was added first first.
+    pub bodies: [BodyId; 2],
+    /// How they touch; `None` if neither is bounded, of which nothing can be said.
+    pub manifold: Option<Manifold<D>>,
+}
+
+/// Whether two bodies touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Their separation is at most the margin.
+    Touching,
+    /// Their separation is more than the margin.
+    Apart,
+    /// The budget came to its end first, or neither is bounded: the truth is between the
+    /// bounds.
+    Undecided,
+}
+
+impl<const D: usize> Neighbours<D> {
+    /// The bounds of the separation [m]: nothing is known of two bodies without bounds.
+    #[must_use]
+    pub fn bounds(&self) -> [f64; 2] {
+        let separation = self.manifold.as_ref().map(|manifold| &manifold.separation);
+        separation.map_or([f64::NEG_INFINITY, f64::INFINITY], |separation| {
+            [separation.lower, separation.upper]
+        })
+    }
+
+    /// Whether they touch, up to `margin` [m].
+    ///
+    /// Bounds that are no farther apart than the tolerance and hold the margin between
+    /// them count as touching: contacts are given of them.
+    #[must_use]
+    pub fn verdict(&self, margin: f64) -> Verdict {
+        let Some(manifold) = &self.manifold else { return Verdict::Undecided };
+        let separation = &manifold.separation;
+        if separation.lower > margin {
+            Verdict::Apart
+        } else if separation.upper <= margin || separation.stop != Stop::BudgetSpent {
+            Verdict::Touching
+        } else {
+            Verdict::Undecided
+        }
+    }
+
+    /// The contacts.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact<D>] {
+        self.manifold.as_ref().map_or(&[], |manifold| &manifold.contacts)
+    }
+}
+
+/// Bodies and which of them touch.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::{Cuboid, HalfSpace}};
+/// use palpate_query::{World, WorldSettings};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut world = World::new(WorldSettings::of_size(1.0))?;
+/// let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+/// let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?);
+/// let floor = world.add(floor, Pose::identity())?;
+/// let cube = world.add(cube, Pose::translation(Vector([0.0, 0.4995, 0.0])))?;
+/// let touching = world.step();
+/// assert_eq!(touching.len(), 1);
+/// assert_eq!(touching[0].bodies, [floor, cube]);
+/// for contact in touching[0].contacts() {
+///     assert!((contact.gap + 0.0005).abs() < 1e-6);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct World<const D: usize> {
+    settings: WorldSettings,
+    /// Bodies that were removed leave their place empty.
+    bodies: Vec<Option<Body<D>>>,
+    ignored: BTreeSet<[usize; 2]>,
+    pairs: BTreeMap<[usize; 2], Pair<D>>,
+    pool: Pool<D>,
+}
+
+#[derive(Clone, Debug)]
+struct Body<const D: usize> {
+    shape: Shape<D>,
+    pose: Pose<D>,
+    groups: u32,
+    mask: u32,
+    /// Around the body and half the margin; `None` if it has no bounds.
+    aabb: Option<Aabb<D>>,
+    /// Whether it is not where it was in the last step.
+    has_moved: bool,
+}
+
+/// Two bodies near each other, and what was found.
+#[derive(Debug)]
+struct Pair<const D: usize> {
+    track: Track<D>,
+    found: Neighbours<D>,
+    /// Whether it is near in this step, and whether it is to be asked again.
+    is_near: bool,
+    is_stale: bool,
+}
+
+impl<const D: usize> World<D> {
+    /// A world without bodies.
+    ///
+    /// # Errors
+    ///
+    /// If a setting is not finite, the margin negative, or the spacing not positive.
+    pub fn new(settings: WorldSettings) -> Result<Self, QueryError> {
+        settings.manifold.check()?;
+        Ok(Self {
+            settings,
+            bodies: Vec::new(),
+            ignored: BTreeSet::new(),
+            pairs: BTreeMap::new(),
+            pool: Pool::new(),
+        })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &WorldSettings {
+        &self.settings
+    }
+
+    /// Adds a body at `world_from_body`, in group 1 and asked with all groups.
+    ///
+    /// # Errors
+    ///
+    /// If the pose is not finite.
+    pub fn add(
+        &mut self,
+        shape: Shape<D>,
+        world_from_body: Pose<D>,
+    ) -> Result<BodyId, QueryError> {
+        let mut body = Body {
+            shape,
+            pose: world_from_body,
+            groups: 1,
+            mask: u32::MAX,
+            aabb: None,
+            has_moved: true,
+        };
+        body.place(world_from_body, self.settings.manifold.margin)?;
+        self.bodies.push(Some(body));
+        Ok(BodyId(self.bodies.len() - 1))
+    }
+
+    /// Takes a body out; its name is not given again.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such body.
+    pub fn remove(&mut self, body: BodyId) -> Result<(), QueryError> {
+        self.body(body)?;
+        self.bodies[body.0] = None;
+        self.pairs.retain(|pair, _| !pair.contains(&body.0));
+        Ok(())
+    }
+
+    /// Where a body is.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such body.
+    pub fn pose(&self, body: BodyId) -> Result<Pose<D>, QueryError> {
+        let found = self.bodies.get(body.0).and_then(Option::as_ref);
+        found.map(|body| body.pose).ok_or(QueryError::NoBody { body: body.0 })
+    }
+
+    /// Moves bodies to where they are now; all of them, or none if one is refused.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is not finite, or there is no such body.
+    pub fn set_poses(&mut self, poses: &[(BodyId, Pose<D>)]) -> Result<(), QueryError> {
+        for (body, pose) in poses {
+            self.body(*body)?;
+            if !pose.is_finite() {
+                return Err(QueryError::Pose);
+            }
+        }
+        let margin = self.settings.manifold.margin;
+        poses.iter().try_for_each(|(body, pose)| self.body(*body)?.place(*pose, margin))
+    }
+
+    /// Puts a body into `groups`, a bit each, and asks it only with bodies of a group in
+    /// `mask`. Two bodies are asked if each is in a group of the other's mask.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such body.
+    pub fn set_groups(
+        &mut self,
+        body: BodyId,
+        groups: u32,
+        mask: u32,
+    ) -> Result<(), QueryError> {
+        let body = self.body(body)?;
+        (body.groups, body.mask, body.has_moved) = (groups, mask, true);
+        Ok(())
+    }
+
+    /// Asks two bodies no more, as those of a joint.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such body.
+    pub fn ignore(&mut self, one: BodyId, other: BodyId) -> Result<(), QueryError> {
+        self.body(one)?;
+        self.body(other)?;
+        let pair = [one.0.min(other.0), one.0.max(other.0)];
+        self.pairs.remove(&pair);
+        self.ignored.insert(pair);
+        Ok(())
+    }
+
+    /// Finds what touches where bodies are now: all pairs whose boxes are within the
+    /// margin and that are not proven to be farther apart, in the order of their bodies.
+    ///
+    /// Runs on rayon's threads; the bits do not depend on how many there are.
+    pub fn step(&mut self) -> Vec<&Neighbours<D>> {
+        self.find_near();
+        let (bodies, settings, pool) = (&self.bodies, &self.settings, &self.pool);
+        self.pairs.par_iter_mut().filter(|(_, pair)| pair.is_stale).for_each(
+            |([one, other], pair)| {
+                if let (Some(a), Some(b)) = (&bodies[*one], &bodies[*other]) {
+                    pool.with(|workspace| {
+                        let poses = [a.pose, b.pose];
+                        let asked = pair.track.manifold(
+                            poses,
+                            &settings.manifold,
+                            &settings.limits,
+                            workspace,
+                        );
+                        pair.found.manifold = asked.ok();
+                    });
+                }
+                pair.is_stale = false;
+            },
+        );
+        for body in self.bodies.iter_mut().flatten() {
+            body.has_moved = false;
+        }
+        let margin = self.settings.manifold.margin;
+        let found = self.pairs.values().map(|pair| &pair.found);
+        found.filter(|found| found.verdict(margin) != Verdict::Apart).collect()
+    }
+
+    /// Updates which pairs are near, and which of them are to be asked again.
+    fn find_near(&mut self) {
+        for pair in self.pairs.values_mut() {
+            pair.is_near = false;
+        }
+        for [one, other] in pairs_near(&self.bodies) {
+            let (Some(a), Some(b)) = (&self.bodies[one], &self.bodies[other]) else { continue };
+            let is_asked = a.groups & b.mask != 0 && b.groups & a.mask != 0;
+            if !is_asked || self.ignored.contains(&[one, other]) {
+                continue;
+            }
+            let pair = self.pairs.entry([one, other]).or_insert_with(|| Pair {
+                track: Track::new(a.shape.clone(), b.shape.clone()),
+                found: Neighbours { bodies: [BodyId(one), BodyId(other)], manifold: None },
+                is_near: true,
+                is_stale: true,
+            });
+            pair.is_near = true;
+            pair.is_stale |= a.has_moved || b.has_moved;
+        }
+        // Of pairs that have not moved nothing is asked, so that they are near as before.
+        let bodies = &self.bodies;
+        let is_still = |i: usize| bodies[i].as_ref().is_some_and(|body| !body.has_moved);
+        self.pairs
+            .retain(|[one, other], pair| pair.is_near || is_still(*one) && is_still(*other));
+    }
+
+    fn body(&mut self, body: BodyId) -> Result<&mut Body<D>, QueryError> {
+        let found = self.bodies.get_mut(body.0).and_then(Option::as_mut);
+        found.ok_or(QueryError::NoBody { body: body.0 })
+    }
+}
+
+impl<const D: usize> Body<D> {
+    fn place(&mut self, pose: Pose<D>, margin: f64) -> Result<(), QueryError> {
+        if !pose.is_finite() {
+            return Err(QueryError::Pose);
+        }
+        (self.pose, self.has_moved) = (pose, true);
+        let bounds = self.shape.promise().bounds;
+        self.aabb = bounds.map(|bounds| {
+            let placed = bounds.aabb.placed(&pose);
+            let size = placed.centre().norm() + placed.half_extents().norm();
+            placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * size)
+        });
+        Ok(())
+    }
+}
+
+/// Roundings of a placed box, relative to its largest coordinate.
+const ROUNDINGS: f64 = 16.0;

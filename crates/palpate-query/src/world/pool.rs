@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Workspaces that threads lend each other.
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::pair::PairWorkspace;
+
+/// Workspaces that nobody uses now. What one holds from before changes no answer.
+#[derive(Debug)]
+pub(super) struct Pool<const D: usize>(Mutex<Vec<PairWorkspace<D>>>);
+
+impl<const D: usize> Pool<D> {
+    pub(super) fn new() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    /// Runs `ask` with a workspace, a new one if all are in use.
+    pub(super) fn with(&self, ask: impl FnOnce(&mut PairWorkspace<D>)) {
+        let idle = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let lent = idle().pop();
+        let mut workspace = lent.unwrap_or_default();
+        ask(&mut workspace);
+        idle().push(workspace);
+    }
+}

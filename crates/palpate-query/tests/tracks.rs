@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that move: what is kept of the last proof, and derivatives.
+
+use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
+use palpate_field::operator::Smooth;
+use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{Limits, PairWorkspace, Placed, Track, rates, separation};
+
+type Pair<const D: usize> = (&'static str, Shape<D>, Shape<D>);
+
+fn in_space() -> Result<Vec<Pair<3>>, ShapeError> {
+    let cuboid = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4, 0.8]))?);
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let post = Shape::from_kernel(Cylinder::new(0.1, 0.9)?);
+    let drilled = cuboid.clone().difference([post.clone()])?;
+    let blend = Shape::smooth_union([drilled.clone(), torus.clone()], Smooth::Cubic, 0.02)?;
+    let stretched = torus.clone().stretched([1.0, 2.0, 0.5])?;
+    Ok(vec![
+        ("cuboid, torus", cuboid.clone(), torus),
+        ("blend, drilled cuboid", blend.clone(), drilled),
+        ("stretched torus, post", stretched, post),
+        ("blend, twisted cuboid", blend, cuboid.twisted(1.0)?),
+    ])
+}
+
+fn in_the_plane() -> Result<Vec<Pair<2>>, ShapeError> {
+    let cuboid = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4]))?);
+    let ball = Shape::from_kernel(Ball::new(0.3)?);
+    let bitten = cuboid.clone().difference([ball.clone().translated(Vector([0.3, 0.2]))?])?;
+    let blend = Shape::smooth_union([ball, cuboid.clone()], Smooth::Quadratic, 0.02)?;
+    Ok(vec![("bitten cuboid, blend", bitten, blend.clone()), ("blend, cuboid", blend, cuboid)])
+}
+
+/// Follows each pair along a way with a jump in it, and asks anew beside it.
+fn agree<const D: usize>(pairs: &[Pair<D>], motion: impl Fn(f64) -> Pose<D>) {
+    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    for (name, a, b) in pairs {
+        let mut track = Track::new(a.clone(), b.clone());
+        let (mut warm_asked, mut cold_asked) = (0, 0);
+        for step in 0..200 {
+            let jump = if step < 100 { 0.0 } else { 0.4 };
+            let poses = [motion(-0.3), motion(2e-4 * f64::from(step) + jump)];
+            let warm = track.separation(poses, &limits, &mut workspace).expect("bounded");
+            let [a, b] = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
+            let cold = separation(a, b, &limits, &mut workspace).expect("bounded");
+            assert!(
+                warm.lower <= cold.upper && cold.lower <= warm.upper,
+                "{name}, step {step}: {warm:?} and {cold:?} exclude each other"
+            );
+            assert!(warm.upper - warm.lower <= limits.tolerance, "{name}: {warm:?}");
+            warm_asked += warm.evaluations;
+            cold_asked += cold.evaluations;
+        }
+        assert!(
+            2 * warm_asked < cold_asked,
+            "{name}: {warm_asked} of {cold_asked} evaluations"
+        );
+    }
+}
+
+#[test]
+fn what_is_kept_stays_true_and_saves_evaluations() -> Result<(), ShapeError> {
+    let axis = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 1.0)?;
+    agree(&in_space()?, |t| {
+        let turn = Rotation::from_axis_angle(Vector([1.0, 0.2, 0.4]), 0.5 * t);
+        Pose::new(turn.expect("an axis") * axis, Vector([0.9 + t, 0.1 * t, 0.3]))
+    });
+    agree(&in_the_plane()?, |t| {
+        let turn = Rotation::from_angle(0.5 * t).expect("an angle");
+        Pose::new(turn, Vector([0.5 + t, 0.4]))
+    });
+    Ok(())
+}
+
+/// Derivatives of separations that are smooth at these poses, against differences.
+fn differ<const D: usize>(
+    pairs: &[Pair<D>],
+    start: Pose<D>,
+    moves: &[(Pose<D>, usize, usize)],
+) {
+    const STEP: f64 = 1e-4;
+    let limits = Limits { tolerance: 1e-9, budget: 1_000_000 };
+    let mut workspace = PairWorkspace::new();
+    for (name, a, b) in pairs {
+        let mut at = |poses: [Pose<D>; 2]| {
+            let [a, b] = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
+            separation(a, b, &limits, &mut workspace).expect("bounded")
+        };
+        let here = at([Pose::identity(), start]);
+        let rates = rates(a, Placed::new(b, start), &here.best).expect("bounded");
+        assert!(rates.residual < 5e-3, "{name}: {rates:?}");
+        for (small, body, index) in moves {
+            let mut ends = [[Pose::identity(), start]; 2];
+            ends[0][*body] = *small * ends[0][*body];
+            ends[1][*body] = small.inverse() * ends[1][*body];
+            let [after, before] = ends.map(|poses| at(poses).upper);
+            let difference = (after - before) / (2.0 * STEP);
+            let derivative = rates.derivative(*body, Vector::ZERO);
+            let said = match index.checked_sub(D) {
+                None => derivative.translation[*index],
+                Some(axis) => derivative.rotation[axis],
+            };
+            assert!(
+                (said - difference).abs() < 2e-3,
+                "{name}: body {body}, {index}: {said} is said, {difference} found"
+            );
+        }
+    }
+}
+
+#[test]
+fn derivatives_are_the_limits_of_differences() -> Result<(), ShapeError> {
+    let pairs = in_space()?;
+    let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
+    let mut moves = Vec::new();
+    for body in 0..2 {
+        for axis in 0..3 {
+            let step = Vector::unit(axis);
+            moves.push((Pose::translation(step * 1e-4), body, axis));
+            let turn = Rotation::from_axis_angle(step, 1e-4)?;
+            moves.push((Pose::rotation(turn), body, 3 + axis));
+        }
+    }
+    differ(&pairs, Pose::new(turn, Vector([0.9, 0.45, 0.35])), &moves);
+    let mut moves = Vec::new();
+    for body in 0..2 {
+        for axis in 0..2 {
+            moves.push((Pose::translation(Vector::unit(axis) * 1e-4), body, axis));
+        }
+        moves.push((Pose::rotation(Rotation::from_angle(1e-4)?), body, 4));
+    }
+    let turn = Rotation::from_angle(0.3)?;
+    differ(&in_the_plane()?, Pose::new(turn, Vector([0.7, 0.5])), &moves);
+    Ok(())
+}
+
+#[test]
+fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
+    let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };
+    let mut workspace = PairWorkspace::new();
+    let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
+    let away = Vector([0.6, 0.35, 0.3]);
+    for (name, a, b) in in_space()? {
+        let built = b.clone().rotated(turn)?.translated(away)?;
+        let built = separation(&a, &built, &limits, &mut workspace).expect("bounded");
+        let posed = Placed::new(&b, Pose::new(turn, away));
+        let posed = separation(&a, posed, &limits, &mut workspace).expect("bounded");
+        assert!(built.lower <= posed.upper, "{name}: {built:?}, {posed:?}");
+        // A box around a rotated box is larger: what is steeper than one is told less.
+        let is_steep = a.promise().lipschitz.max(b.promise().lipschitz) > 1.0;
+        assert!(is_steep || posed.lower <= built.upper, "{name}: {built:?}, {posed:?}");
+    }
+    Ok(())
+}

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Many bodies, against all their pairs one by one.
+
+use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
+use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{
+    BodyId, Limits, PairWorkspace, Placed, QueryError, Verdict, World, WorldSettings, overlap,
+    separation,
+};
+
+type Test = Result<(), Box<dyn std::error::Error>>;
+
+/// The fractional parts of multiples of the plastic number's powers: places without order.
+fn place(i: usize) -> [f64; 3] {
+    [0.819_172_513_396_164, 0.671_043_606_703_789, 0.549_700_477_901_929]
+        .map(|step| (step * (i + 1) as f64).fract())
+}
+
+fn in_space(i: usize) -> Result<(Shape<3>, Pose<3>), ShapeError> {
+    let shape = match i % 4 {
+        0 => Shape::from_kernel(Ball::new(0.2)?),
+        1 => Shape::from_kernel(Cuboid::new(Vector([0.5, 0.2, 0.3]))?),
+        2 => Shape::from_kernel(Torus::new(0.2, 0.08)?),
+        _ => Shape::from_kernel(Cylinder::new(0.12, 0.5)?),
+    };
+    let [x, y, z] = place(i);
+    let turn = Rotation::from_axis_angle(Vector([x, 1.0, z]), 6.0 * y)?;
+    Ok((shape, Pose::new(turn, Vector([x, y, z]) * 1.6)))
+}
+
+fn in_the_plane(i: usize) -> Result<(Shape<2>, Pose<2>), ShapeError> {
+    let shape = match i % 2 {
+        0 => Shape::from_kernel(Ball::new(0.1)?),
+        _ => Shape::from_kernel(Cuboid::new(Vector([0.3, 0.1]))?),
+    };
+    let [x, y, z] = place(i);
+    Ok((shape, Pose::new(Rotation::from_angle(6.0 * z)?, Vector([x, y]) * 2.0)))
+}
+
+/// A world, the names of its bodies, and they once more.
+type Made<const D: usize> = (World<D>, Vec<BodyId>, Vec<(Shape<D>, Pose<D>)>);
+
+/// A world of `count` bodies.
+fn made<const D: usize>(
+    count: usize,
+    make: impl Fn(usize) -> Result<(Shape<D>, Pose<D>), ShapeError>,
+) -> Result<Made<D>, Box<dyn std::error::Error>> {
+    let mut world = World::new(WorldSettings::of_size(1.0))?;
+    let bodies = (0..count).map(make).collect::<Result<Vec<_>, _>>()?;
+    let ids = bodies.iter().map(|(shape, pose)| world.add(shape.clone(), *pose));
+    let ids = ids.collect::<Result<_, _>>()?;
+    Ok((world, ids, bodies))
+}
+
+/// That a world says of all pairs what each says alone.
+fn agrees<const D: usize>(world: &mut World<D>, bodies: &[(Shape<D>, Pose<D>)]) -> usize {
+    let WorldSettings { manifold, limits: asked } = *world.settings();
+    let margin = manifold.margin;
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: 1e-5, budget: 200_000 };
+    let found = world.step();
+    let mut touching = 0;
+    for (k, (b, of_b)) in bodies.iter().enumerate() {
+        for (i, (a, of_a)) in bodies[..k].iter().enumerate() {
+            let said = found.iter().find(|pair| pair.bodies.map(BodyId::index) == [i, k]);
+            let two = [Placed::new(a, *of_a), Placed::new(b, *of_b)];
+            let truth = separation(two[0], two[1], &limits, &mut workspace).expect("bounded");
+            if truth.upper <= margin {
+                touching += 1;
+                let said = said.unwrap_or_else(|| panic!("{i}, {k} is missing: {truth:?}"));
+                assert_eq!(said.verdict(margin), Verdict::Touching, "{i}, {k}: {said:?}");
+                assert!(!said.contacts().is_empty(), "{i}, {k}: {said:?}");
+                let [lower, upper] = said.bounds();
+                assert!(lower <= truth.upper && truth.lower <= upper, "{i}, {k}: {said:?}");
+            } else if truth.lower > margin + asked.tolerance {
+                assert!(said.is_none(), "{i}, {k} is apart: {said:?}");
+            }
+        }
+    }
+    touching
+}
+
+#[test]
+fn a_world_says_what_all_pairs_say() -> Test {
+    let (mut world, ids, mut bodies) = made(60, in_space)?;
+    assert!(agrees(&mut world, &bodies) > 20);
+    // Some move, and are asked again from what was known.
+    for step in 0..3 {
+        let mut moves = Vec::new();
+        for i in (step..bodies.len()).step_by(7) {
+            let [x, y, z] = place(100 + i);
+            bodies[i].1.translation += Vector([x - 0.5, y - 0.5, z - 0.5]) * 0.1;
+            moves.push((ids[i], bodies[i].1));
+        }
+        world.set_poses(&moves)?;
+        assert!(agrees(&mut world, &bodies) > 20);
+    }
+    let (mut world, _, bodies) = made(80, in_the_plane)?;
+    assert!(agrees(&mut world, &bodies) > 20);
+    Ok(())
+}
+
+#[test]
+fn threads_change_no_bit() -> Test {
+    let run = |threads: usize| -> Result<String, Box<dyn std::error::Error>> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let (mut world, ..) = made(60, in_space)?;
+        Ok(pool.install(|| format!("{:?}", world.step())))
+    };
+    let alone = run(1)?;
+    for threads in [2, 5] {
+        assert_eq!(run(threads)?, alone, "{threads} threads");
+    }
+    Ok(())
+}
+
+#[test]
+fn groups_masks_and_ignored_pairs_are_not_asked() -> Test {
+    let ball = Shape::from_kernel(Ball::new(0.5)?);
+    let mut world = World::new(WorldSettings::of_size(1.0))?;
+    let mut ids = Vec::new();
+    for i in 0..3 {
+        let there = Pose::translation(Vector([0.1 * f64::from(i), 0.0, 0.0]));
+        ids.push(world.add(ball.clone(), there)?);
+    }
+    assert_eq!(world.step().len(), 3);
+    world.ignore(ids[2], ids[0])?;
+    assert_eq!(world.step().len(), 2);
+    // The second is in a group that the first does not ask for.
+    world.set_groups(ids[1], 2, u32::MAX)?;
+    world.set_groups(ids[0], 1, 1)?;
+    let found = world.step();
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].bodies, [ids[1], ids[2]]);
+    world.remove(ids[2])?;
+    assert!(world.step().is_empty());
+    assert_eq!(world.remove(ids[2]), Err(QueryError::NoBody { body: 2 }));
+    assert_eq!(world.pose(ids[1])?.translation[0], 0.1);
+    Ok(())
+}
+
+#[test]
+fn no_pair_is_dropped() -> Test {
+    let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+    let wall = Shape::from_kernel(HalfSpace::new(Vector([1.0, 0.0, 0.0]), 0.0)?);
+    let ball = Shape::from_kernel(Ball::new(0.5)?);
+    let mut world = World::new(WorldSettings::of_size(1.0))?;
+    let floor = world.add(floor, Pose::identity())?;
+    let wall = world.add(wall, Pose::identity())?;
+    let ball = world.add(ball, Pose::translation(Vector([0.4999, 0.4995, 7.0])))?;
+    let found = world.step();
+    let margin = 0.002;
+    let verdicts: Vec<_> =
+        found.iter().map(|pair| (pair.bodies, pair.verdict(margin))).collect();
+    // Of two bodies without bounds nothing can be said, and that is said.
+    assert_eq!(verdicts[0], ([floor, wall], Verdict::Undecided));
+    assert_eq!(found[0].bounds(), [f64::NEG_INFINITY, f64::INFINITY]);
+    assert_eq!(verdicts[1], ([floor, ball], Verdict::Touching));
+    assert_eq!(verdicts[2], ([wall, ball], Verdict::Touching));
+    assert!((found[2].contacts()[0].gap + 1e-4).abs() < 1e-6);
+    // A budget of nothing decides nothing, and drops nothing.
+    let limits = Limits { tolerance: 1e-9, budget: 10 };
+    let settings = WorldSettings { limits, ..WorldSettings::of_size(1.0) };
+    let mut world = World::new(settings)?;
+    let cuboid = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?);
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    world.add(cuboid.clone(), Pose::identity())?;
+    let turn = Rotation::from_axis_angle(Vector([1.0, 0.3, 0.0]), 0.6)?;
+    let there = Pose::new(turn, Vector([0.75, 0.3, 0.0]));
+    world.add(torus.clone(), there)?;
+    let found = world.step();
+    let [lower, upper] = found[0].bounds();
+    let mut workspace = PairWorkspace::new();
+    let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };
+    let truth = separation(&cuboid, Placed::new(&torus, there), &limits, &mut workspace)?;
+    assert!(lower <= truth.upper && truth.lower <= upper, "{truth:?}");
+    assert!(overlap(&cuboid, Placed::new(&torus, there), &limits, &mut workspace).is_ok());
+    Ok(())
+}
+
+#[test]
+fn poses_are_moved_all_or_none() -> Test {
+    let ball = Shape::from_kernel(Ball::new(0.5)?);
+    let mut world = World::new(WorldSettings::of_size(1.0))?;
+    let one = world.add(ball.clone(), Pose::identity())?;
+    let other = world.add(ball.clone(), Pose::identity())?;
+    let fine = Pose::translation(Vector([3.0, 0.0, 0.0]));
+    let wrong = Pose::translation(Vector([f64::NAN, 0.0, 0.0]));
+    assert_eq!(world.set_poses(&[(one, fine), (other, wrong)]), Err(QueryError::Pose));
+    assert_eq!(world.pose(one)?, Pose::identity());
+    assert_eq!(world.add(ball, wrong), Err(QueryError::Pose));
+    world.set_poses(&[(one, fine)])?;
+    assert!(world.step().is_empty());
+    Ok(())
+}
