@@ -242,6 +242,9 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
             self.look_closer(workspace);
         }
         self.search_rest(limits, workspace);
+        // Lists that take turns may each need the room of the other next time.
+        equalise(&mut workspace.frontier, &mut workspace.next);
+        equalise(&mut workspace.open, &mut workspace.still_open);
         self.evaluations
     }
 
@@ -363,6 +366,15 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
                 }),
             }
         }
+    }
+}
+
+/// Gives two lists the room of the larger, and empties them.
+fn equalise<T>(a: &mut Vec<T>, b: &mut Vec<T>) {
+    let room = a.capacity().max(b.capacity());
+    for list in [a, b] {
+        list.clear();
+        list.reserve_exact(room);
     }
 }
 
