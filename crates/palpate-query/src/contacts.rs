@@ -198,7 +198,11 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
             for parents in cells.chunks(SHORT / parts) {
-                self.halve_each(parents, halves);
+                let (mut block, mut count) = ([parents[0]; SHORT], 0);
+                for parent in parents {
+                    parent.halve_into(&mut block, &mut count);
+                }
+                self.look_at(block, count, halves);
             }
             std::mem::swap(cells, halves);
             cells_of_whole *= parts;

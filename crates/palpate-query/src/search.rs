@@ -61,6 +61,18 @@ pub(crate) struct Cell<const N: usize, const D: usize> {
     level: u32,
 }
 
+impl<const N: usize, const D: usize> Cell<N, D> {
+    /// Writes its halves behind the first `count` parts, and counts them.
+    #[inline]
+    pub(crate) fn halve_into(&self, parts: &mut [Self; SHORT], count: &mut usize) {
+        for element in &self.element.halves()[..parts_of_one::<N>()] {
+            let (radius, level) = (0.5 * self.radius, self.level + 1);
+            parts[*count] = Self { element: *element, radius, level, ..*self };
+            *count += 1;
+        }
+    }
+}
+
 /// Memory of searches, to be kept between them: it is allocated once.
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
@@ -134,6 +146,7 @@ impl Terms {
     }
 }
 
+#[inline]
 pub(crate) fn search<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
@@ -162,6 +175,7 @@ pub(crate) struct Search<'a, const N: usize, const D: usize> {
 }
 
 impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
+    #[inline]
     pub(crate) fn new(
         shape: &'a Shape<D>,
         element: &Element<N, D>,
@@ -172,7 +186,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let centre = element.at(&weights);
         let radius = element.farthest(centre);
         let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
-        let reach = terms.reach.max(centre.norm() + (1.0 + highest) * radius);
+        let reach = larger(terms.reach, centre.norm() + (1.0 + highest) * radius);
         Self {
             sampler: Sampler::new(shape, samples, reach, terms.level),
             goal: terms.goal,
@@ -207,6 +221,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
     }
 
+    #[inline]
     fn run(
         mut self,
         element: &Element<N, D>,
@@ -249,6 +264,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     }
 
     /// Searches cells until enough is known.
+    #[inline]
     pub(crate) fn finish(&mut self, cells: &mut Vec<Cell<N, D>>) -> Certified<Point<D>> {
         loop {
             let lowest = cells.iter().fold(self.dropped, |low, cell| low.min(cell.lower));
@@ -290,29 +306,24 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     /// Halves the cells of which least is known, a block of parts.
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let mut parents = [cells[0]; SHORT];
+        let mut parts = [cells[0]; SHORT];
         let mut count = 0;
-        while count < SHORT / parts_of_one::<N>() && !cells.is_empty() {
+        while count < SHORT && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            parents[count] = cells.swap_remove(lowest);
-            count += 1;
+            cells.swap_remove(lowest).halve_into(&mut parts, &mut count);
         }
-        self.halve_each(&parents[..count], cells);
+        self.look_at(parts, count, cells);
     }
 
-    /// Halves `parents`, at most a block of parts, and keeps the parts that matter.
+    /// Bounds the first `count` parts, and keeps those that matter.
     #[inline]
-    pub(crate) fn halve_each(&mut self, parents: &[Cell<N, D>], kept: &mut Vec<Cell<N, D>>) {
-        let mut parts = [parents[0]; SHORT];
-        let mut count = 0;
-        for parent in parents {
-            for element in &parent.element.halves()[..parts_of_one::<N>()] {
-                let (radius, level) = (0.5 * parent.radius, parent.level + 1);
-                parts[count] = Cell { element: *element, radius, level, ..*parent };
-                count += 1;
-            }
-        }
+    pub(crate) fn look_at(
+        &mut self,
+        mut parts: [Cell<N, D>; SHORT],
+        count: usize,
+        kept: &mut Vec<Cell<N, D>>,
+    ) {
         for i in count..SHORT {
             parts[i] = parts[count - 1];
         }
