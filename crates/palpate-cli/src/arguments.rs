@@ -45,6 +45,17 @@ Examples:
 
 The points file has the header x_m,y_m,z_m (x_m,y_m in 2D).")]
     Eval(EvalOptions),
+    /// Where the bodies of a scene touch, with proof; status 1 if none do.
+    #[command(after_help = "\
+Examples:
+  palpate contact scenes/peg_in_hole.json
+  palpate contact scenes/nut_on_bolt.json --margin 0.0002 --json
+  palpate contact scenes/gears.json --tolerance 1e-6
+
+Bounds are of the separation: between bodies that are exact outside, their distance; of
+bodies that overlap, minus the width of the widest ball in both. The truth lies between
+them, rounding included. A pair that the budget leaves open is undecided, with bounds.")]
+    Contact(ContactOptions),
     /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
     #[command(after_help = "\
 Examples:
@@ -53,7 +64,8 @@ Examples:
   palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05
   palpate plot scenes/gears.json --centre 0.033,0 --size 0.02 --output mesh.png
   palpate plot scenes/memoir_star.json --map gradient --output gradient.png
-  palpate plot scenes/memoir_star.json --map promise --output promise.png")]
+  palpate plot scenes/memoir_star.json --map promise --output promise.png
+  palpate plot scenes/peg_in_hole.json --contacts --proof --output proof.png")]
     Plot(PlotOptions),
     /// Draw every primitive and operator, many small pictures on a few sheets.
     #[command(after_help = "\
@@ -209,6 +221,15 @@ pub(crate) struct PlotOptions {
     /// The distance between isolines [m]; for the map of distances.
     #[arg(long)]
     pub(crate) step: Option<f64>,
+    /// Where bodies touch: contacts, normals, and the ways between bodies. A plane along
+    /// two axes goes through the deepest contact if it is not said where.
+    #[arg(long)]
+    pub(crate) contacts: bool,
+    /// The proof: the boxes that were ruled out.
+    #[arg(long, requires = "contacts")]
+    pub(crate) proof: bool,
+    #[command(flatten)]
+    pub(crate) question: ContactQuestion,
     /// The picture: .svg or .png; the scene's name with .svg if left out.
     #[arg(long)]
     pub(crate) output: Option<PathBuf>,
@@ -218,6 +239,40 @@ pub(crate) struct PlotOptions {
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Where bodies touch.
+#[derive(Args, Debug)]
+pub(crate) struct ContactOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) question: ContactQuestion,
+    /// Pairs that are apart too, with the bounds of their separation; as is done for
+    /// scenes of at most 12 bodies.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What counts as touching, and how finely it is looked at.
+#[derive(Args, Debug)]
+pub(crate) struct ContactQuestion {
+    /// Up to this gap bodies touch [m]; 0.2 % of the smallest body if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) margin: Option<f64>,
+    /// How finely regions of contact are looked at [m]; 4 % of the smallest body if left
+    /// out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) spacing: Option<f64>,
+    /// How far apart the bounds of a separation may be [m]; half the margin if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// The most evaluations of fields for a pair.
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) budget: u32,
 }
 
 /// What the gallery shows.

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod check;
+mod contact;
 mod eval;
 mod feel;
 mod gallery;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     let result = match arguments.command.unwrap_or_default() {
         Command::Feel(options) => feel::run(&options),
         Command::Eval(options) => eval::run(&options),
+        Command::Contact(options) => contact::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Gallery(options) => gallery::run(&options),
         Command::Check(options) => check::run(&options),

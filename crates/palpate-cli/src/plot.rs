@@ -12,6 +12,7 @@ use palpate::scene::{BuiltScene, World};
 use serde_json::json;
 
 use crate::arguments::{Map, PlotOptions};
+use crate::contact::Touched;
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{self, Dimensions, Drawable};
@@ -21,13 +22,28 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     match &named.world {
         World::Planar(scene) => {
             let window = Window::of(options, scene)?;
-            draw(options, scene, &window, &Slice::planar())
+            let touched = touched(options, scene)?;
+            draw(options, scene, &window, &Slice::planar(), touched.as_ref())
         }
         World::Spatial(scene) => {
             let window = Window::of(options, scene)?;
-            draw(options, scene, &window, &plane(options, &window.bounds)?)
+            let touched = touched(options, scene)?;
+            let deepest = touched.as_ref().and_then(Touched::deepest);
+            let deepest = deepest.filter(|_| options.centre.is_none());
+            let through = deepest.unwrap_or_else(|| window.bounds.centre());
+            let plane = plane(options, through)?;
+            draw(options, scene, &window, &plane, touched.as_ref())
         }
     }
+}
+
+/// The contacts, if they are to be shown.
+fn touched<const D: usize>(
+    options: &PlotOptions,
+    scene: &BuiltScene<D>,
+) -> Result<Option<Touched<D>>, Failure> {
+    let find = || Touched::find(&options.question, scene, options.proof);
+    options.contacts.then(find).transpose()
 }
 
 /// What the picture shows.
@@ -62,6 +78,7 @@ fn draw<const D: usize>(
     scene: &BuiltScene<D>,
     window: &Window<D>,
     plane: &Slice,
+    touched: Option<&Touched<D>>,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
@@ -82,6 +99,10 @@ where
     };
     let (step, range, measured) = (isolines.step(), isolines.range(), isolines.measured());
     let output = output(options);
+    let isolines = match touched {
+        Some(touched) => touched.draw(isolines, plane)?,
+        None => isolines,
+    };
     let figure = Figure::new(title(&options.scene))
         .with_caption(promise_in_words(scene.whole.promise()))
         .with_isolines(isolines);
@@ -109,6 +130,11 @@ where
                 "largest": measured.largest,
                 "largest_at_m": point(measured.largest_at),
             });
+        }
+        if let Some(touched) = touched {
+            let (touching, boxes) = touched.counts();
+            answer["touching_pairs"] = json!(touching);
+            answer["proof_boxes"] = json!(boxes);
         }
         writeln!(out, "{answer:#}")?;
         return Ok(Outcome::Yes);
@@ -139,8 +165,8 @@ pub(crate) fn title(scene: &Path) -> String {
     scene.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ")
 }
 
-fn plane(options: &PlotOptions, bounds: &Aabb<3>) -> Result<Slice, Failure> {
-    let middle = bounds.centre();
+/// The plane that is asked for; along two axes through `middle`, unless said otherwise.
+fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure> {
     let at = |axis: usize| options.at.unwrap_or(middle[axis]);
     match options.plane.as_str() {
         "xy" => Slice::xy(at(2)),

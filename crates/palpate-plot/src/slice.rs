@@ -200,6 +200,47 @@ impl Slice {
         [self.right, self.up, self.normal()].map(|axis| dot(gradient, axis) + 0.0) // no −0
     }
 
+    /// Where the plane cuts a box \[m\]: the corners of the cut in plane coordinates,
+    /// counter-clockwise; none if it misses the box.
+    ///
+    /// Bit k of a corner's number says on which side of the box's own axis k it is.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::Slice;
+    ///
+    /// let side = |code: usize, k: usize| f64::from(u8::from(code >> k & 1 == 1));
+    /// let corners: [[f64; 3]; 8] =
+    ///     std::array::from_fn(|code| [side(code, 0), 2.0 * side(code, 1), side(code, 2)]);
+    /// let cut = Slice::xy(0.5)?.cut(corners);
+    /// assert_eq!(cut, [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]);
+    /// assert!(Slice::xy(1.5)?.cut(corners).is_empty());
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub fn cut(&self, corners: [[f64; 3]; 8]) -> Vec<[f64; 2]> {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        let edges = (0..8).flat_map(|i: usize| (0..3).map(move |k| (i, i | 1 << k)));
+        for (a, b) in edges.filter(|(a, b)| a != b) {
+            let [below, above] = [a, b].map(|i| self.elevation(corners[i]));
+            if below * above <= 0.0 && below != above {
+                let share = below / (below - above);
+                let [a, b] = [corners[a], corners[b]];
+                let cut = std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
+                let cut = self.project(cut);
+                if !points.contains(&cut) {
+                    points.push(cut);
+                }
+            }
+        }
+        let number = points.len().max(1) as f64;
+        let middle = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / number);
+        let angle = |p: &[f64; 2]| (p[1] - middle[1]).atan2(p[0] - middle[0]);
+        points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+        points
+    }
+
     /// Signed distance of `point` from the plane \[m\], positive towards the viewer.
     #[must_use]
     pub fn elevation(&self, point: [f64; 3]) -> f64 {

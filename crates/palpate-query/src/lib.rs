@@ -61,8 +61,8 @@ pub use mesh::{
     MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
 };
 pub use pair::{
-    Escape, Nearest, PairWorkspace, PoseDerivative, Rates, Track, escape, overlap, rates,
-    separation,
+    Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
+    overlap, proof, rates, separation,
 };
 pub use placed::Placed;
 pub use ray::{Ray, RayHit, ray};

@@ -5,8 +5,8 @@
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::operator::Smooth;
-use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, Placed, Track, rates, separation};
+use palpate_field::{Aabb, Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_query::{Limits, PairWorkspace, Placed, Track, proof, rates, separation};
 
 type Pair<const D: usize> = (&'static str, Shape<D>, Shape<D>);
 
@@ -152,6 +152,33 @@ fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
         // A box around a rotated box is larger: what is steeper than one is told less.
         let is_steep = a.promise().lipschitz.max(b.promise().lipschitz) > 1.0;
         assert!(is_steep || posed.lower <= built.upper, "{name}: {built:?}, {posed:?}");
+    }
+    Ok(())
+}
+
+/// The boxes of a proof fill the box around them, and each says what is true.
+#[test]
+fn a_proof_has_no_gaps_and_no_untruths() -> Result<(), ShapeError> {
+    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let there = Pose::translation(Vector([0.62, 0.4]));
+    for (name, a, b) in in_the_plane()? {
+        let placed = Placed::new(&b, there);
+        let found = proof(&a, placed, &limits, &mut workspace).expect("bounded");
+        let whole = found.boxes.iter().map(|part| part.aabb).reduce(|a, b| a.union(&b));
+        let area = |aabb: Aabb<2>| {
+            let half = aabb.half_extents();
+            4.0 * half[0] * half[1]
+        };
+        let parts: f64 = found.boxes.iter().map(|part| area(part.aabb)).sum();
+        let whole = whole.map_or(0.0, area);
+        assert!((parts - whole).abs() < 1e-12 * whole, "{name}: {parts} of {whole}");
+        for part in &found.boxes {
+            let p = part.aabb.centre();
+            let value = 2.0 * a.distance(p).max(b.distance(p - there.translation));
+            assert!(part.lower <= value, "{name}: {part:?}, {value}");
+            assert!(part.lower >= found.answer.lower, "{name}: {part:?}");
+        }
     }
     Ok(())
 }

@@ -14,11 +14,11 @@ use palpate::plot::{
 };
 use palpate::scene::BuiltScene;
 
-use super::nearness::{Pieces, Side, in_space, side, taken_apart};
+use super::nearness::{Pieces, Side, side, taken_apart};
 use super::slices::{FeltSlice, felt_slices};
 use crate::input::{self, promise_in_words};
 use crate::outcome::Failure;
-use crate::picture::{self, Dimensions, Drawable};
+use crate::picture::{self, Dimensions, Drawable, in_space};
 
 /// Points of a line at most: more than a picture has columns.
 const MOST_POINTS: usize = 2000;

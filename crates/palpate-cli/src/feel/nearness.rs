@@ -6,6 +6,8 @@
 use palpate::field::Vector;
 use palpate::plot::Slice;
 
+use crate::picture::in_space;
+
 /// Pieces of a line, in plane coordinates [m].
 pub(super) type Pieces = Vec<Vec<[f64; 2]>>;
 
@@ -61,11 +63,6 @@ pub(super) fn taken_apart<const D: usize>(
         last = Some((side, here));
     }
     seen
-}
-
-/// A point of the plane or of space, as a point of space.
-pub(super) fn in_space<const D: usize>(point: Vector<f64, D>) -> [f64; 3] {
-    std::array::from_fn(|axis| point.0.get(axis).copied().unwrap_or(0.0))
 }
 
 #[cfg(test)]

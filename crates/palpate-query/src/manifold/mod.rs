@@ -150,6 +150,12 @@ fn spanning<const D: usize>(
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     drop_copies(&mut touches, settings.spacing);
+    // Where a field says less than the distance, surfaces are farther apart than it says.
+    let is_close = |member: &Member<D>| {
+        member.touch.contact(&couple, settings.spacing, 0).gap <= settings.margin
+    };
+    let mut is_deepest = true;
+    touches.retain(|member| std::mem::take(&mut is_deepest) || is_close(member));
     if let Some(deepest) = touches.first().map(|member| member.touch) {
         found.deepen(&deepest, &patches.couple);
     }
@@ -167,7 +173,7 @@ fn spanning<const D: usize>(
         if let Some(count) = found.groups.last_mut() {
             *count += 1;
         }
-        found.contacts.push(member.touch.contact(&couple, i as u64));
+        found.contacts.push(member.touch.contact(&couple, settings.spacing, i as u64));
     }
     found.separation.evaluations += patches.couple.evaluations;
     found
@@ -234,13 +240,13 @@ impl<const D: usize> Touch<D> {
         Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
     }
 
-    /// The contact in world coordinates.
-    fn contact(&self, couple: &Couple<'_, D>, id: u64) -> Contact<D> {
+    /// The contact in world coordinates, with the surfaces' points within `near`.
+    fn contact(&self, couple: &Couple<'_, D>, near: f64, id: u64) -> Contact<D> {
+        let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {
             let found = couple.surface_point(body, self.point);
-            let near =
-                found.filter(|p| distance(*p, self.point) <= 2.0 * self.gap.abs() + 1e-9);
-            near.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
+            let found = found.filter(|p| distance(*p, self.point) <= near);
+            found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
         };
         let pose = &couple.world_from_frame;
         let (point_a, point_b) = (on(0, -1.0), on(1, 1.0));

@@ -28,6 +28,7 @@ pub(crate) mod couple;
 pub(crate) mod descent;
 mod escape;
 mod nearest;
+mod proof;
 mod rates;
 pub(crate) mod search;
 mod track;
@@ -41,6 +42,7 @@ use search::Search;
 
 pub use escape::{Escape, escape};
 pub use nearest::Nearest;
+pub use proof::{Proof, ProofBox, proof};
 pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
 pub use track::Track;

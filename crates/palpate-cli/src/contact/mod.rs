@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate contact`: where the bodies of a scene touch.
+
+mod overlay;
+mod question;
+mod report;
+
+use palpate::query::Verdict;
+use palpate::scene::{BuiltScene, World};
+
+use crate::arguments::ContactOptions;
+use crate::input;
+use crate::outcome::{Failure, Outcome};
+
+use question::{Pair, Question};
+
+pub(crate) use overlay::Touched;
+
+/// Scenes of so many bodies have so few pairs that all are told of.
+const FEW: usize = 12;
+
+/// Finds what touches; the answer is no if nothing does.
+pub(crate) fn run(options: &ContactOptions) -> Result<Outcome, Failure> {
+    let named = input::scene(Some(&options.scene))?;
+    match &named.world {
+        World::Planar(scene) => answer(options, scene),
+        World::Spatial(scene) => answer(options, scene),
+    }
+}
+
+fn answer<const D: usize>(
+    options: &ContactOptions,
+    scene: &BuiltScene<D>,
+) -> Result<Outcome, Failure> {
+    let question = Question::of(&options.question, scene)?;
+    let mut pairs: Vec<Pair<D>> = question.near(scene)?;
+    if options.all || scene.bodies.len() <= FEW {
+        pairs.extend(question.apart(scene, &pairs)?);
+    }
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let report = report::Report { question: &question, names: &names, pairs: &pairs };
+    if options.json {
+        report.print_json()?;
+    } else {
+        report.print()?;
+    }
+    let touch = pairs.iter().any(|pair| pair.verdict == Verdict::Touching);
+    Ok(if touch { Outcome::Yes } else { Outcome::No })
+}

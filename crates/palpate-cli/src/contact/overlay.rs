@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Contacts, and what proves them, over isolines.
+
+use palpate::field::{Aabb, Vector};
+use palpate::plot::{Arrow, Arrows, Color, Dash, Isolines, Markers, Polyline, Slice};
+use palpate::query::{Contact, Proof, Verdict};
+use palpate::scene::BuiltScene;
+
+use super::FEW;
+use super::question::{Pair, Question};
+use crate::arguments::ContactQuestion;
+use crate::outcome::Failure;
+use crate::picture::in_space;
+
+/// What is drawn of a scene's contacts.
+pub(crate) struct Touched<const D: usize> {
+    pairs: Vec<Pair<D>>,
+    proofs: Vec<Proof<D>>,
+    /// Contacts that are farther from a slice are not shown at it [m].
+    near: f64,
+}
+
+impl<const D: usize> Touched<D> {
+    /// Finds the contacts, and the proofs if they are to be drawn.
+    pub(crate) fn find(
+        asked: &ContactQuestion,
+        scene: &BuiltScene<D>,
+        with_proof: bool,
+    ) -> Result<Self, Failure> {
+        let question = Question::of(asked, scene)?;
+        let mut pairs = question.near(scene)?;
+        if scene.bodies.len() <= FEW {
+            pairs.extend(question.apart(scene, &pairs)?);
+        }
+        let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
+        let proofs = shown.map(|pair| question.proof(scene, pair.bodies));
+        let proofs = proofs.collect::<Result<_, _>>()?;
+        Ok(Self { pairs, proofs, near: question.settings.manifold.spacing })
+    }
+
+    /// The middle of the deepest contact, or of the shortest way between bodies.
+    pub(crate) fn deepest(&self) -> Option<Vector<f64, D>> {
+        let contacts = self.pairs.iter().flat_map(|pair| &pair.contacts);
+        let deepest = contacts.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        Some((deepest.point_a + deepest.point_b) * 0.5)
+    }
+
+    /// How many pairs touch, and how many boxes prove what is drawn.
+    pub(crate) fn counts(&self) -> (usize, usize) {
+        let touching = self.pairs.iter().filter(|pair| pair.verdict == Verdict::Touching);
+        (touching.count(), self.proofs.iter().map(|proof| proof.boxes.len()).sum())
+    }
+
+    /// Draws all this over isolines.
+    pub(crate) fn draw(&self, isolines: Isolines, plane: &Slice) -> Result<Isolines, Failure> {
+        let mut isolines = isolines;
+        if !self.proofs.is_empty() {
+            let boxes = self.proofs.iter().flat_map(|proof| cuts(proof, plane));
+            let boxes = Polyline::of_pieces("ruled out", boxes).map_err(Failure::input)?;
+            isolines = isolines.with_polyline(boxes.faint());
+        }
+        let is_seen = |contact: &&Contact<D>| {
+            plane.elevation(in_space((contact.point_a + contact.point_b) * 0.5)).abs()
+                <= self.near
+        };
+        let contacts = |is_apart: bool| {
+            let pairs = self.pairs.iter();
+            let pairs = pairs.filter(move |pair| (pair.verdict == Verdict::Apart) == is_apart);
+            pairs.flat_map(|pair| &pair.contacts).filter(is_seen)
+        };
+        let at = |point: Vector<f64, D>| plane.project(in_space(point));
+        let ends = |contact: &Contact<D>| vec![at(contact.point_a), at(contact.point_b)];
+        if contacts(true).next().is_some() {
+            let ways = Polyline::of_pieces("between bodies", contacts(true).map(ends));
+            let ways = ways.map_err(Failure::input)?.with_dash(Dash::Dashed);
+            isolines = isolines.with_polyline(ways.with_color(Color::PURPLE));
+        }
+        if contacts(false).next().is_some() {
+            let normals = contacts(false).map(|contact| Arrow {
+                tail: at((contact.point_a + contact.point_b) * 0.5),
+                vector: plane.project_vector(in_space(contact.normal)),
+            });
+            let normals = Arrows::directions("normal", normals).map_err(Failure::input)?;
+            let witnesses = contacts(false).flat_map(ends);
+            let witnesses = Markers::new("contact", witnesses).map_err(Failure::input)?;
+            isolines = isolines.with_arrows(normals).with_markers(witnesses);
+        }
+        Ok(isolines)
+    }
+}
+
+/// Where the plane cuts the boxes of a proof: closed lines.
+fn cuts<const D: usize>(
+    proof: &Proof<D>,
+    plane: &Slice,
+) -> impl Iterator<Item = Vec<[f64; 2]>> {
+    let world = proof.world_from_boxes;
+    proof.boxes.iter().filter_map(move |part| {
+        let Aabb { min, max } = part.aabb;
+        let corner = |code: usize| {
+            let mut p = min;
+            for k in (0..D).filter(|k| code >> k & 1 == 1) {
+                p[k] = max[k];
+            }
+            in_space(world.transform_point(p))
+        };
+        let mut outline = if D == 2 {
+            [0, 1, 3, 2].map(|code| plane.project(corner(code))).to_vec()
+        } else {
+            plane.cut(std::array::from_fn(corner))
+        };
+        outline.push(*outline.first()?);
+        Some(outline)
+    })
+}

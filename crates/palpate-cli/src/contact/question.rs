@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What counts as touching in a scene, and the answers of the library.
+
+use palpate::field::LARGEST_LENGTH;
+use palpate::query::{
+    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
+    Verdict, World, WorldSettings, proof, separation,
+};
+use palpate::scene::{BuiltBody, BuiltScene};
+
+use crate::arguments::ContactQuestion;
+use crate::outcome::Failure;
+
+/// The settings of a question about a scene.
+pub(crate) struct Question {
+    pub(crate) settings: WorldSettings,
+}
+
+/// What is known of two bodies, by their places in the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Pair<const D: usize> {
+    pub(crate) bodies: [usize; 2],
+    pub(crate) verdict: Verdict,
+    /// `None` of two bodies that both have no bounds.
+    pub(crate) separation: Option<Certified<Nearest<D>>>,
+    /// Where they touch; of bodies that are apart, the ends of a way between them.
+    pub(crate) contacts: Vec<Contact<D>>,
+    /// How many contacts there are of each patch.
+    pub(crate) groups: Vec<usize>,
+    /// How many contacts were left out.
+    pub(crate) dropped: usize,
+}
+
+impl Question {
+    /// Lengths that are not given are shares of the smallest body.
+    pub(crate) fn of<const D: usize>(
+        asked: &ContactQuestion,
+        scene: &BuiltScene<D>,
+    ) -> Result<Self, Failure> {
+        let sizes = scene.bodies.iter().filter_map(|body| {
+            let half = body.shape_in_body.promise().bounds?.aabb.half_extents();
+            Some(2.0 * half.0.into_iter().fold(0.0, f64::max))
+        });
+        let smallest = sizes.fold(f64::INFINITY, f64::min);
+        let size = if smallest.is_finite() && smallest > 0.0 { smallest } else { 1.0 };
+        let usual = ManifoldSettings::of_size(size);
+        let margin = length("--margin", asked.margin.unwrap_or(usual.margin), 0.0)?;
+        let spacing = asked.spacing.unwrap_or(usual.spacing);
+        let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;
+        let tolerance = length("--tolerance", asked.tolerance.unwrap_or(0.5 * margin), 0.0)?;
+        let manifold = ManifoldSettings { margin, spacing, ..usual };
+        let limits = Limits { tolerance, budget: asked.budget };
+        Ok(Self { settings: WorldSettings { manifold, limits } })
+    }
+
+    /// All pairs that touch, or of which it is not known.
+    pub(crate) fn near<const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+    ) -> Result<Vec<Pair<D>>, Failure> {
+        let mut world = World::new(self.settings).map_err(Failure::input)?;
+        for body in &scene.bodies {
+            world
+                .add(body.shape_in_body.clone(), body.world_from_body)
+                .map_err(|error| Failure::input(format!("body {:?}: {error}", body.name)))?;
+        }
+        let margin = self.settings.manifold.margin;
+        let pairs = world.step().into_iter().map(|found| {
+            let manifold = found.manifold.as_ref();
+            Pair {
+                bodies: found.bodies.map(|body| body.index()),
+                verdict: found.verdict(margin),
+                separation: manifold.map(|manifold| manifold.separation),
+                contacts: found.contacts().to_vec(),
+                groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
+                dropped: manifold.map_or(0, |manifold| manifold.dropped),
+            }
+        });
+        Ok(pairs.collect())
+    }
+
+    /// All pairs but those in `near`, with the separation that proves each apart.
+    pub(crate) fn apart<const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+        near: &[Pair<D>],
+    ) -> Result<Vec<Pair<D>>, Failure> {
+        let mut workspace = PairWorkspace::new();
+        let mut apart = Vec::new();
+        for k in 0..scene.bodies.len() {
+            for i in (0..k).filter(|i| near.iter().all(|pair| pair.bodies != [*i, k])) {
+                let [a, b] = [i, k].map(|i| placed(&scene.bodies[i]));
+                let found = separation(a, b, &self.settings.limits, &mut workspace)
+                    .map_err(Failure::input)?;
+                apart.push(Pair {
+                    bodies: [i, k],
+                    verdict: Verdict::Apart,
+                    separation: Some(found),
+                    contacts: found.best.contact(a, b).into_iter().collect(),
+                    groups: Vec::new(),
+                    dropped: 0,
+                });
+            }
+        }
+        Ok(apart)
+    }
+
+    /// The separation of two bodies with its proof.
+    pub(crate) fn proof<const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+        bodies: [usize; 2],
+    ) -> Result<Proof<D>, Failure> {
+        let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
+        proof(a, b, &self.settings.limits, &mut PairWorkspace::new()).map_err(Failure::input)
+    }
+}
+
+fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
+    Placed::new(&body.shape_in_body, body.world_from_body)
+}
+
+/// A length on the command line, at least `least`.
+fn length(option: &str, value: f64, least: f64) -> Result<f64, Failure> {
+    if (least..=LARGEST_LENGTH).contains(&value) {
+        return Ok(value);
+    }
+    let rule = if least > 0.0 { "positive" } else { "not negative" };
+    let rule = format!("{rule} and at most {LARGEST_LENGTH:e} m, got {value:?} m");
+    Err(Failure::input(format!("{option} must be {rule}")))
+}

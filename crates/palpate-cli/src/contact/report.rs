@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is told of contacts.
+
+use std::io::Write;
+
+use palpate::query::{Stop, Verdict};
+use serde_json::{Value, json};
+
+use super::question::{Pair, Question};
+use crate::outcome::Failure;
+
+/// The pairs of a scene, to be told of.
+pub(super) struct Report<'a, const D: usize> {
+    pub(super) question: &'a Question,
+    /// Of the bodies.
+    pub(super) names: &'a [&'a str],
+    pub(super) pairs: &'a [Pair<D>],
+}
+
+impl<const D: usize> Report<'_, D> {
+    pub(super) fn print(&self) -> Result<(), Failure> {
+        let mut out = std::io::stdout().lock();
+        for pair in self.pairs {
+            let [a, b] = pair.bodies.map(|i| self.names[i]);
+            write!(out, "{a} – {b}: {}", word(pair.verdict))?;
+            match &pair.separation {
+                Some(found) => writeln!(
+                    out,
+                    ", separation {} to {} mm ({}, {} evaluations)",
+                    millimetres(found.lower),
+                    millimetres(found.upper),
+                    reason(found.stop),
+                    found.evaluations
+                )?,
+                None => writeln!(out, ": neither is bounded, nothing is known")?,
+            }
+            if pair.verdict == Verdict::Apart {
+                continue;
+            }
+            for contact in &pair.contacts {
+                writeln!(
+                    out,
+                    "  {:>3}  gap {} mm  at ({})  normal ({})",
+                    contact.id,
+                    millimetres(contact.gap),
+                    joined(contact.point_a.0, 6),
+                    joined(contact.normal.0, 4)
+                )?;
+            }
+            if pair.dropped > 0 {
+                writeln!(out, "       and {} more that these span", pair.dropped)?;
+            }
+        }
+        let count = |verdict| self.pairs.iter().filter(|pair| pair.verdict == verdict).count();
+        let [touching, open] = [Verdict::Touching, Verdict::Undecided].map(count);
+        let bodies = self.names.len();
+        let apart = bodies * bodies.saturating_sub(1) / 2 - touching - open;
+        writeln!(
+            out,
+            "{bodies} bodies: {touching} pairs touch (gap up to {} mm), {apart} are apart, {open} undecided",
+            millimetres(self.question.settings.manifold.margin)
+        )?;
+        Ok(())
+    }
+
+    /// Infinite bounds are null.
+    pub(super) fn print_json(&self) -> Result<(), Failure> {
+        let settings = &self.question.settings;
+        let pairs: Vec<Value> = self.pairs.iter().map(|pair| self.described(pair)).collect();
+        let answer = json!({
+            "margin_m": settings.manifold.margin,
+            "spacing_m": settings.manifold.spacing,
+            "tolerance_m": settings.limits.tolerance,
+            "bodies": self.names,
+            "pairs": pairs,
+        });
+        writeln!(std::io::stdout().lock(), "{answer:#}")?;
+        Ok(())
+    }
+
+    fn described(&self, pair: &Pair<D>) -> Value {
+        let contacts: Vec<Value> = pair
+            .contacts
+            .iter()
+            .map(|contact| {
+                json!({
+                    "id": contact.id,
+                    "gap_m": contact.gap,
+                    "point_a_m": contact.point_a.0.to_vec(),
+                    "point_b_m": contact.point_b.0.to_vec(),
+                    "normal": contact.normal.0.to_vec(),
+                })
+            })
+            .collect();
+        let mut said = json!({
+            "bodies": pair.bodies.map(|i| self.names[i]),
+            "verdict": word(pair.verdict),
+            "dropped": pair.dropped,
+            "groups": pair.groups,
+        });
+        let key = if pair.verdict == Verdict::Apart { "witnesses" } else { "contacts" };
+        said[key] = json!(contacts);
+        if let Some(found) = &pair.separation {
+            said["separation_m"] = json!({ "lower": found.lower, "upper": found.upper });
+            said["stop"] = json!(reason(found.stop));
+            said["evaluations"] = json!(found.evaluations);
+        }
+        said
+    }
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Touching => "touching",
+        Verdict::Apart => "apart",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+fn reason(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Converged => "converged",
+        Stop::SignKnown => "sign known",
+        Stop::BudgetSpent => "budget spent",
+    }
+}
+
+fn millimetres(length: f64) -> String {
+    format!("{:.4}", 1e3 * length)
+}
+
+fn joined<const D: usize>(numbers: [f64; D], digits: usize) -> String {
+    // Adding zero makes −0 a 0.
+    numbers.map(|x| format!("{:.digits$}", x + 0.0)).join(", ")
+}

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A search with all that it ruled out.
+
+use palpate_field::{Aabb, Pose};
+
+use super::couple::Couple;
+use super::search::Search;
+use super::{Nearest, PairWorkspace};
+use crate::certified::{Certified, Limits};
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::placed::Placed;
+
+/// The separation of two bodies, and the boxes that prove it.
+#[derive(Clone, Debug)]
+pub struct Proof<const D: usize> {
+    /// The answer, as [`separation`](crate::separation) gives it.
+    pub answer: Certified<Nearest<D>>,
+    /// From the coordinates of the boxes, which are the first body's, to the world's.
+    pub world_from_boxes: Pose<D>,
+    /// Boxes without gaps between them: within them, as outside, nothing is less than
+    /// the answer's lower bound.
+    pub boxes: Vec<ProofBox<D>>,
+}
+
+/// A box, and what was proven of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProofBox<const D: usize> {
+    /// The box, in the first body's coordinates.
+    pub aabb: Aabb<D>,
+    /// Twice the larger of both distances is nowhere in the box less [m].
+    pub lower: f64,
+}
+
+/// The [`separation`](crate::separation) of two bodies with its proof: the box that was
+/// searched, in parts, each with its own bound. Outside of it, both bodies are never as
+/// near as the best point is.
+///
+/// # Errors
+///
+/// If neither body is bounded, or a pose is not finite.
+pub fn proof<'a, const D: usize>(
+    a: impl Into<Placed<'a, D>>,
+    b: impl Into<Placed<'a, D>>,
+    limits: &Limits,
+    workspace: &mut PairWorkspace<D>,
+) -> Result<Proof<D>, QueryError> {
+    let couple = Couple::new(a.into(), b.into())?;
+    let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits);
+    search.keeps_leaves = true;
+    let (answer, _) = search.run_within(0.0, workspace);
+    let mut cells = Vec::new();
+    workspace.take_known(&mut cells);
+    let boxes = cells.iter().map(|cell| ProofBox {
+        aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
+        lower: 2.0 * cell.lower,
+    });
+    Ok(Proof { answer, world_from_boxes: couple.world_from_frame, boxes: boxes.collect() })
+}
