@@ -246,7 +246,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
-        let lower = self.sampler.steepness.bound(centre, value, self.radius);
+        // Of what is no number nothing is known.
+        let lower =
+            larger(f64::NEG_INFINITY, self.sampler.steepness.bound(centre, value, self.radius));
         if let Some(stop) = self.goal.reached(lower, self.upper) {
             return Err(self.answer(lower, stop));
         }

@@ -7,7 +7,8 @@
 
 use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid};
-use palpate_field::{Point, Pose, Shape, ShapeError, Vector};
+use palpate_field::scalar::Scalar;
+use palpate_field::{Point, Pose, Promise, Shape, ShapeError, Vector};
 use palpate_mesh::{Mesh, MeshError, Outline, TriangleMesh};
 use palpate_query::{
     Contact, Element, Limits, MeshContacts, MeshWorkspace, Placed, PlacedMesh, QueryError,
@@ -315,6 +316,20 @@ fn what_is_no_question_is_an_error() -> Result<(), Box<dyn std::error::Error>> {
     let far = PlacedMesh::new(&point, Pose::translation(Vector([1e200, 0.0, 0.0])));
     let wrong = mesh_contacts(&ball, far, 0.0, &limits, &mut workspace);
     assert!(matches!(wrong, Err(QueryError::Coordinate { .. })));
+    Ok(())
+}
+
+#[test]
+fn of_a_field_that_is_no_number_nothing_is_known() -> Result<(), Box<dyn std::error::Error>> {
+    let promise = Promise::lipschitz(None, 1.0);
+    let nothing = Shape::from_fn(promise, |Vector([x, _, _])| x.scale(f64::NAN));
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector).to_vec();
+    let triangle = TriangleMesh::new(corners, vec![[0, 1, 2]])?;
+    let mut workspace = MeshWorkspace::new();
+    let answer = mesh_contacts(&nothing, &triangle, 0.0, &Limits::default(), &mut workspace)?;
+    assert!(answer.hits.is_empty() && answer.contacts.is_empty());
+    assert_eq!(answer.undecided.len(), 1);
+    assert_eq!(answer.undecided[0].lower, f64::NEG_INFINITY);
     Ok(())
 }
 

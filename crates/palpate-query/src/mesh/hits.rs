@@ -121,7 +121,8 @@ pub struct MeshHits<'a> {
 ///
 /// The mesh stays as it is: its tree is moved on the way. Each element of which the tree
 /// and a few points say too little is searched with `limits` of its own, and is undecided
-/// if they do not suffice. Before that, the field is asked at most seven times an element.
+/// if they do not suffice. Before that, the field is asked at most 65 times an element, and
+/// not even once of those in large balls that are all free, or all inside.
 ///
 /// # Errors
 ///
