@@ -149,6 +149,13 @@ fn contacts_are_right<const N: usize, const D: usize>(
         if of_hit.clone().count() != here.contacts.len().max(1) {
             return Err(format!("{:?} of {hit} are not {here:?}", of_hit.collect::<Vec<_>>()));
         }
+        for (i, a) in here.contacts.iter().enumerate() {
+            for b in &here.contacts[..i] {
+                if !is_barrier_between(shape, a.point_b, b.point_b, limits.tolerance) {
+                    return Err(format!("no barrier on {hit} between {a:?} and {b:?}"));
+                }
+            }
+        }
         let values = of_hit.map(|contact| shape.distance(contact.point_b));
         let deepest = values.fold(f64::INFINITY, f64::min);
         let is_known = here.least.stop == Stop::Converged;
@@ -166,6 +173,25 @@ fn contacts_are_right<const N: usize, const D: usize>(
         }
     }
     Ok(())
+}
+
+/// `true` if the field may be larger by the tolerance on the way from one point to another
+/// than at both.
+fn is_barrier_between<const D: usize>(
+    shape: &Shape<D>,
+    a: Point<D>,
+    b: Point<D>,
+    tolerance: f64,
+) -> bool {
+    const STEPS: u32 = 64;
+    let least = shape.distance(a).max(shape.distance(b)) + tolerance;
+    // Between two samples the field may be larger than at both.
+    let unseen = shape.promise().lipschitz * 0.5 * (b - a).norm() / f64::from(STEPS);
+    let rounding = shape.promise().rounding.within(a.norm().max(b.norm()));
+    (0..=STEPS).any(|step| {
+        let value = shape.distance(a + (b - a) * (f64::from(step) / f64::from(STEPS)));
+        value + unseen + 2.0 * rounding >= least
+    })
 }
 
 #[test]
