@@ -155,6 +155,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         };
         patches.cells.clear();
         patches.cells.push(whole);
+        patches.radius = self.radius;
         if !self.sampler.is_convex() && !self.is_plain(&whole, tolerance) {
             self.keeps_all = true;
             self.refine(tolerance, patches);
@@ -163,7 +164,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         if patches.cells.is_empty() {
             return self.answer(self.dropped, Stop::SignKnown);
         }
-        let is_whole = patches.cells.len() == 1 && patches.cells[0].radius == self.radius;
+        let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
         let mut all = self.answer(self.dropped, Stop::Converged);
         for patch in 0..patches.divide(&self.weights, tolerance, |cell| cell.lower) {
             let deepest = patches.copy(patch, cells);
@@ -190,9 +191,9 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
         let parts = parts_of_one::<N>();
         let mut cells_of_whole = 1;
-        while let [first, ..] = patches.cells[..]
+        while !patches.cells.is_empty()
             && patches.cells.len() * parts <= MOST_CELLS
-            && first.radius * self.sampler.steepness.lipschitz > tolerance
+            && patches.radius * self.sampler.steepness.lipschitz > tolerance
             && self.sampler.evaluations < self.budget
         {
             let Patches { cells, halves, .. } = &mut *patches;
@@ -202,9 +203,10 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
                 for parent in parents {
                     parent.halve_into(&mut block, &mut count);
                 }
-                self.look_at(block, count, halves);
+                self.look_at(&mut block, count, halves);
             }
             std::mem::swap(cells, halves);
+            patches.radius *= 0.5;
             cells_of_whole *= parts;
             if cells_of_whole >= FEW_CELLS {
                 let seen = patches.divide(&self.weights, tolerance, |cell| cell.upper);
@@ -226,7 +228,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         let centre = cell.element.at(&self.weights);
         let mut points = [centre; SHORT];
         for (k, height) in HEIGHTS.iter().enumerate() {
-            let offset = cell.direction * (height * cell.radius);
+            let offset = cell.direction * (height * self.radius_of(cell));
             (points[2 * k], points[2 * k + 1]) = (centre + offset, centre - offset);
         }
         let values = self.sampler.values(&points);

@@ -28,6 +28,8 @@ const ROUNDINGS: f64 = 1e-9;
 #[derive(Debug)]
 pub(crate) struct Patches<const N: usize, const D: usize> {
     pub(crate) cells: Vec<Cell<N, D>>,
+    /// Of all cells [m].
+    pub(crate) radius: f64,
     /// While cells are halved: those that become `cells`.
     pub(crate) halves: Vec<Cell<N, D>>,
     /// How far cells lie along a direction; they are sorted by it.
@@ -47,6 +49,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         let room = MOST_CELLS;
         Self {
             cells: Vec::with_capacity(room),
+            radius: 0.0,
             halves: Vec::with_capacity(room),
             places: Vec::with_capacity(room),
             centres: Vec::with_capacity(room),
@@ -113,7 +116,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
     /// its floor at `least` or above.
     fn flood(&mut self, cell: u32, least: f64) {
         let (centre, place) = (self.centres[cell as usize], self.places[cell as usize]);
-        let touching = 2.0 * self.cells[cell as usize].radius * (1.0 + ROUNDINGS);
+        let touching = 2.0 * self.radius * (1.0 + ROUNDINGS);
         let start = self.places.partition_point(|&other| other < place - touching);
         let end = self.places.partition_point(|&other| other <= place + touching);
         self.is_wet[cell as usize] = true;

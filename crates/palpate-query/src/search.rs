@@ -45,11 +45,11 @@ const MOST_LEVELS: u32 = 48;
 /// Cells that a workspace holds.
 const ROOM: usize = 4096;
 
-/// A part of the element, and what is known of it.
+/// A part of the element, and what is known of it: 128 bytes of a triangle in space. What
+/// is larger is copied by a call, which takes longer than all else that is done to a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell<const N: usize, const D: usize> {
     pub(crate) element: Element<N, D>,
-    pub(crate) radius: f64,
     /// Nothing on the cell is less [m].
     pub(crate) lower: f64,
     /// Something on the cell is no more [m].
@@ -58,7 +58,7 @@ pub(crate) struct Cell<const N: usize, const D: usize> {
     height: f64,
     pub(crate) direction: Vector<f64, D>,
     /// How often the element was halved.
-    level: u32,
+    pub(crate) level: u32,
 }
 
 impl<const N: usize, const D: usize> Cell<N, D> {
@@ -66,8 +66,7 @@ impl<const N: usize, const D: usize> Cell<N, D> {
     #[inline]
     pub(crate) fn halve_into(&self, parts: &mut [Self; SHORT], count: &mut usize) {
         for element in &self.element.halves()[..parts_of_one::<N>()] {
-            let (radius, level) = (0.5 * self.radius, self.level + 1);
-            parts[*count] = Self { element: *element, radius, level, ..*self };
+            parts[*count] = Self { element: *element, level: self.level + 1, ..*self };
             *count += 1;
         }
     }
@@ -175,7 +174,8 @@ pub(crate) struct Search<'a, const N: usize, const D: usize> {
 }
 
 impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
-    #[inline]
+    // Inlined always, since a search that ends at its first look is mostly this.
+    #[inline(always)]
     pub(crate) fn new(
         shape: &'a Shape<D>,
         element: &Element<N, D>,
@@ -200,6 +200,14 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         }
     }
 
+    /// The radius of the smallest ball around a cell [m], which each halving halves.
+    #[inline]
+    pub(crate) fn radius_of(&self, cell: &Cell<N, D>) -> f64 {
+        // The power of two by its exponent.
+        let share = f64::from_bits(u64::from(1023 - cell.level) << 52);
+        self.radius * share
+    }
+
     /// Cells with nothing below this need no more looking at.
     #[inline]
     fn threshold(&self) -> f64 {
@@ -221,9 +229,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
     }
 
-    #[inline]
+    #[inline(always)]
     fn run(
-        mut self,
+        &mut self,
         element: &Element<N, D>,
         cells: &mut Vec<Cell<N, D>>,
     ) -> Certified<Point<D>> {
@@ -238,7 +246,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     }
 
     /// The whole element as a cell, unless a first look is all that is needed.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn begin(
         &mut self,
         element: &Element<N, D>,
@@ -254,7 +262,6 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         }
         let mut whole = Cell {
             element: *element,
-            radius: self.radius,
             lower,
             upper: self.upper,
             height: FIRST_HEIGHTS[0] * self.radius,
@@ -306,6 +313,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     }
 
     /// Halves the cells of which least is known, a block of parts.
+    #[inline]
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
         let mut parts = [cells[0]; SHORT];
@@ -315,14 +323,14 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
             cells.swap_remove(lowest).halve_into(&mut parts, &mut count);
         }
-        self.look_at(parts, count, cells);
+        self.look_at(&mut parts, count, cells);
     }
 
     /// Bounds the first `count` parts, and keeps those that matter.
     #[inline]
     pub(crate) fn look_at(
         &mut self,
-        mut parts: [Cell<N, D>; SHORT],
+        parts: &mut [Cell<N, D>; SHORT],
         count: usize,
         kept: &mut Vec<Cell<N, D>>,
     ) {
@@ -330,7 +338,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             parts[i] = parts[count - 1];
         }
         let mut centres = [Vector::ZERO; SHORT];
-        for (centre, part) in centres.iter_mut().zip(&parts) {
+        for (centre, part) in centres.iter_mut().zip(&*parts) {
             *centre = part.element.at(&self.weights);
         }
         let parts = &mut parts[..count];
@@ -368,8 +376,8 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
             part.upper = *value + self.sampler.steepness.slack;
-            part.lower =
-                larger(part.lower, self.sampler.steepness.bound(*centre, *value, part.radius));
+            let lower = self.sampler.steepness.bound(*centre, *value, self.radius_of(part));
+            part.lower = larger(part.lower, lower);
         }
     }
 
@@ -395,19 +403,18 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let lifted = self.sampler.values(&points);
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
+            let radius = self.radius_of(part);
             let lower = self.sampler.steepness.bound(
                 points[i],
                 lifted[i],
                 part.element.farthest(points[i]),
             );
             if lower >= part.lower {
-                let nearly_all =
-                    values[i] - 0.25 * self.sampler.steepness.lipschitz * part.radius;
+                let nearly_all = values[i] - 0.25 * self.sampler.steepness.lipschitz * radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };
                 part.height = (grown * share * part.height).min(highest);
                 part.lower = lower;
-            } else if lower <= self.sampler.steepness.bound(centres[i], values[i], part.radius)
-            {
+            } else if lower <= self.sampler.steepness.bound(centres[i], values[i], radius) {
                 part.height *= SHRINK;
             }
         }
