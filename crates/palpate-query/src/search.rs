@@ -289,6 +289,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     }
 
     /// The vertices, and points over the centre at several heights.
+    #[inline(always)]
     fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
         let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
