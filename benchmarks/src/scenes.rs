@@ -9,6 +9,9 @@ use palpate::field::kernel::{Argument, Entry};
 use palpate::field::{Pose, Rotation, Shape, Vector};
 use palpate::scene::{Form, Node, Scene, World, WrittenRotation};
 
+const P1: &str = include_str!("../../scenes/p1.json");
+const P2: &str = include_str!("../../scenes/p2.json");
+const P3: &str = include_str!("../../scenes/p3.json");
 const S1: &str = include_str!("../../scenes/s1.json");
 const S2: &str = include_str!("../../scenes/s2.json");
 const S3: &str = include_str!("../../scenes/s3.json");
@@ -45,13 +48,21 @@ fn in_space(name: &'static str, text: &str, half: f64) -> Result<Work<3>, Box<dy
 }
 
 /// The wrench.
-pub(crate) fn planar() -> Result<Work<2>, Box<dyn Error>> {
-    let scene = Scene::from_json(WRENCH)?;
+pub(crate) fn wrench() -> Result<Work<2>, Box<dyn Error>> {
+    in_the_plane("wrench", WRENCH, 0.13)
+}
+
+/// P1 to P3, what S1 to S3 are in the plane.
+pub(crate) fn planar() -> Result<Vec<Work<2>>, Box<dyn Error>> {
+    let scenes = [("P1", P1, 1.1), ("P2", P2, 1.1), ("P3", P3, 1.1)];
+    scenes.into_iter().map(|(name, text, half)| in_the_plane(name, text, half)).collect()
+}
+
+fn in_the_plane(name: &'static str, text: &str, half: f64) -> Result<Work<2>, Box<dyn Error>> {
+    let scene = Scene::from_json(text)?;
     match scene.build()? {
-        World::Planar(world) => {
-            Ok(Work { name: "wrench", scene, shape: world.whole, half: 0.13 })
-        }
-        World::Spatial(_) => Err("the wrench is not planar".into()),
+        World::Planar(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        World::Spatial(_) => Err(format!("{name} is not planar").into()),
     }
 }
 

@@ -3,6 +3,7 @@
 
 //! Searches that prove where things touch.
 
+mod local;
 mod manifolds;
 mod meshes;
 mod pairs;
@@ -12,7 +13,10 @@ mod worlds;
 use std::error::Error;
 use std::time::Instant;
 
+use palpate::field::{Rotation, ShapeError, Vector};
+
 use crate::fields::Rows;
+use crate::random::Random;
 use crate::scenes;
 
 /// All rows of the suite.
@@ -21,6 +25,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     for work in scenes::spatial()? {
         eprintln!("measuring triangles on {} …", work.name);
         triangles::measure::<3, 3>("triangle", &work, 1.0, &mut rows)?;
+        local::triangles(&work, &mut rows)?;
     }
     eprintln!("measuring segments on the wrench …");
     // In a tenth of the size.
@@ -38,11 +43,46 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     meshes::measure(&mut rows)?;
     eprintln!("measuring pairs …");
     pairs::measure(&mut rows)?;
+    local::pairs(&mut rows)?;
     eprintln!("measuring manifolds …");
     manifolds::measure(&mut rows)?;
     eprintln!("measuring worlds …");
     worlds::measure(&mut rows)?;
     Ok(rows)
+}
+
+/// Marks a dimension.
+pub(crate) struct Space;
+
+/// A dimension in which bodies turn.
+pub(crate) trait Turn<const D: usize> {
+    /// Any rotation.
+    fn any(random: &mut Random) -> Result<Rotation<D>, ShapeError>;
+
+    /// A rotation by `angle` [rad], about any axis.
+    fn by(random: &mut Random, angle: f64) -> Result<Rotation<D>, ShapeError>;
+}
+
+impl Turn<2> for Space {
+    fn any(random: &mut Random) -> Result<Rotation<2>, ShapeError> {
+        Rotation::from_angle(random.between(-3.2, 3.2))
+    }
+
+    fn by(_: &mut Random, angle: f64) -> Result<Rotation<2>, ShapeError> {
+        Rotation::from_angle(angle)
+    }
+}
+
+impl Turn<3> for Space {
+    fn any(random: &mut Random) -> Result<Rotation<3>, ShapeError> {
+        let quaternion: [f64; 4] = random.point([0.0; 4], 1.0);
+        let size = quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
+        Rotation::from_quaternion(quaternion.map(|q| q / size))
+    }
+
+    fn by(random: &mut Random, angle: f64) -> Result<Rotation<3>, ShapeError> {
+        Rotation::from_axis_angle(Vector(random.point([0.0; 3], 1.0)), angle)
+    }
 }
 
 /// How often each question is timed; the fastest counts.

@@ -7,16 +7,16 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use palpate::field::kernel::{Cuboid, Torus};
-use palpate::field::{Pose, Rotation, Shape, Vector};
+use palpate::field::kernel::{Cuboid, Ring, Torus};
+use palpate::field::{Pose, Shape, Vector};
 use palpate::query::{
     Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, overlap, separation,
 };
 
-use super::fastest;
+use super::{Space, fastest};
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes;
+use crate::scenes::{self, Work};
 
 /// Poses of each pair.
 const POSES: usize = 40;
@@ -27,95 +27,65 @@ const PLACED: f64 = 1e-6;
 /// Farther apart than any two bodies here touch [m].
 const FAR: f64 = 4.0;
 
+/// Steps of bodies that are followed.
+const STEPS: usize = 50;
+
 /// Two bodies.
-type Pair<'a> = [Placed<'a, 3>; 2];
+pub(super) type Pair<'a, const D: usize> = [Placed<'a, D>; 2];
 
 /// A way of asking.
-type Ask<'a> = fn(
-    Placed<'a, 3>,
-    Placed<'a, 3>,
+type Ask<'a, const D: usize> = fn(
+    Placed<'a, D>,
+    Placed<'a, D>,
     &Limits,
-    &mut PairWorkspace<3>,
-) -> Result<Certified<Nearest<3>>, QueryError>;
+    &mut PairWorkspace<D>,
+) -> Result<Certified<Nearest<D>>, QueryError>;
 
-/// Adds the rows of pairs.
+/// Adds the rows of pairs, in space and in the plane.
 pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
-    let works = scenes::spatial()?;
-    let s3 = &works.iter().find(|work| work.name == "S3").ok_or("no S3")?.shape;
-    for (name, gap) in [("+50mm", 0.05), ("+5mm", 0.005), ("-5mm", -0.005)] {
-        let pairs = placed([s3, s3], gap)?;
-        ask(&format!("pair.sign.S3_S3.{name}"), overlap, 1e-7, &pairs, rows)?;
-    }
-    let pairs = placed([s3, s3], 0.005)?;
-    for (name, tolerance) in [("1pc", 1e-2), ("1mm", 1e-3), ("0.1mm", 1e-4)] {
-        let key = format!("pair.separation.S3_S3.{name}");
-        ask(&key, separation, tolerance, &pairs, rows)?;
-    }
-    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
-    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    let find = |name: &'static str| move || format!("no {name}");
+    let spatial = scenes::spatial()?;
+    of(spatial.iter().find(|work| work.name == "S3").ok_or_else(find("S3"))?, rows)?;
+    let planar = scenes::planar()?;
+    of(planar.iter().find(|work| work.name == "P3").ok_or_else(find("P3"))?, rows)?;
+    let [plate, torus] = plate_and_torus()?;
     let pairs = placed([&plate, &torus], -0.001)?;
     ask("pair.sign.plate_torus.-1mm", overlap, 1e-7, &pairs, rows)?;
-    follow("pair.warm_1mm.S3_S3", 1e-3, &placed([s3, s3], -0.005)?, rows)
+    let bar = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.02]))?);
+    let ring = Shape::from_kernel(Ring::new(0.2, 0.5)?);
+    let pairs = placed([&bar, &ring], -0.001)?;
+    ask("pair.sign.bar_ring.-1mm", overlap, 1e-7, &pairs, rows)
 }
 
-/// Each pair moved on by 0.1 mm and turned by 0.1 mrad again and again, and followed.
-fn follow(
-    key: &str,
-    tolerance: f64,
-    pairs: &[Pair<'_>],
-    rows: &mut Rows,
-) -> Result<(), Box<dyn Error>> {
-    const STEPS: usize = 50;
-    let limits = Limits { tolerance, ..Limits::default() };
-    let mut workspace = PairWorkspace::new();
-    let mut random = Random::new(7);
-    let mut times = Vec::new();
-    let (mut evaluations, mut undecided) = (0, 0);
-    for [a, b] in pairs {
-        let mut track = Track::new(a.shape.clone(), b.shape.clone());
-        let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-        let axis: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-        let turn = Pose::rotation(Rotation::from_axis_angle(axis, 1e-4)?);
-        let mut here = b.world_from_body;
-        let mut poses = Vec::with_capacity(STEPS);
-        for _ in 0..STEPS {
-            here = Pose::translation(way * (1e-4 / way.norm())) * here * turn;
-            poses.push(here);
-        }
-        let mut fastest = vec![f64::INFINITY; STEPS];
-        for _ in 0..super::REPEATS {
-            track.forget();
-            track.separation(
-                [a.world_from_body, b.world_from_body],
-                &limits,
-                &mut workspace,
-            )?;
-            for (pose, fastest) in poses.iter().zip(&mut fastest) {
-                let start = Instant::now();
-                let answer = black_box(track.separation(
-                    [a.world_from_body, *pose],
-                    &limits,
-                    &mut workspace,
-                )?);
-                *fastest = fastest.min(start.elapsed().as_nanos() as f64);
-                evaluations += answer.evaluations;
-                undecided += u32::from(answer.upper - answer.lower > tolerance);
-            }
-        }
-        times.append(&mut fastest);
+/// A thin plate, and a torus.
+pub(super) fn plate_and_torus() -> Result<[Shape<3>; 2], Box<dyn Error>> {
+    let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 0.02]))?);
+    let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
+    Ok([plate, torus])
+}
+
+/// The rows of a work against itself.
+fn of<const D: usize>(work: &Work<D>, rows: &mut Rows) -> Result<(), Box<dyn Error>>
+where
+    Space: super::Turn<D>,
+{
+    let (name, shape) = (format!("{0}_{0}", work.name), &work.shape);
+    for (at, gap) in [("+50mm", 0.05), ("+5mm", 0.005), ("-5mm", -0.005)] {
+        let pairs = placed([shape, shape], gap)?;
+        ask(&format!("pair.sign.{name}.{at}"), overlap, 1e-7, &pairs, rows)?;
     }
-    let asked = (times.len() * super::REPEATS) as f64;
-    super::summarise(key, &mut times, rows);
-    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / asked);
-    rows.insert(format!("{key}.undecided"), f64::from(undecided));
-    Ok(())
+    let pairs = placed([shape, shape], 0.005)?;
+    for (to, tolerance) in [("1pc", 1e-2), ("1mm", 1e-3), ("0.1mm", 1e-4)] {
+        ask(&format!("pair.separation.{name}.{to}"), separation, tolerance, &pairs, rows)?;
+    }
+    follow(&format!("pair.warm_1mm.{name}"), 1e-3, &placed([shape, shape], -0.005)?, rows)
 }
 
-fn ask<'a>(
+fn ask<'a, const D: usize>(
     key: &str,
-    ask: Ask<'a>,
+    ask: Ask<'a, D>,
     tolerance: f64,
-    pairs: &[Pair<'a>],
+    pairs: &[Pair<'a, D>],
     rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
     let limits = Limits { tolerance, ..Limits::default() };
@@ -138,19 +108,74 @@ fn ask<'a>(
     Ok(())
 }
 
+/// Each pair moved on by 0.1 mm and turned by 0.1 mrad again and again, and followed.
+fn follow<const D: usize>(
+    key: &str,
+    tolerance: f64,
+    pairs: &[Pair<'_, D>],
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>>
+where
+    Space: super::Turn<D>,
+{
+    let limits = Limits { tolerance, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let mut random = Random::new(7);
+    let mut times = Vec::new();
+    let (mut evaluations, mut undecided) = (0, 0);
+    for [a, b] in pairs {
+        let mut track = Track::new(a.shape.clone(), b.shape.clone());
+        let way: Vector<f64, D> = Vector(random.point([0.0; D], 1.0));
+        let step = Pose::translation(way * (1e-4 / way.norm()));
+        let turn = Pose::rotation(<Space as super::Turn<D>>::by(&mut random, 1e-4)?);
+        let mut here = b.world_from_body;
+        let mut poses = Vec::with_capacity(STEPS);
+        for _ in 0..STEPS {
+            here = step * here * turn;
+            poses.push(here);
+        }
+        let mut fastest = vec![f64::INFINITY; STEPS];
+        for _ in 0..super::REPEATS {
+            track.forget();
+            track.separation(
+                [a.world_from_body, b.world_from_body],
+                &limits,
+                &mut workspace,
+            )?;
+            for (pose, fastest) in poses.iter().zip(&mut fastest) {
+                let start = Instant::now();
+                let poses = [a.world_from_body, *pose];
+                let answer = black_box(track.separation(poses, &limits, &mut workspace)?);
+                *fastest = fastest.min(start.elapsed().as_nanos() as f64);
+                evaluations += answer.evaluations;
+                undecided += u32::from(answer.upper - answer.lower > tolerance);
+            }
+        }
+        times.append(&mut fastest);
+    }
+    let asked = (times.len() * super::REPEATS) as f64;
+    super::summarise(key, &mut times, rows);
+    rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / asked);
+    rows.insert(format!("{key}.undecided"), f64::from(undecided));
+    Ok(())
+}
+
 /// The second body turned at random and moved along a random way to the first place at
 /// which the separation is `gap`, coming from afar.
-fn placed<'a>([a, b]: [&'a Shape<3>; 2], gap: f64) -> Result<Vec<Pair<'a>>, Box<dyn Error>> {
+pub(super) fn placed<'a, const D: usize>(
+    [a, b]: [&'a Shape<D>; 2],
+    gap: f64,
+) -> Result<Vec<Pair<'a, D>>, Box<dyn Error>>
+where
+    Space: super::Turn<D>,
+{
     let mut random = Random::new(7);
     let mut workspace = PairWorkspace::new();
     let limits = Limits { tolerance: PLACED, budget: 1_000_000 };
     let mut pairs = Vec::with_capacity(POSES);
     while pairs.len() < POSES {
-        let [x, y, z]: [f64; 3] = random.point([0.0; 3], 1.0);
-        let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-        let w = random.between(-1.0, 1.0);
-        let size = (x * x + y * y + z * z + w * w).sqrt();
-        let turn = Rotation::from_quaternion([x, y, z, w].map(|q| q / size))?;
+        let turn = <Space as super::Turn<D>>::any(&mut random)?;
+        let way: Vector<f64, D> = Vector(random.point([0.0; D], 1.0));
         let way = way * (1.0 / way.norm());
         let at = |apart: f64| Placed::new(b, Pose::new(turn, way * apart));
         let (mut near, mut far) = (0.0, FAR);

@@ -17,7 +17,7 @@ use crate::scenes::Work;
 
 /// How large elements are: their corners lie in balls of these radii, in parts of half the
 /// side of the cube that starting points are from.
-const SIZES: [f64; 2] = [0.05, 0.3];
+pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
 
 /// Elements of each size.
 const COUNT: usize = 400;
@@ -68,7 +68,7 @@ pub(super) fn measure<const N: usize, const D: usize>(
 
 /// Elements near the surface: points of a cube moved along the gradient to at most
 /// [`NEAR`] sizes from it, and corners about each.
-fn near<const N: usize, const D: usize>(
+pub(super) fn near<const N: usize, const D: usize>(
     shape: &Shape<D>,
     half: f64,
     size: f64,

@@ -6,15 +6,16 @@
 use std::error::Error;
 use std::time::Instant;
 
-use palpate::field::kernel::{Ball, Cuboid, Cylinder, Torus};
-use palpate::field::{Pose, Rotation, Shape, ShapeError, Vector};
+use palpate::field::kernel::{Ball, Cuboid, Cylinder, Ring, RoundedCuboid, Torus};
+use palpate::field::{Pose, Shape, ShapeError, Vector};
 use palpate::query::{BodyId, Verdict, World, WorldSettings};
 
+use super::{Space, Turn};
 use crate::fields::Rows;
 use crate::random::Random;
 
-/// Bodies along each side of a cube of them, 1 m apart.
-const SIDE: usize = 10;
+/// Bodies, 1 m apart.
+const BODIES: usize = 1000;
 
 /// One body of so many moves in each step, by 1 mm and 1 mrad.
 const MOVING: usize = 20;
@@ -25,19 +26,30 @@ const STEPS: usize = 40;
 /// Adds the rows of worlds, on one thread.
 pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    one_thread.install(|| steps(rows)).map_err(|error| -> Box<dyn Error> { error })
+    let asked = one_thread.install(|| {
+        steps("world.1000_bodies", &in_space()?, 10, rows)?;
+        steps("world.1000_planar_bodies", &in_the_plane()?, 32, rows)
+    });
+    asked.map_err(|error| -> Box<dyn Error> { error })
 }
 
-fn steps(rows: &mut Rows) -> Result<(), Box<dyn Error + Send + Sync>> {
+/// Bodies as large as the distance between them, on a lattice with `side` of them in each
+/// direction but the last.
+fn steps<const D: usize>(
+    key: &str,
+    shapes: &[Shape<D>],
+    side: usize,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error + Send + Sync>>
+where
+    Space: Turn<D>,
+{
     let mut random = Random::new(7);
-    let shapes = shapes()?;
     let mut world = World::new(WorldSettings::of_size(1.0))?;
-    let mut bodies: Vec<(BodyId, Pose<3>)> = Vec::new();
-    for i in 0..SIDE.pow(3) {
-        let place = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(|k| k as f64);
-        let axis: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-        let turn = Rotation::from_axis_angle(axis, random.between(-3.0, 3.0))?;
-        let pose = Pose::new(turn, Vector(place));
+    let mut bodies: Vec<(BodyId, Pose<D>)> = Vec::new();
+    for i in 0..BODIES {
+        let place = std::array::from_fn(|k| (i / side.pow(k as u32) % side) as f64);
+        let pose = Pose::new(<Space as Turn<D>>::any(&mut random)?, Vector(place));
         bodies.push((world.add(shapes[i % shapes.len()].clone(), pose)?, pose));
     }
     world.step();
@@ -45,11 +57,10 @@ fn steps(rows: &mut Rows) -> Result<(), Box<dyn Error + Send + Sync>> {
     for step in 0..STEPS {
         let mut moves = Vec::new();
         for (body, pose) in bodies.iter_mut().skip(step % MOVING).step_by(MOVING) {
-            let way: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-            let axis: Vector<f64, 3> = Vector(random.point([0.0; 3], 1.0));
-            let turn = Rotation::from_axis_angle(axis, 1e-3)?;
-            let step = Vector(way.0) * (1e-3 / way.norm());
-            *pose = Pose::new(turn * pose.rotation, pose.translation + step);
+            let way: Vector<f64, D> = Vector(random.point([0.0; D], 1.0));
+            let turn = <Space as Turn<D>>::by(&mut random, 1e-3)?;
+            let moved = pose.translation + way * (1e-3 / way.norm());
+            *pose = Pose::new(turn * pose.rotation, moved);
             moves.push((*body, *pose));
         }
         world.set_poses(&moves)?;
@@ -61,20 +72,28 @@ fn steps(rows: &mut Rows) -> Result<(), Box<dyn Error + Send + Sync>> {
         pairs = verdicts().filter(|verdict| *verdict == Verdict::Touching).count();
         undecided += verdicts().filter(|verdict| *verdict == Verdict::Undecided).count();
     }
-    super::summarise("world.1000_bodies.step", &mut times, rows);
+    super::summarise(&format!("{key}.step"), &mut times, rows);
     // The median, so that a step during which another program ran does not count.
-    rows.insert("world.1000_bodies.step_ns".into(), times[times.len() / 2]);
-    rows.insert("world.1000_bodies.pairs".into(), pairs as f64);
-    rows.insert("world.1000_bodies.undecided".into(), undecided as f64);
+    rows.insert(format!("{key}.step_ns"), times[times.len() / 2]);
+    rows.insert(format!("{key}.pairs"), pairs as f64);
+    rows.insert(format!("{key}.undecided"), undecided as f64);
     Ok(())
 }
 
-/// Bodies as large as the distance between them.
-fn shapes() -> Result<[Shape<3>; 4], ShapeError> {
+fn in_space() -> Result<[Shape<3>; 4], ShapeError> {
     Ok([
         Shape::from_kernel(Ball::new(0.5)?),
         Shape::from_kernel(Cuboid::new(Vector([0.7, 0.6, 0.8]))?),
         Shape::from_kernel(Torus::new(0.4, 0.15)?),
         Shape::from_kernel(Cylinder::new(0.45, 0.8)?),
+    ])
+}
+
+fn in_the_plane() -> Result<[Shape<2>; 4], ShapeError> {
+    Ok([
+        Shape::from_kernel(Ball::new(0.5)?),
+        Shape::from_kernel(Cuboid::new(Vector([0.7, 0.6]))?),
+        Shape::from_kernel(Ring::new(0.25, 0.55)?),
+        Shape::from_kernel(RoundedCuboid::new(Vector([0.9, 0.8]), 0.1)?),
     ])
 }

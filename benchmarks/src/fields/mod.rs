@@ -33,7 +33,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
             operators::beside_child(&work, &mut rows)?;
         }
     }
-    let wrench = scenes::planar()?;
+    let wrench = scenes::wrench()?;
     eprintln!("measuring {} …", wrench.name);
     measure_work(&wrench, &mut rows)?;
     eprintln!("measuring a thousand …");

@@ -51,6 +51,11 @@ pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failur
     Ok(Vector(numbers))
 }
 
+/// Numbers as one text, joined by commas.
+pub(crate) fn joined(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}
+
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
     scene

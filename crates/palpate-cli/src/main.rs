@@ -6,6 +6,7 @@
 mod arguments;
 mod check;
 mod contact;
+mod descend;
 mod eval;
 mod feel;
 mod gallery;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Feel(options) => feel::run(&options),
         Command::Eval(options) => eval::run(&options),
         Command::Contact(options) => contact::run(&options),
+        Command::Descend(options) => descend::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Gallery(options) => gallery::run(&options),
         Command::Check(options) => check::run(&options),

@@ -16,6 +16,9 @@ use crate::outcome::Failure;
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
 
+/// The width of a PNG where none is asked for [pixels].
+pub(crate) const WIDTH: u32 = 1200;
+
 /// A dimension whose shapes can be drawn.
 pub(crate) trait Drawable<const D: usize> {
     /// The window that shows `bounds` on `plane`, with `margin` times its longer side

@@ -4,59 +4,10 @@
 //! The program as its users run it.
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use common::{Folder, errors, json, palpate, status, text};
 use serde_json::Value;
-
-fn palpate(arguments: &[&str]) -> Output {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    Command::new(env!("CARGO_BIN_EXE_palpate"))
-        .args(arguments)
-        .current_dir(repository)
-        .output()
-        .unwrap()
-}
-
-fn status(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = palpate(arguments);
-    assert_eq!(status(&output), 0, "{}", errors(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// A folder of its own for a test's files.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn name(&self, name: &str) -> String {
-        self.path(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, text: &str) -> String {
-        std::fs::write(self.path(name), text).unwrap();
-        self.name(name)
-    }
-}
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
@@ -400,6 +351,79 @@ fn plot_refuses_maps_that_are_none() {
         assert_eq!(status(&output), 2);
         assert!(errors(&output).contains(arguments[0]) || errors(&output).contains("--step"));
     }
+}
+
+/// Between two tips a descent stops; the other tip is lower, which the bounds prove.
+#[test]
+fn descend_says_what_was_missed() {
+    let folder = Folder::new();
+    let plot = folder.name("descent.svg");
+    let star = ["descend", "scenes/memoir_star.json", "--json", "--plot", &plot];
+    let corners = ["--triangle", "1.35,1.1", "1.8,0.45", "1.0,0.99"];
+    let answer = json(&[&star[..], &corners].concat());
+    let number = |value: &Value| value.as_f64().unwrap();
+    let [lower, upper] = ["lower_m", "upper_m"].map(|key| number(&answer["certified"][key]));
+    assert!(lower <= upper && upper - lower < 1e-3, "{answer}");
+    assert!(number(&answer["value_m"]) > upper + 0.04, "{answer}");
+    assert_eq!(number(&answer["missed_by_m"]), number(&answer["value_m"]) - upper);
+    assert_eq!(answer["path_m"][0], serde_json::json!([1.0, 0.99]));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    for word in ["projected_gradient", "triangle", "start", "best found", "proven minimum"] {
+        assert!(words.contains(&word), "{word} in {words:?}");
+    }
+    // In space, a segment: any plane through it.
+    let plot = folder.name("segment.png");
+    let segment = ["descend", "scenes/s3.json", "--segment", "-1,0,0", "1,0.2,0.1"];
+    let method = ["--method", "golden_section", "--plot", &plot];
+    let output = palpate(&[&segment[..], &method].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    assert!(text(&output).contains("missed by"), "{}", text(&output));
+    assert_eq!(&std::fs::read(&plot).unwrap()[1..4], b"PNG");
+    for wrong in [
+        &["--method", "newton"][..],
+        &["--tolerance", "nan"],
+        &["--triangle", "0,0,0", "1,0,0", "0,1,0"],
+    ] {
+        let output = palpate(&[&segment[..], wrong].concat());
+        assert_eq!(status(&output), 2, "{wrong:?}");
+        assert!(!errors(&output).is_empty());
+    }
+}
+
+/// Two bodies that overlap on one side alone: the start decides what is found.
+#[test]
+fn descend_between_bodies_finds_what_is_near_its_start() {
+    let bodies = ["descend", "scenes/memoir_two_bodies.json", "--json"];
+    let starts = ["--start", "-0.2,0.5", "--start", "0.15,0.4"];
+    for method in ["alternating_projection", "minimax_proximal"] {
+        let answer = json(&[&bodies[..], &starts, &["--method", method]].concat());
+        let value = |i: usize| answer["descents"][i]["value_m"].as_f64().unwrap();
+        assert!(value(0) > 0.009 && value(1) <= 0.0, "{answer}");
+        let lower = answer["certified"]["separation_lower_m"].as_f64().unwrap();
+        assert!((lower + 0.05).abs() < 1e-3 && lower <= 2.0 * value(1), "{answer}");
+    }
+    let one = palpate(&["descend", "scenes/s1.json", "--start", "1,1,1"]);
+    assert_eq!(status(&one), 2);
+    assert!(errors(&one).contains("two bodies or more, this has 1"));
+}
+
+/// As they stand in the guide, but for where pictures go.
+#[test]
+fn descents_of_the_guide_run() {
+    let folder = Folder::new();
+    let guide = include_str!("../../../docs/guide/memoir.md");
+    let commands = guide.lines().filter_map(|line| line.strip_prefix("palpate descend "));
+    let mut count = 0;
+    for command in commands {
+        let (arguments, picture) = command.split_once(" --plot ").unwrap();
+        let arguments: Vec<_> = arguments.split(' ').collect();
+        let plot = folder.name(picture);
+        let output = palpate(&[&["descend"], &arguments[..], &["--plot", &plot]].concat());
+        assert_eq!(status(&output), 0, "{command}: {}", errors(&output));
+        count += 1;
+    }
+    assert!(count > 0, "the guide has no descents");
 }
 
 /// The built-in scene, felt without waiting for the clock, twice the same.

@@ -54,8 +54,8 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// A tolerance of 0.1 mm, and 20 000 evaluations.
+    /// A tolerance of 0.1 mm, and 100 000 evaluations.
     fn default() -> Self {
-        Self { tolerance: 1e-4, budget: 20_000 }
+        Self { tolerance: 1e-4, budget: 100_000 }
     }
 }

@@ -11,11 +11,11 @@ use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
-use crate::element::{Element, parts_of_one};
+use crate::element::Element;
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
-use crate::sampler::unit;
+use crate::sampler::{normal as direction, unit};
 use crate::search::{Cell, Search, Terms, Workspace};
 
 /// Heights over and under the centre of an element from which it is seen to be plain, in
@@ -189,7 +189,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// Halves all cells until there are as many patches as their values let expect, or as
     /// many cells as are looked at together.
     fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
-        let parts = parts_of_one::<N>();
+        let parts = self.parts;
         let mut cells_of_whole = 1;
         while !patches.cells.is_empty()
             && patches.cells.len() * parts <= MOST_CELLS
@@ -201,7 +201,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             for parents in cells.chunks(SHORT / parts) {
                 let (mut block, mut count) = ([parents[0]; SHORT], 0);
                 for parent in parents {
-                    parent.halve_into(&mut block, &mut count);
+                    parent.halve_into(parts, &mut block, &mut count);
                 }
                 self.look_at(&mut block, count, halves);
             }
@@ -258,8 +258,8 @@ pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
         apart * (1.0 / length)
     } else {
         // On the surface, or where the field has no direction.
-        let there = shape.distance_gradient(surface).1.normalized();
-        there.or(gradient.normalized()).unwrap_or(Vector::unit(D - 1))
+        let there = direction(shape.distance_gradient(surface).1);
+        there.or(direction(gradient)).unwrap_or(Vector::unit(D - 1))
     };
     let gap = (p - surface).dot(normal);
     Contact { point_a: surface, point_b: p, normal, gap, id: 0 }

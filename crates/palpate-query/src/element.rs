@@ -3,9 +3,13 @@
 
 //! Segments and triangles.
 
-use palpate_field::{LARGEST_LENGTH, Point, Vector};
+use palpate_field::{Point, Vector};
 
-use crate::error::QueryError;
+use crate::error::{QueryError, check_coordinates};
+
+/// A triangle has no area if its height is no more than so many roundings of its largest
+/// coordinate: fewer than searches allow for anyway.
+const FLAT_ROUNDINGS: f64 = 4.0;
 
 /// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
 /// Points may coincide.
@@ -22,10 +26,8 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// If a coordinate is not finite or beyond 1e15 m.
     pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        for value in vertices.iter().flat_map(|vertex| vertex.0) {
-            if value.is_nan() || value.abs() > LARGEST_LENGTH {
-                return Err(QueryError::Coordinate { what: "a vertex", value });
-            }
+        for vertex in vertices {
+            check_coordinates("a vertex", vertex)?;
         }
         Ok(Self { vertices })
     }
@@ -40,6 +42,23 @@ impl<const N: usize, const D: usize> Element<N, D> {
     #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
         palpate_mesh::centre_weights(&self.vertices)
+    }
+
+    /// A triangle without an area as its longest edge, whose second end is there twice, so
+    /// that its first two halves are all of it; `weights` are those of its centre.
+    pub(crate) fn flattened(&self, weights: &[f64; N]) -> Option<Self> {
+        let middle = (0..N).find(|&k| N == 3 && weights[k] == 0.0)?;
+        let v = |k: usize| self.vertices[(middle + k) % N];
+        let (edge, side) = (v(2) - v(1), v(0) - v(1));
+        let squared = edge.dot(edge);
+        let share = if squared > 0.0 { side.dot(edge) / squared } else { 0.0 };
+        let off = side - edge * share;
+        let largest = self.vertices.iter().fold(0.0_f64, |m, v| m.max(v.dot(*v)));
+        let rounding = FLAT_ROUNDINGS * f64::EPSILON;
+        let is_flat = off.dot(off) <= rounding * rounding * largest;
+        let mut vertices = [v(2); N];
+        vertices[0] = v(1);
+        is_flat.then_some(Self { vertices })
     }
 
     /// The point with these parts of the vertices.
@@ -65,7 +84,8 @@ impl<const N: usize, const D: usize> Element<N, D> {
     }
 
     /// The parts of half the size that make up the element, all similar to it: two of a
-    /// segment, four of a triangle. Unused places hold the last.
+    /// segment, four of a triangle. Unused places hold the last. Of a triangle with two
+    /// equal last vertices, the first two are all of it.
     #[inline]
     pub(crate) fn halves(&self) -> [Self; 4] {
         let v = &self.vertices;

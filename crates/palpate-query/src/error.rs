@@ -3,7 +3,7 @@
 
 //! What can be wrong with a question.
 
-use palpate_field::LARGEST_LENGTH;
+use palpate_field::{LARGEST_LENGTH, Point};
 
 /// Why a question cannot be asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,4 +46,33 @@ pub enum QueryError {
     /// Two bodies that both go on without end.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,
+    /// A name that no method has.
+    #[error("there is no method {name:?}; there are {known}")]
+    UnknownMethod {
+        /// The name.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+}
+
+/// Refuses coordinates that are not finite or too large; `what` they are of.
+pub(crate) fn check_coordinates<const D: usize>(
+    what: &'static str,
+    p: Point<D>,
+) -> Result<(), QueryError> {
+    let is_wrong = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
+    match p.0.into_iter().find(is_wrong) {
+        Some(value) => Err(QueryError::Coordinate { what, value }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses lengths that are negative, no numbers or too large.
+pub(crate) fn check_length(value: f64) -> Result<(), QueryError> {
+    if (0.0..=LARGEST_LENGTH).contains(&value) {
+        Ok(())
+    } else {
+        Err(QueryError::Length { value })
+    }
 }

@@ -9,10 +9,13 @@
 //!
 //! - [`separation`] says how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] whether they do.
+//! - [`point`] says all that a field says at a point; [`ball`] how deep a ball is in it,
+//!   [`ball_touches`] whether it is.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
+//! - [`local`] has the searches of the literature that prove nothing, for comparison.
 //!
 //! ```
 //! use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
@@ -35,22 +38,27 @@
 //! # }
 //! ```
 
+mod ball;
 mod certified;
 mod contact;
 mod contacts;
+mod cut_box;
 mod element;
 mod error;
 mod goal;
+pub mod local;
 mod manifold;
 mod mesh;
 mod pair;
 mod patches;
 mod placed;
+mod point;
 mod ray;
 mod sampler;
 mod search;
 mod world;
 
+pub use ball::{BallWorkspace, ball, ball_touches};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use contacts::{ElementContacts, contacts};
@@ -65,6 +73,7 @@ pub use pair::{
     overlap, proof, rates, separation,
 };
 pub use placed::Placed;
+pub use point::{AtPoint, point};
 pub use ray::{Ray, RayHit, ray};
 pub use search::{Workspace, minimum, touches};
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -3,7 +3,9 @@
 
 //! Shapes that are somewhere in the world.
 
-use palpate_field::{Pose, Shape};
+use palpate_field::{LARGEST_LENGTH, Pose, Shape};
+
+use crate::error::QueryError;
 
 /// A shape and where it is. A plain `&Shape` is one where it was built.
 ///
@@ -39,4 +41,13 @@ impl<'a, const D: usize> From<&'a Shape<D>> for Placed<'a, D> {
     fn from(shape: &'a Shape<D>) -> Self {
         Self::new(shape, Pose::identity())
     }
+}
+
+/// That a pose can be computed with: squares of what is too far away overflow.
+pub(crate) fn check_pose<const D: usize>(pose: &Pose<D>) -> Result<(), QueryError> {
+    if !pose.is_finite() {
+        return Err(QueryError::Pose);
+    }
+    let far = pose.translation.0.into_iter().find(|x| x.abs() > LARGEST_LENGTH);
+    far.map_or(Ok(()), |value| Err(QueryError::Coordinate { what: "a translation", value }))
 }

@@ -8,11 +8,11 @@
 //! and there are many. Then points lifted off the ray along the gradient help: the ball
 //! that a value proves empty about such a point is larger, and the ray leaves it later.
 
-use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
+use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::error::QueryError;
-use crate::sampler::{Sampler, Samples, unit};
+use crate::error::{QueryError, check_coordinates, check_length};
+use crate::sampler::{Sampler, Samples, normal, unit};
 
 /// Heights of lifted points, as shares of the one that said most the time before.
 const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
@@ -25,9 +25,6 @@ const LONG: f64 = 0.05;
 
 /// As are those that come near fast: the value falls at least to this share.
 const NEARING: f64 = 0.4;
-
-/// A gradient shorter than this says nothing of a direction.
-const FLAT: f64 = 1e-6;
 
 /// A part of a straight line: from `origin` in a `direction` of length one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,19 +48,13 @@ impl<const D: usize> Ray<D> {
         length: f64,
     ) -> Result<Self, QueryError> {
         for (what, numbers) in [("an origin", origin), ("a direction", direction)] {
-            for value in numbers.0 {
-                if value.is_nan() || value.abs() > LARGEST_LENGTH {
-                    return Err(QueryError::Coordinate { what, value });
-                }
-            }
+            check_coordinates(what, numbers)?;
         }
         let largest = direction.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if largest == 0.0 {
             return Err(QueryError::NoDirection);
         }
-        if !(0.0..=LARGEST_LENGTH).contains(&length) {
-            return Err(QueryError::Length { value: length });
-        }
+        check_length(length)?;
         // Divided by the largest first, since squares may underflow.
         let direction = direction * (1.0 / largest);
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
@@ -227,8 +218,7 @@ impl<const D: usize> Advance<'_, D> {
         let best = upper.is_finite().then(|| {
             let point = self.ray.at(upper);
             let (_, gradient) = self.sampler.slope(point);
-            let is_flat = gradient.norm() < FLAT;
-            RayHit { point, normal: (!is_flat).then(|| unit(gradient)) }
+            RayHit { point, normal: normal(gradient) }
         });
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
     }

@@ -147,6 +147,15 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 }
 
+/// A gradient shorter than this says nothing of a direction.
+const FLAT: f64 = 1e-6;
+
+/// The unit vector in which a field with this gradient grows; `None` below [`FLAT`].
+pub(crate) fn normal<const D: usize>(gradient: Vector<f64, D>) -> Option<Vector<f64, D>> {
+    let length = gradient.norm();
+    (length >= FLAT).then(|| gradient * (1.0 / length))
+}
+
 /// The unit vector along `v`; zero if that is.
 #[inline]
 pub(crate) fn unit<const D: usize>(v: Vector<f64, D>) -> Vector<f64, D> {

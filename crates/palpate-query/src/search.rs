@@ -62,10 +62,16 @@ pub(crate) struct Cell<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Cell<N, D> {
-    /// Writes its halves behind the first `count` parts, and counts them.
+    /// Writes the first `halves` of its halves behind the first `count` parts, and counts
+    /// them.
     #[inline]
-    pub(crate) fn halve_into(&self, parts: &mut [Self; SHORT], count: &mut usize) {
-        for element in &self.element.halves()[..parts_of_one::<N>()] {
+    pub(crate) fn halve_into(
+        &self,
+        halves: usize,
+        parts: &mut [Self; SHORT],
+        count: &mut usize,
+    ) {
+        for element in &self.element.halves()[..halves] {
             parts[*count] = Self { element: *element, level: self.level + 1, ..*self };
             *count += 1;
         }
@@ -163,6 +169,8 @@ pub(crate) struct Search<'a, const N: usize, const D: usize> {
     pub(crate) budget: u32,
     /// Of each vertex in a cell's centre.
     pub(crate) weights: [f64; N],
+    /// How many halves of a cell make it up.
+    pub(crate) parts: usize,
     pub(crate) radius: f64,
     /// The least value found, what it may be off by included, and where.
     pub(crate) upper: f64,
@@ -192,6 +200,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             goal: terms.goal,
             budget: terms.budget,
             weights,
+            parts: parts_of_one::<N>(),
             radius,
             upper: f64::INFINITY,
             best: centre,
@@ -260,8 +269,12 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         if let Some(stop) = self.goal.reached(lower, self.upper) {
             return Err(self.answer(lower, stop));
         }
+        let flat = element.flattened(&self.weights);
+        if let Some(flat) = &flat {
+            (self.weights, self.parts) = (flat.centre_weights(), 2);
+        }
         let mut whole = Cell {
-            element: *element,
+            element: flat.unwrap_or(*element),
             lower,
             upper: self.upper,
             height: FIRST_HEIGHTS[0] * self.radius,
@@ -322,7 +335,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         while count < SHORT && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            cells.swap_remove(lowest).halve_into(&mut parts, &mut count);
+            cells.swap_remove(lowest).halve_into(self.parts, &mut parts, &mut count);
         }
         self.look_at(&mut parts, count, cells);
     }

@@ -69,6 +69,36 @@ fn wrong<const N: usize, const D: usize>(
     None
 }
 
+/// What is wrong with the minimum of an element that is moved and scaled with the shape,
+/// which should be as much larger.
+fn moved_otherwise<const N: usize, const D: usize>(
+    u: &mut Unstructured<'_>,
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    limits: &Limits,
+    workspace: &mut Workspace<N, D>,
+) -> arbitrary::Result<Option<String>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let pose = draw::pose::<D>(u)?;
+    let factor = 10.0_f64.powf(draw::within(u, -3.0, 3.0)?);
+    let scaled = shape.clone().scaled(factor).and_then(|shape| shape.placed(&pose));
+    let vertices = element.vertices().map(|v| pose.transform_point(v * factor));
+    let (Ok(scaled), Ok(there)) = (scaled, Element::new(vertices)) else { return Ok(None) };
+    let here = minimum(shape, element, limits, workspace);
+    let limits = Limits { tolerance: factor * limits.tolerance, ..*limits };
+    let there = minimum(&scaled, &there, &limits, workspace);
+    // Vertices are rounded once more.
+    let steepness = shape.promise().lipschitz;
+    let reach = pose.translation.norm()
+        + factor * element.vertices().iter().fold(0.0_f64, |far, v| far.max(v.norm()));
+    let bits = 32.0 * f64::EPSILON * steepness * reach;
+    let exclude =
+        factor * here.lower - bits > there.upper || there.lower - bits > factor * here.upper;
+    Ok(exclude.then(|| format!("{there:?} is not {factor} times {here:?} of {element:?}")))
+}
+
 fn on_trees<const N: usize, const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
@@ -97,6 +127,10 @@ where
             return Ok(Err(format!("{sign:?} does not know")));
         }
         spent += u64::from(least.stop == Stop::BudgetSpent);
+        if let Some(complaint) = moved_otherwise(u, &shape, &element, &limits, &mut workspace)?
+        {
+            return Ok(Err(format!("{complaint}\n  {tree:?}")));
+        }
         // Ten evaluations prove little, and nothing that is wrong.
         let hasty = Limits { budget: 10, ..limits };
         let answer = minimum(&shape, &element, &hasty, &mut workspace);
@@ -144,6 +178,52 @@ fn the_depth_of_a_segment_in_a_box_is_exact_to_the_tolerance() -> Result<(), Sha
     let answer = minimum(&square, &segment, &limits, &mut Workspace::new());
     assert_eq!(answer.stop, Stop::Converged);
     assert!(answer.lower <= -0.3 && -0.3 <= answer.upper && answer.upper < -0.3 + 1e-6);
+    Ok(())
+}
+
+/// Triangles without an area were halved into parts that are there twice, until the
+/// budget was spent.
+#[test]
+fn elements_without_an_extent_are_what_is_left_of_them() -> Result<(), ShapeError> {
+    let block = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0, 0.5]))?);
+    let (a, b) = (Vector([-2.0, 0.2, 0.1]), Vector([3.0, 0.2, 0.1]));
+    let middle = (a + b) * 0.5;
+    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    // On a line, the same twice, and a point alone: 0.15 m deep, or 1 m off.
+    for (vertices, truth) in [
+        ([a, middle, b], -0.15),
+        ([b, a, a], -0.15),
+        ([a, b, a], -0.15),
+        ([middle; 3], -0.15),
+        ([a; 3], 1.0),
+    ] {
+        let element = Element::new(vertices).unwrap();
+        let answer = minimum(&block, &element, &limits, &mut Workspace::new());
+        assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
+        assert!(answer.lower <= truth && truth <= answer.upper, "{answer:?}");
+        let sign = touches(&block, &element, &limits, &mut Workspace::new());
+        assert_eq!((sign.is_hit(), sign.stop), (Some(truth < 0.0), Stop::SignKnown));
+    }
+    let point = Element::new([b; 2]).unwrap();
+    let answer = minimum(&block, &point, &limits, &mut Workspace::new());
+    assert!(answer.lower <= 2.0 && 2.0 <= answer.upper && answer.upper <= 2.0 + 1e-6);
+    Ok(())
+}
+
+#[test]
+fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+    let ball = Shape::from_kernel(Ball::new(1.0)?);
+    let segment = Element::new([Vector([-2.0, 0.6]), Vector([3.0, 0.5])]).unwrap();
+    let mut workspace = Workspace::new();
+    for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
+        let limits = Limits { tolerance, budget: 1000 };
+        for answer in [
+            minimum(&ball, &segment, &limits, &mut workspace),
+            touches(&ball, &segment, &limits, &mut workspace),
+        ] {
+            assert_eq!(wrong(&ball, &segment, &answer), None);
+        }
+    }
     Ok(())
 }
 

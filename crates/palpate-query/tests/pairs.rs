@@ -3,7 +3,6 @@
 
 //! Separations: closed forms, and bounds against samples on random trees.
 
-use arbitrary::Unstructured;
 use palpate_field::field::{EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::scalar::Model;
@@ -12,26 +11,10 @@ use palpate_query::{Limits, PairWorkspace, QueryError, Stop, overlap, separation
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 
 /// Points at which a bound is tried, all over and close to the best.
 const SAMPLES: usize = 400;
-
-/// Two bounded shapes, the second somewhere about the first.
-fn two<const D: usize>(
-    u: &mut Unstructured<'_>,
-    depth: usize,
-) -> arbitrary::Result<Option<[Shape<D>; 2]>>
-where
-    Space: Solid<D> + Turn<D>,
-{
-    let (a, b): (Tree<D>, Tree<D>) = (draw::tree(u, depth)?, draw::tree(u, depth)?);
-    let (Ok(a), Ok(b)) = (a.shape(), b.shape()) else { return Ok(None) };
-    let away = draw::direction::<D>(u)? * (draw::size(&a) * 2.0 * draw::unit(u)?);
-    let Ok(b) = b.translated(away) else { return Ok(None) };
-    let are_bounded = a.promise().bounds.is_some() && b.promise().bounds.is_some();
-    Ok(are_bounded.then_some([a, b]))
-}
 
 fn on_trees<const D: usize>(count: u64)
 where
@@ -42,7 +25,7 @@ where
     let (mut seed, mut asked, mut spent) = (0, 0, 0);
     cases::check(count, |u| {
         seed += 1;
-        let Some([a, b]) = two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
+        let Some([a, b]) = draw::two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
         let size = draw::size(&a);
         let limits = Limits { tolerance: 0.02 * size, budget: 200_000 };
         let Ok(answer) = separation(&a, &b, &limits, &mut workspace) else {

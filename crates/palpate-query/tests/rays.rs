@@ -5,7 +5,7 @@
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
-use palpate_field::{SHORT, Shape, ShapeError, Vector};
+use palpate_field::{Point, SHORT, Shape, ShapeError, Vector};
 use palpate_query::{Limits, QueryError, Ray, Stop, ray};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -68,6 +68,101 @@ fn rays_in_space_skip_nothing() {
 #[test]
 fn rays_in_the_plane_skip_nothing() {
     on_trees::<2>(1500);
+}
+
+/// Where a ray first enters a ball of one metre or a box of 1 m by 2 m by 3 m, by their
+/// equations; `None` if it never does.
+fn first<const D: usize>(is_ball: bool, origin: Point<D>, way: Vector<f64, D>) -> Option<f64> {
+    if is_ball {
+        let along = -origin.dot(way);
+        let beside = origin + way * along;
+        let half = (1.0 - beside.dot(beside)).sqrt();
+        return (half + along >= 0.0).then(|| (along - half).max(0.0));
+    }
+    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+    for k in 0..D {
+        let half = 0.5 * (k as f64 + 1.0);
+        let ends = [-half, half].map(|side| (side - origin[k]) / way[k]);
+        // On an axis that it does not follow, a ray is between the sides or never is.
+        if way[k] == 0.0 && origin[k].abs() > half {
+            return None;
+        } else if way[k] != 0.0 {
+            enters = enters.max(ends[0].min(ends[1]));
+            leaves = leaves.min(ends[0].max(ends[1]));
+        }
+    }
+    (enters <= leaves).then_some(enters)
+}
+
+/// Rays at a ball and a box, in any pose and from a thousandth to a thousand times as
+/// large, hit where the equations say.
+fn at_closed_forms<const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let (mut hits, mut free) = (0, 0);
+    cases::check(count, |u| {
+        let pose = draw::pose::<D>(u)?;
+        let factor = 10.0_f64.powf(draw::within(u, -3.0, 3.0)?);
+        let is_ball = u.arbitrary()?;
+        let size = Vector(std::array::from_fn(|k| k as f64 + 1.0));
+        let (Ok(ball), Ok(block)) = (Ball::new(1.0), Cuboid::new(size)) else {
+            return Ok(Err("no shapes".into()));
+        };
+        let plain = if is_ball { Shape::from_kernel(ball) } else { Shape::from_kernel(block) };
+        let Ok(shape) = plain.clone().scaled(factor).and_then(|s| s.placed(&pose)) else {
+            return Ok(Ok(()));
+        };
+        let origin = draw::point(u, &plain)?;
+        let towards = draw::point(u, &plain)?;
+        let Some(way) = (towards - origin).normalized() else { return Ok(Ok(())) };
+        let length = 20.0 * factor;
+        let there = pose.transform_point(origin * factor);
+        let Ok(asked) = Ray::new(there, pose.transform_vector(way), length) else {
+            return Ok(Ok(()));
+        };
+        let limits = Limits { tolerance: 1e-6 * factor, ..Limits::default() };
+        let answer = ray(&shape, &asked, &limits);
+        let truth = first(is_ball, origin, way).map(|t| t * factor).filter(|t| *t <= length);
+        let rounding = 1e-12 * (factor * (1.0 + origin.norm()) + pose.translation.norm());
+        let is_right = match (truth, answer.stop) {
+            (_, Stop::BudgetSpent) => false,
+            // What passes within the tolerance may be called a hit.
+            (None, _) => {
+                answer.best.is_none_or(|hit| shape.distance(hit.point) <= limits.tolerance)
+            }
+            // A graze by less than rounding may be called free.
+            (Some(t), _) => {
+                let deepest = shape.distance(asked.at(t + 1e-9 * factor));
+                answer.lower <= t + rounding || deepest > -rounding
+            }
+        };
+        hits += u64::from(answer.best.is_some());
+        free += u64::from(answer.best.is_none());
+        let complaint = || format!("{answer:?} of {asked:?} should be {truth:?}: {shape:?}");
+        Ok(if is_right { Ok(()) } else { Err(complaint()) })
+    });
+    assert!(hits * 5 > count && free * 10 > count, "{hits} hits, {free} free of {count}");
+}
+
+#[test]
+fn rays_hit_where_equations_say_at_any_scale() {
+    at_closed_forms::<3>(4000);
+    at_closed_forms::<2>(4000);
+}
+
+#[test]
+fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+    let ball = Shape::from_kernel(Ball::new(1.0)?);
+    let Ok(asked) = Ray::new(Vector([-3.0, 0.6]), Vector([1.0, 0.0]), 10.0) else { panic!() };
+    for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
+        for budget in [0, 10, 1000] {
+            let answer = ray(&ball, &asked, &Limits { tolerance, budget });
+            assert!(answer.lower <= 2.2 + 1e-12, "{answer:?}");
+            assert!(answer.upper >= 2.2 - 1e-12 || tolerance > 0.0, "{answer:?}");
+        }
+    }
+    Ok(())
 }
 
 #[test]

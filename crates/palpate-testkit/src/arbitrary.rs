@@ -344,6 +344,23 @@ where
     })
 }
 
+/// Two shapes of trees of at most `depth`, one of them bounded at least, the second
+/// somewhere about the first; `None` if what was drawn has no bounds.
+pub fn two<const D: usize>(
+    u: &mut Unstructured<'_>,
+    depth: usize,
+) -> Result<Option<[Shape<D>; 2]>>
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let (a, b): (Tree<D>, Tree<D>) = (tree(u, depth)?, tree(u, depth)?);
+    let (Ok(a), Ok(b)) = (a.shape(), b.shape()) else { return Ok(None) };
+    let away = direction::<D>(u)? * (size(&a) * 2.0 * unit(u)?);
+    let Ok(b) = b.translated(away) else { return Ok(None) };
+    let is_bounded = a.promise().bounds.is_some() || b.promise().bounds.is_some();
+    Ok(is_bounded.then_some([a, b]))
+}
+
 /// The size of a scene with the shape in it [m].
 #[must_use]
 pub fn size<const D: usize>(shape: &Shape<D>) -> f64 {

@@ -8,6 +8,8 @@
 //! - [`double`]: numbers of twice the precision, to measure rounding with;
 //! - [`laws`]: what every field must obey;
 //! - [`oracle`]: distances from definitions, without any formula of the library;
+//! - [`separation`]: how far bodies are apart, by a plain search; [`recall`]: the poses at
+//!   which that is kept;
 //! - [`cases`]: runs a property a fixed number of times.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
@@ -17,4 +19,6 @@ pub mod double;
 pub mod kernels;
 pub mod laws;
 pub mod oracle;
+pub mod recall;
+pub mod separation;
 pub mod tree;

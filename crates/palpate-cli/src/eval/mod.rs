@@ -8,12 +8,12 @@ mod stream;
 
 use std::io::Write;
 
+use palpate::query;
 use palpate::scene::{BuiltScene, World};
 
 use crate::arguments::EvalOptions;
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
-use answer::Answer;
 
 pub(crate) fn run(options: &EvalOptions) -> Result<Outcome, Failure> {
     match &input::scene(Some(&options.scene))?.world {
@@ -30,28 +30,24 @@ fn evaluate<const D: usize>(
         return stream::run(&scene.whole, points, options);
     }
     let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
-    let answer = Answer::at(&scene.whole, point);
+    let answer = query::point(&scene.whole, point).map_err(Failure::input)?;
     let mut out = std::io::stdout().lock();
     let promise = promise_in_words(scene.whole.promise());
     if options.json {
-        let mut object = answer.to_json();
+        let mut object = answer::to_json(&answer);
         object["promise"] = promise.into();
         object["lipschitz"] = scene.whole.promise().lipschitz.into();
         writeln!(out, "{object:#}")?;
     } else {
         writeln!(out, "distance       {} m", answer.distance)?;
-        writeln!(out, "gradient       {}", joined(&answer.gradient.0))?;
+        writeln!(out, "gradient       {}", input::joined(&answer.gradient.0))?;
         match answer.surface {
-            Some(surface) => writeln!(out, "surface point  {} m", joined(&surface.0))?,
+            Some(surface) => writeln!(out, "surface point  {} m", input::joined(&surface.0))?,
             None => writeln!(out, "surface point  none found from here")?,
         }
-        writeln!(out, "inside         {}", if answer.inside { "yes" } else { "no" })?;
+        writeln!(out, "inside         {}", if answer.is_inside { "yes" } else { "no" })?;
         writeln!(out, "safe radius    {} m", answer.safe_radius)?;
         writeln!(out, "promise        {promise}")?;
     }
     Ok(Outcome::Yes)
-}
-
-fn joined(numbers: &[f64]) -> String {
-    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -10,9 +10,10 @@ use std::path::Path;
 use csv::StringRecord;
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{BLOCK, Block, Gradients, Point, Shape, Vector};
+use palpate::query::AtPoint;
 use rayon::prelude::*;
 
-use super::answer::Answer;
+use super::answer;
 use crate::arguments::EvalOptions;
 use crate::hand_csv::columns;
 use crate::outcome::{Failure, Outcome};
@@ -59,7 +60,7 @@ fn evaluate<const D: usize>(
     let header = reader.headers().map_err(|error| Failure::file(path, error))?;
     let columns = columns::<D>(header, "").map_err(|problem| Failure::file(path, problem))?;
     if !as_json {
-        writeln!(out, "{}", Answer::<D>::header().join(","))?;
+        writeln!(out, "{}", answer::header::<D>().join(","))?;
     }
     let mut record = StringRecord::new();
     let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
@@ -113,12 +114,12 @@ fn answers<const D: usize>(shape: &Shape<D>, points: &[Point<D>], as_json: bool)
     shape.block_gradients(&block, points.len(), &mut found);
     let mut text = String::new();
     for (i, point) in points.iter().enumerate() {
-        let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
-        let answer = Answer::of(shape, *point, distance, gradient);
+        let slope = (found.distance.get(i), found.gradient.get(i));
+        let answer = AtPoint::of_slope(shape, *point, slope);
         if as_json {
-            text.push_str(&answer.to_json().to_string());
+            text.push_str(&answer::to_json(&answer).to_string());
         } else {
-            text.push_str(&answer.row().join(","));
+            text.push_str(&answer::row(&answer).join(","));
         }
         text.push('\n');
     }

@@ -29,9 +29,6 @@ const ARROW_SPACING: f64 = 0.025;
 /// How much shorter arrows are drawn where there are two views: each is half as large.
 const ARROWS_OF_VIEWS: f64 = 1.6;
 
-/// The width of a PNG [pixels].
-const WIDTH: u32 = 1200;
-
 /// Contact points drawn at most: more than ten lines cannot be told apart.
 const MOST_CONTACTS: u32 = 10;
 
@@ -45,7 +42,7 @@ where
     Dimensions: Drawable<D>,
 {
     let figure = figure(scene, recorder, title).map_err(Failure::input)?;
-    picture::save(&figure, path, WIDTH)
+    picture::save(&figure, path, picture::WIDTH)
 }
 
 fn figure<const D: usize>(

@@ -8,6 +8,8 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
 use super::cell::reach;
+use crate::error::QueryError;
+use crate::placed::Placed;
 
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
@@ -17,7 +19,8 @@ const TURN_ROUNDINGS: f64 = 4.0;
 
 /// `g = max(f/L, distance to the box)`: a lower bound of the distance to the shape, with
 /// Lipschitz constant 1. It is at most u within u of the box alone, which is what bounds
-/// a search.
+/// a search. Where a field's steepness is not known, `g` has the right sign, and says
+/// nothing of its surroundings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
@@ -47,6 +50,14 @@ impl<'a, const D: usize> Body<'a, D> {
     /// The shape's box, in its own coordinates.
     pub(crate) fn own_box(&self) -> Option<Aabb<D>> {
         self.aabb
+    }
+
+    /// The shape in the frame of the world.
+    pub(crate) fn in_world(placed: Placed<'a, D>) -> Result<Self, QueryError> {
+        if !placed.world_from_body.is_finite() {
+            return Err(QueryError::Pose);
+        }
+        Ok(Self::new(placed.shape, placed.world_from_body.inverse()))
     }
 
     /// A box of the frame that holds the shape.
@@ -111,6 +122,11 @@ impl<'a, const D: usize> Body<'a, D> {
         cell
     }
 
+    /// `true` if the field is as steep as promised everywhere.
+    pub(crate) fn is_known_everywhere(&self) -> bool {
+        self.region.is_none()
+    }
+
     /// `true` if the field is as steep as promised in a ball, in the shape's coordinates.
     #[inline]
     pub(crate) fn is_known(&self, local: Point<D>, radius: f64) -> bool {
@@ -123,8 +139,16 @@ impl<'a, const D: usize> Body<'a, D> {
     #[inline]
     pub(crate) fn value(&self, local: Point<D>, f: f64) -> f64 {
         let (outside, _) = self.outside_box(local);
-        let inner = if self.is_known(local, 0.0) { f * self.scale } else { outside };
-        inner.max(outside)
+        (f * self.scale).max(outside)
+    }
+
+    /// What `g` is at least within `radius` of a point in the shape's coordinates where
+    /// it is `value`: minus infinity where only the field itself would know.
+    #[inline]
+    pub(crate) fn floor(&self, local: Point<D>, value: f64, radius: f64) -> f64 {
+        let known =
+            if self.is_known(local, radius) { value } else { self.outside_box(local).0 };
+        known - radius
     }
 
     /// A model of `f/L` from one of `f`.
@@ -157,7 +181,7 @@ impl<'a, const D: usize> Body<'a, D> {
         gradient: Vector<f64, D>,
     ) -> (f64, Vector<f64, D>) {
         let (outside, away) = self.outside_box(local);
-        let inner = if self.is_known(local, 0.0) { f * self.scale } else { outside };
+        let inner = f * self.scale;
         let (value, slope) =
             if inner >= outside { (inner, gradient * self.scale) } else { (outside, away) };
         match &self.body_from_frame {

@@ -18,7 +18,7 @@ const LEVEL: f64 = 0.01;
 const THIN: f64 = 8.0;
 
 /// The last bits of a sum of models.
-const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+pub(crate) const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 /// A box, and what is known of it.
 #[derive(Clone, Copy, Debug)]

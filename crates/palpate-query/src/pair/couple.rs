@@ -9,7 +9,7 @@ use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 use super::body::Body;
 use super::cell::Cell;
 use crate::error::QueryError;
-use crate::placed::Placed;
+use crate::placed::{Placed, check_pose};
 
 /// Memory of questions to two bodies.
 #[derive(Debug)]
@@ -51,9 +51,8 @@ pub(crate) struct Couple<'a, const D: usize> {
 
 impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
-        if !(a.world_from_body.is_finite() && b.world_from_body.is_finite()) {
-            return Err(QueryError::Pose);
-        }
+        check_pose(&a.world_from_body)?;
+        check_pose(&b.world_from_body)?;
         let second_from_frame = b.world_from_body.inverse() * a.world_from_body;
         let bodies =
             [Body::new(a.shape, Pose::identity()), Body::new(b.shape, second_from_frame)];
@@ -132,6 +131,22 @@ impl<'a, const D: usize> Couple<'a, D> {
                 *slope = body.slope_of(local, f, gradient);
             }
         }
+    }
+
+    /// What the larger `g` is at least in the `i`-th of the cells, asked for their values
+    /// just before.
+    #[inline]
+    pub(crate) fn floor(
+        &self,
+        cell: &Cell<D>,
+        i: usize,
+        memory: &Memory<D>,
+        values: &[[f64; BLOCK]; 2],
+    ) -> f64 {
+        let [a, b] = &self.bodies;
+        let [of_a, of_b] = &memory.locals;
+        let radius = cell.radius();
+        a.floor(of_a[i], values[0][i], radius).max(b.floor(of_b[i], values[1][i], radius))
     }
 
     /// Models of both over those of the cells, asked for their values just before, that

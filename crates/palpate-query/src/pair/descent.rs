@@ -14,21 +14,26 @@ const STEPS: u32 = 40;
 /// A gain that is less than this share of the value is slow.
 const SLOW: f64 = 0.2;
 
-/// How much of the first of two tangent planes, `a + slope_a·e` and `b + slope_b·e`, is
-/// in the mean whose slope, times `step`, leads to where their larger one plus
-/// `|e|²/2 step` is least.
+/// What steps are multiplied by after one that leads down, and after one that does not.
+pub(crate) const GROW: f64 = 2.5;
+pub(crate) const SHRINK: f64 = 0.25;
+
+/// The way whose opposite leads to where the larger of two tangent planes,
+/// `a + slope_a·e` and `b + slope_b·e`, plus `|e|²/2 step` is least: `step` times a mean of
+/// both slopes.
 #[inline]
-fn share<const D: usize>(
+pub(crate) fn way<const D: usize>(
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
     step: f64,
-) -> f64 {
+) -> Vector<f64, D> {
     let between = slope_a - slope_b;
     let squared = between.dot(between);
-    if squared > 0.0 {
+    let share = if squared > 0.0 {
         (((a - b) / step - slope_b.dot(between)) / squared).clamp(0.0, 1.0)
     } else {
         0.5
-    }
+    };
+    (slope_a * share + slope_b * (1.0 - share)) * step
 }
 
 /// A point from `start` on at which the larger of both is less, and its value there;
@@ -45,9 +50,7 @@ pub(crate) fn descend<const D: usize>(
     let mut step = value.abs().max(goal.tolerance);
     let mut small_gains = 0;
     for _ in 0..STEPS {
-        let share = share(here, step);
-        let [(_, slope_a), (_, slope_b)] = here;
-        let next = p - (slope_a * share + slope_b * (1.0 - share)) * step;
+        let next = p - way(here, step);
         let there = couple.slopes(next);
         let next_value = there[0].0.max(there[1].0);
         if next_value < value {
@@ -58,10 +61,10 @@ pub(crate) fn descend<const D: usize>(
             if is_slow {
                 break;
             }
-            step *= 2.5;
+            step *= GROW;
             small_gains = if gain < 0.05 * goal.tolerance { small_gains + 1 } else { 0 };
         } else {
-            step *= 0.25;
+            step *= SHRINK;
         }
         let is_enough = goal.is_hit(value + slack);
         if is_enough || small_gains == 2 || step < 0.05 * goal.tolerance {
@@ -69,4 +72,21 @@ pub(crate) fn descend<const D: usize>(
         }
     }
     (value, p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_is_along_the_larger_plane_or_to_where_both_are_equal() {
+        let (left, up) = (Vector([-1.0, 0.0]), Vector([0.0, 1.0]));
+        assert_eq!(way([(5.0, left), (1.0, up)], 0.5), Vector([-0.5, 0.0]));
+        assert_eq!(way([(1.0, left), (1.0, up)], 0.5), Vector([-0.25, 0.25]));
+        // Planes that face each other: to the middle, whatever the size.
+        for size in [2.0, 50.0] {
+            let way = way([(1.0, left), (2.0, -left)], size);
+            assert!((way - Vector([0.5, 0.0])).norm() < 1e-13, "{way:?}");
+        }
+    }
 }

@@ -66,7 +66,7 @@ pub struct Escape<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn escape<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

@@ -22,7 +22,7 @@
 //! second order. Points are improved by minimax proximal steps: the maximum of the two
 //! tangent planes plus a parabola is least at a step along a mean of both gradients.
 
-mod body;
+pub(crate) mod body;
 pub(crate) mod cell;
 pub(crate) mod couple;
 pub(crate) mod descent;
@@ -65,7 +65,7 @@ pub use track::Track;
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn separation<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -83,7 +83,7 @@ pub fn separation<'a, const D: usize>(
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn overlap<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

@@ -95,7 +95,7 @@ impl<const D: usize> Rates<D> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
 pub fn rates<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

@@ -246,7 +246,8 @@ impl<'a, const D: usize> Search<'a, D> {
         let mut least = (f64::INFINITY, self.best);
         for (i, part) in parts.iter_mut().enumerate() {
             let value = values[0][i].max(values[1][i]);
-            part.lower = part.lower.max(value - part.radius() - self.slack);
+            let floor = self.couple.floor(part, i, &workspace.memory, &values);
+            part.lower = part.lower.max(floor - self.slack);
             if value < least.0 {
                 least = (value, part.centre);
             }

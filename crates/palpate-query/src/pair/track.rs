@@ -6,6 +6,7 @@
 use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
 use super::Nearest;
+use super::body::Body;
 use super::cell::{Cell, reach};
 use super::couple::Couple;
 use super::search::{PairWorkspace, Search};
@@ -88,7 +89,7 @@ impl<const D: usize> Track<D> {
     ///
     /// # Errors
     ///
-    /// If neither body is bounded, or a pose is not finite.
+    /// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
     pub fn separation(
         &mut self,
         poses: [Pose<D>; 2],
@@ -142,7 +143,9 @@ impl<const D: usize> Cover<D> {
     /// Puts into `workspace` what is still known now that the bodies have moved; `false`
     /// if they moved too far.
     fn resume(&self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
-        if self.cells.len() > GROWTH * self.first + BLOCK {
+        // What a body knows in a part of space alone moves with it.
+        let is_known = search.couple.bodies.iter().all(Body::is_known_everywhere);
+        if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
         search.descend(self.best);

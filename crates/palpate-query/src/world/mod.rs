@@ -21,6 +21,7 @@ use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings};
 use crate::pair::Track;
+use crate::placed::check_pose;
 use near::pairs_near;
 use pool::Pool;
 
@@ -235,13 +236,11 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     ///
-    /// If a pose is not finite, or there is no such body.
+    /// If a pose is not finite or beyond 1e15 m, or there is no such body.
     pub fn set_poses(&mut self, poses: &[(BodyId, Pose<D>)]) -> Result<(), QueryError> {
         for (body, pose) in poses {
             self.body(*body)?;
-            if !pose.is_finite() {
-                return Err(QueryError::Pose);
-            }
+            check_pose(pose)?;
         }
         let margin = self.settings.manifold.margin;
         poses.iter().try_for_each(|(body, pose)| self.body(*body)?.place(*pose, margin))
@@ -345,9 +344,7 @@ impl<const D: usize> World<D> {
 
 impl<const D: usize> Body<D> {
     fn place(&mut self, pose: Pose<D>, margin: f64) -> Result<(), QueryError> {
-        if !pose.is_finite() {
-            return Err(QueryError::Pose);
-        }
+        check_pose(&pose)?;
         (self.pose, self.has_moved) = (pose, true);
         let bounds = self.shape.promise().bounds;
         self.aabb = bounds.map(|bounds| {

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Local searches for a point in two bodies, beside their proven separation.
+
+use std::io::Write;
+use std::path::Path;
+
+use palpate::field::{Aabb, Point};
+use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice};
+use palpate::query::local::{Descent, PairMethod};
+use palpate::query::{Certified, Nearest, PairWorkspace, separation};
+use palpate::scene::BuiltScene;
+use serde_json::json;
+
+use super::{described, limits, method, written};
+use crate::arguments::DescendOptions;
+use crate::input::{self, joined};
+use crate::outcome::{Failure, Outcome};
+use crate::picture::{self, Dimensions, Drawable, in_space};
+use crate::plot::title;
+
+/// What was found from each start, and what there is.
+struct Answer<'a, const D: usize> {
+    method: PairMethod,
+    bodies: [&'a str; 2],
+    found: Vec<Descent<D>>,
+    certified: Certified<Nearest<D>>,
+}
+
+/// Searches between the first two bodies of a scene, from each start.
+pub(super) fn between<const D: usize>(
+    options: &DescendOptions,
+    scene: &BuiltScene<D>,
+) -> Result<Outcome, Failure>
+where
+    Dimensions: Drawable<D>,
+{
+    let [a, b, ..] = scene.bodies.as_slice() else {
+        let count = scene.bodies.len();
+        let problem =
+            format!("--start is for scenes with two bodies or more, this has {count}");
+        return Err(Failure::input(problem));
+    };
+    let bounds = input::bounds(scene)?;
+    let half = bounds.half_extents().0;
+    let limits =
+        limits(options.tolerance, half.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x)))?;
+    let method = method(options, PairMethod::AlternatingProjection)?;
+    let mut found = Vec::new();
+    for start in &options.start {
+        let start = input::point(start)?;
+        let descent = method.descend(&a.shape, &b.shape, start, limits.tolerance);
+        found.push(descent.map_err(Failure::input)?);
+    }
+    let mut workspace = PairWorkspace::new();
+    let certified = separation(&a.shape, &b.shape, &limits, &mut workspace);
+    let certified = certified.map_err(Failure::input)?;
+    let answer = Answer { method, bodies: [&a.name, &b.name], found, certified };
+    if let Some(path) = &options.plot {
+        let figure = answer.figure(scene, &bounds, &options.scene).map_err(Failure::input)?;
+        picture::save(&figure, path, picture::WIDTH)?;
+    }
+    answer.print(options.json)?;
+    Ok(Outcome::Yes)
+}
+
+impl<const D: usize> Answer<'_, D> {
+    fn print(&self, as_json: bool) -> Result<(), Failure> {
+        let Self { method, bodies, found, certified } = self;
+        let mut out = std::io::stdout().lock();
+        if as_json {
+            let answer = json!({
+                "method": method.name(),
+                "bodies": bodies,
+                "descents": found.iter().map(described).collect::<Vec<_>>(),
+                "certified": {
+                    "point_m": certified.best.point.0.to_vec(),
+                    "separation_lower_m": certified.lower,
+                    "separation_upper_m": certified.upper,
+                    "evaluations": certified.evaluations,
+                },
+            });
+            writeln!(out, "{answer:#}")?;
+            return Ok(());
+        }
+        writeln!(out, "method       {method}, between {:?} and {:?}", bodies[0], bodies[1])?;
+        for found in found {
+            let start = found.path.first().map_or_else(String::new, |p| joined(&p.0));
+            let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
+            writeln!(out, "from         {start} m: {kind}")?;
+            writeln!(out, "  best point {} m", joined(&found.best.0))?;
+            writeln!(out, "  value      {} m", found.value)?;
+            writeln!(out, "  steps      {} ({} evaluations)", found.steps, found.evaluations)?;
+        }
+        let bounds = joined(&[certified.lower, certified.upper]);
+        let evaluations = certified.evaluations;
+        writeln!(out, "proven       separation [{bounds}] m ({evaluations} evaluations)")?;
+        writeln!(out, "at           {} m", joined(&certified.best.point.0))?;
+        Ok(())
+    }
+
+    /// The paths over the isolines, in space on the level plane of what is proven.
+    fn figure(
+        &self,
+        scene: &BuiltScene<D>,
+        bounds: &Aabb<D>,
+        name: &Path,
+    ) -> Result<Figure, PlotError>
+    where
+        Dimensions: Drawable<D>,
+    {
+        let [_, _, depth] = in_space(self.certified.best.point);
+        let plane = if D < 3 { Slice::planar() } else { Slice::xy(depth)? };
+        let on_plane = |p: &Point<D>| plane.project(in_space(*p));
+        let view = Dimensions::view(&plane, bounds, picture::MARGIN)?;
+        let mut isolines = picture::isolines(&scene.whole, &plane, &view, Sampling::default())?;
+        for (i, found) in self.found.iter().enumerate() {
+            let path = format!("{} {}", self.method, i + 1);
+            let path = Polyline::new(path, found.path.iter().map(on_plane))?;
+            isolines = isolines.with_polyline(path);
+        }
+        let starts = self.found.iter().filter_map(|found| found.path.first());
+        let best = self.found.iter().map(|found| on_plane(&found.best));
+        let proven = [on_plane(&self.certified.best.point)];
+        let isolines = isolines
+            .with_markers(Markers::new("start", starts.map(on_plane))?)
+            .with_markers(Markers::new("best found", best)?)
+            .with_markers(Markers::new("proven", proven)?);
+        let found: Vec<_> = self.found.iter().map(|found| written(found.value)).collect();
+        let [lower, upper] = [self.certified.lower, self.certified.upper].map(written);
+        let caption =
+            format!("Found: {}; proven separation: {lower} to {upper}.", found.join(", "));
+        Ok(Figure::new(title(name)).with_caption(caption).with_isolines(isolines))
+    }
+}

@@ -1,0 +1,540 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How deep a ball is in a field: memoir 3.1, for every field.
+//!
+//! The gap between a ball about C with radius r and a shape is `d(C) − r`, with the signed
+//! distance d. Where the field is exact on C's side, `d = f(C)`, and one evaluation is all.
+//! A bound says less: `f(C) > r` proves that they are apart, `f(C) ≤ r` proves nothing.
+//! There the nearest point is searched for at which the field has the other sign: d is its
+//! distance from C, and its negative from inside.
+//!
+//! The search is over boxes, the nearest to C first. A box is left out if the field's
+//! value at its centre, or its model, proves that no such point is in it. Of the others
+//! the model bounds the field by an affine function, so that such points lie in a
+//! half-space, and the box is no nearer than that.
+
+use std::collections::BinaryHeap;
+
+use palpate_field::scalar::Model;
+use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Quality, Shape, Vector};
+
+use crate::certified::{Certified, Limits, Stop};
+use crate::contact::Contact;
+use crate::cut_box::distance_to_cut_box;
+use crate::error::{QueryError, check_coordinates, check_length};
+use crate::goal::Goal;
+use crate::pair::body::Body;
+use crate::pair::cell::{Cell, ROUNDINGS};
+use crate::sampler::normal;
+
+/// Steps of Newton's method through a surface at most.
+const MOST_STEPS: u32 = 64;
+
+/// Boxes that a workspace holds.
+const ROOM: usize = 1 << 16;
+
+/// Slides along a surface towards the centre at most.
+const MOST_SLIDES: u32 = 24;
+
+/// Memory of searches about balls, to be kept between them.
+#[derive(Debug)]
+pub struct BallWorkspace<const D: usize> {
+    cells: BinaryHeap<Cell<D>>,
+    points: Block<f64, D, BLOCK>,
+    boxes: Block<Model, D, BLOCK>,
+    values: Column<f64, BLOCK>,
+    models: Column<Model, BLOCK>,
+}
+
+impl<const D: usize> BallWorkspace<D> {
+    /// Room for searches in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            cells: BinaryHeap::with_capacity(ROOM),
+            points: Block::zero(),
+            boxes: Block::zero(),
+            values: Column::zero(),
+            models: Column::zero(),
+        }
+    }
+}
+
+impl<const D: usize> Default for BallWorkspace<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The gap between a ball and a shape [m], between bounds, to `limits.tolerance`: the
+/// signed distance of the `centre` [m] less the `radius` [m]. Negative, it is how deep the
+/// ball is in the shape.
+///
+/// The contact is from the shape's surface, the point nearest to the centre, to the ball's,
+/// with the normal from the shape to the ball. There is none if the shape has no surface
+/// in reach, and then `upper` is infinite. A surface is where the field is zero, also one
+/// that lies inside, as where two parts of a union touch.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Cuboid};
+/// use palpate_query::{Limits, BallWorkspace, Stop, ball};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut workspace = BallWorkspace::new();
+/// let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
+/// let centre = Vector([1.3, 0.9]);
+/// let answer = ball(&square, centre, 0.75, &Limits::default(), &mut workspace)?;
+/// // Exact, and so known at once: the corner is 0.5 m from the centre.
+/// assert_eq!((answer.evaluations, answer.stop), (2, Stop::Converged));
+/// let contact = answer.best.ok_or("there is a contact")?;
+/// assert!((contact.gap + 0.25).abs() < 1e-15);
+/// assert!((contact.point_a - Vector([1.0, 0.5])).norm() < 1e-15);
+/// assert!((contact.normal - Vector([0.6, 0.8])).norm() < 1e-15);
+/// assert!((contact.point_b - Vector([0.85, 0.3])).norm() < 1e-15);
+///
+/// // A bound, a quarter of the distance here, needs a search.
+/// let ellipse = square.stretched([1.0, 4.0])?;
+/// let answer = ball(&ellipse, Vector([0.3, 6.0]), 1.0, &Limits::default(), &mut workspace)?;
+/// assert!(answer.lower <= 3.0 && 3.0 <= answer.upper && answer.upper < 3.0 + 1e-4);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If a coordinate is not finite or beyond 1e15 m, or the radius is negative.
+pub fn ball<const D: usize>(
+    shape: &Shape<D>,
+    centre: Point<D>,
+    radius: f64,
+    limits: &Limits,
+    workspace: &mut BallWorkspace<D>,
+) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+    let goal = Goal::least(limits.tolerance);
+    search(shape, (centre, radius), (goal, limits.budget), workspace)
+}
+
+/// Whether a ball and a shape touch, in [`Certified::is_hit`]; arguments and errors as of
+/// [`ball`].
+///
+/// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
+/// One evaluation decides where the field is exact, where it is a bound above the radius,
+/// and where the centre is inside.
+///
+/// # Errors
+///
+/// If a coordinate is not finite or beyond 1e15 m, or the radius is negative.
+pub fn ball_touches<const D: usize>(
+    shape: &Shape<D>,
+    centre: Point<D>,
+    radius: f64,
+    limits: &Limits,
+    workspace: &mut BallWorkspace<D>,
+) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+    let goal = Goal::sign(limits.tolerance);
+    search(shape, (centre, radius), (goal, limits.budget), workspace)
+}
+
+fn search<const D: usize>(
+    shape: &Shape<D>,
+    (centre, radius): (Point<D>, f64),
+    (goal, budget): (Goal, u32),
+    workspace: &mut BallWorkspace<D>,
+) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+    check_coordinates("a centre", centre)?;
+    check_length(radius)?;
+    let (value, gradient) = shape.distance_gradient(centre);
+    let promise = shape.promise();
+    let is_inside = value < 0.0;
+    let extent = promise.bounds.map_or(value.abs(), |bounds| bounds.radius_about_origin());
+    let mut search = Search {
+        body: Body::new(shape, Pose::identity()),
+        lipschitz: promise.lipschitz,
+        centre,
+        radius,
+        goal,
+        budget,
+        sign: if is_inside { -1.0 } else { 1.0 },
+        fallback: normal(gradient),
+        geometry: ROUNDINGS * (centre.norm() + radius + extent),
+        safe: 0.0,
+        reach: f64::INFINITY,
+        best: None,
+        dropped: f64::INFINITY,
+        evaluations: 2,
+    };
+    let quality = if is_inside { promise.inside } else { promise.outside };
+    let rounding = search.slack(centre) + search.geometry;
+    if quality == Quality::Exact {
+        let surface = centre - gradient * value;
+        let gap = value - radius;
+        let best = search.contact(surface);
+        return Ok(search.answer(best, (gap - rounding, gap + rounding)));
+    }
+    if value.abs() <= rounding {
+        return Ok(search.at_the_surface());
+    }
+    search.safe = (promise.safe_radius(centre, value) - rounding).max(0.0);
+    Ok(search.run(workspace))
+}
+
+/// A search under way, for the nearest point at which the field has not the sign of the
+/// centre.
+struct Search<'a, const D: usize> {
+    body: Body<'a, D>,
+    lipschitz: f64,
+    centre: Point<D>,
+    radius: f64,
+    goal: Goal,
+    budget: u32,
+    /// Of the field at the centre: 1 or −1.
+    sign: f64,
+    /// The normal where the centre lies on the surface.
+    fallback: Option<Vector<f64, D>>,
+    /// What distances from the centre may be off by [m].
+    geometry: f64,
+    /// No surface is nearer [m].
+    safe: f64,
+    /// How far the nearest point that was found is, and the point [m].
+    reach: f64,
+    best: Option<Point<D>>,
+    /// Nothing in the boxes that were left out is nearer [m].
+    dropped: f64,
+    evaluations: u32,
+}
+
+impl<const D: usize> Search<'_, D> {
+    fn run(&mut self, workspace: &mut BallWorkspace<D>) -> Certified<Option<Contact<D>>> {
+        if let Some(stop) = self.reached(self.safe) {
+            return self.finish(self.safe, stop);
+        }
+        if let Some(found) = self.through(self.centre, self.sign) {
+            self.slide(found);
+        }
+        self.look_past_bounds();
+        if self.reach.is_finite() {
+            self.geometry += ROUNDINGS * self.reach;
+        }
+        workspace.cells.clear();
+        if let Some(root) = self.root() {
+            workspace.cells.push(Cell { lower: self.safe, ..Cell::unknown(&root) });
+        }
+        loop {
+            let nearest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
+            let lower = nearest.min(self.dropped).max(self.safe);
+            if let Some(stop) = self.reached(lower) {
+                return self.finish(lower, stop);
+            }
+            if workspace.cells.is_empty() && self.gaps(lower).0 > 0.0 {
+                // There is no surface as far as was looked.
+                return self.finish(lower, Stop::SignKnown);
+            }
+            let is_full = workspace.cells.len() + BLOCK > ROOM;
+            if workspace.cells.is_empty() || is_full || self.evaluations >= self.budget {
+                return self.finish(lower, Stop::BudgetSpent);
+            }
+            self.round(workspace);
+        }
+    }
+
+    /// What the gap is between, if nothing is nearer than `lower`.
+    fn gaps(&self, lower: f64) -> (f64, f64) {
+        let lower = (lower - self.geometry).max(0.0);
+        let reach = self.reach + self.geometry;
+        if self.sign > 0.0 {
+            (lower.min(reach) - self.radius, reach - self.radius)
+        } else {
+            (-reach - self.radius, -lower.min(reach) - self.radius)
+        }
+    }
+
+    fn reached(&self, lower: f64) -> Option<Stop> {
+        let (low, high) = self.gaps(lower);
+        self.goal.reached(low, high)
+    }
+
+    fn finish(&self, lower: f64, stop: Stop) -> Certified<Option<Contact<D>>> {
+        let (lower, upper) = self.gaps(lower);
+        let best = self.best.and_then(|surface| self.contact(surface));
+        Certified { best, lower, upper, stop, evaluations: self.evaluations }
+    }
+
+    fn answer(
+        &self,
+        best: Option<Contact<D>>,
+        (lower, upper): (f64, f64),
+    ) -> Certified<Option<Contact<D>>> {
+        let stop = self.goal.reached(lower, upper).unwrap_or(Stop::BudgetSpent);
+        Certified { best, lower, upper, stop, evaluations: self.evaluations }
+    }
+
+    /// The answer where the field at the centre is rounding, and its side unknown.
+    fn at_the_surface(&mut self) -> Certified<Option<Contact<D>>> {
+        let [inside, outside] = [1.0, -1.0].map(|sign| {
+            let found = self.through(self.centre, sign);
+            found.map_or(f64::INFINITY, |p| (p - self.centre).norm() + self.geometry)
+        });
+        let best = self.contact(self.centre);
+        self.answer(best, (-outside - self.radius, inside - self.radius))
+    }
+
+    /// The contact with this point of the surface, if there is a normal.
+    fn contact(&self, surface: Point<D>) -> Option<Contact<D>> {
+        let away = self.centre - surface;
+        let distance = away.norm();
+        let is_far = distance > self.geometry;
+        let direction = is_far.then(|| away * (self.sign / distance)).or(self.fallback)?;
+        Some(Contact {
+            point_a: surface,
+            point_b: self.centre - direction * self.radius,
+            normal: direction,
+            gap: self.sign * distance - self.radius,
+            // A ball has one contact.
+            id: 0,
+        })
+    }
+
+    /// What the field may be off by at a point [m].
+    fn slack(&self, p: Point<D>) -> f64 {
+        self.body.shape.promise().rounding.within(p.norm())
+    }
+
+    /// Whether a value is proven not to have the sign of the centre's: what has no inside
+    /// is reached where it is zero up to rounding.
+    fn is_through(&self, sign: f64, value: f64, slack: f64) -> bool {
+        let has_inside = self.body.shape.promise().has_interior;
+        sign * value <= if has_inside || sign < 0.0 { -slack } else { slack }
+    }
+
+    /// A point at which the field has not `sign`, by Newton's method from `start`, and near
+    /// the surface: from a step that went far through it, back.
+    fn through(&mut self, start: Point<D>, sign: f64) -> Option<Point<D>> {
+        let (mut before, mut p) = (None, start);
+        for _ in 0..MOST_STEPS {
+            let (value, gradient) = self.body.shape.distance_gradient(p);
+            self.evaluations += 2;
+            let slack = self.slack(p);
+            if self.is_through(sign, value, slack) {
+                let is_deep = sign * value < -8.0 * slack;
+                let before = before.unwrap_or(self.centre);
+                return Some(if is_deep { self.between(before, p, sign) } else { p });
+            }
+            normal(gradient)?;
+            before = Some(p);
+            p -= gradient * ((value + sign * 2.0 * slack) / gradient.dot(gradient));
+        }
+        None
+    }
+
+    /// A point just through the surface on the way from a point with `sign` to one without,
+    /// halved until the next halves are roundings.
+    fn between(&mut self, with: Point<D>, without: Point<D>, sign: f64) -> Point<D> {
+        let (mut with, mut without) = (with, without);
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let middle = (with + without) * 0.5;
+            self.evaluations += 1;
+            let value = self.body.shape.distance(middle);
+            let is_through = self.is_through(sign, value, self.slack(middle));
+            *(if is_through { &mut without } else { &mut with }) = middle;
+        }
+        without
+    }
+
+    /// Takes a point as the nearest, if it is, and slides it along the surface towards the
+    /// centre: to the nearest point of the tangent plane, and back through the surface.
+    fn slide(&mut self, start: Point<D>) {
+        let mut share = 1.0;
+        self.take(start);
+        let mut p = start;
+        for _ in 0..MOST_SLIDES {
+            let before = (p - self.centre).norm();
+            let (value, gradient) = self.body.shape.distance_gradient(p);
+            self.evaluations += 2;
+            let squared = gradient.dot(gradient);
+            if normal(gradient).is_none() || before == 0.0 {
+                return;
+            }
+            let along = (gradient.dot(p - self.centre) - value) / squared;
+            let there = p + (self.centre + gradient * along - p) * share;
+            let next = self.through(there, self.sign);
+            match next.filter(|next| (*next - self.centre).norm() < before) {
+                Some(next) => {
+                    self.take(next);
+                    if (next - p).norm() < 1e-3 * self.goal.tolerance {
+                        return;
+                    }
+                    p = next;
+                    share = (2.0_f64 * share).min(1.0);
+                }
+                None if share < 1e-2 => return,
+                None => share *= 0.25,
+            }
+        }
+    }
+
+    fn take(&mut self, p: Point<D>) {
+        let distance = (p - self.centre).norm();
+        if distance < self.reach {
+            (self.reach, self.best) = (distance, Some(p));
+        }
+    }
+
+    /// From inside, the nearest point past the shape's box is outside.
+    fn look_past_bounds(&mut self) {
+        let Some(aabb) = self.body.aabb().filter(|_| self.sign < 0.0) else { return };
+        let grown = aabb.grown(self.slack(aabb.max) + self.geometry);
+        for k in 0..D {
+            for face in [grown.min[k], grown.max[k]] {
+                if (face - self.centre[k]).abs() < self.reach {
+                    let mut outside = self.centre;
+                    outside[k] = face;
+                    let found = self.between(self.centre, outside, self.sign);
+                    self.take(found);
+                }
+            }
+        }
+    }
+
+    /// A box that holds all points that matter.
+    fn root(&mut self) -> Option<Aabb<D>> {
+        let aabb = self.body.aabb().filter(|_| self.sign > 0.0);
+        let enough = self.radius + self.goal.tolerance.max(self.geometry);
+        let is_bounded = self.reach.is_finite() || aabb.is_some();
+        let asks_for_all = is_bounded && self.goal.apart.is_infinite();
+        let far = if asks_for_all { self.reach } else { self.reach.min(enough) };
+        self.dropped = far;
+        let cube = Aabb { min: self.centre, max: self.centre }.grown(far * (1.0 + 1e-12));
+        let Some(aabb) = aabb else { return Some(cube) };
+        let mut root = aabb.grown(self.slack(aabb.max) + self.geometry);
+        for k in 0..D {
+            root.min[k] = root.min[k].max(cube.min[k]);
+            root.max[k] = root.max[k].min(cube.max[k]);
+            if root.min[k] > root.max[k] {
+                return None;
+            }
+        }
+        Some(root)
+    }
+
+    /// Boxes that are no nearer need no more looking at.
+    fn threshold(&self) -> f64 {
+        self.goal.threshold(self.reach - self.radius) + self.radius + 2.0 * self.geometry
+    }
+
+    /// Halves the nearest boxes, a block of parts, and bounds them.
+    fn round(&mut self, workspace: &mut BallWorkspace<D>) {
+        let mut parts = [Cell::NOTHING; BLOCK];
+        let mut count = 0;
+        while count + (1 << D) <= BLOCK {
+            let Some(parent) = workspace.cells.pop() else { break };
+            if parent.lower >= self.threshold() {
+                self.dropped = self.dropped.min(parent.lower);
+                continue;
+            }
+            count = parent.halve(&mut parts, count);
+        }
+        let parts = &mut parts[..count];
+        for (i, part) in parts.iter().enumerate() {
+            workspace.points.set(i, part.centre);
+        }
+        self.body.shape.block_distances(&workspace.points, count, &mut workspace.values);
+        self.evaluations += count as u32;
+        let (mut open, mut is_steep) = (0, [false; BLOCK]);
+        let mut start: Option<(f64, Point<D>)> = None;
+        for i in 0..count {
+            let mut part = parts[i];
+            let value = self.sign * workspace.values.get(i);
+            let radius = part.radius();
+            let is_known = self.body.is_known(part.centre, radius);
+            let slack = self.slack(part.centre) + self.geometry;
+            if is_known && value - self.lipschitz * radius > slack {
+                continue;
+            }
+            part.lower = part.lower.max(self.distance_to_box(&part));
+            let far = (part.centre - self.centre).norm();
+            let may_help = self.best.is_none() || self.is_through(1.0, value, slack);
+            if may_help && start.is_none_or(|(least, _)| far < least) {
+                start = Some((far, part.centre));
+            }
+            (parts[open], is_steep[open]) = (part, is_known);
+            open += 1;
+        }
+        if let Some((far, start)) = start
+            && far < self.reach - 0.25 * self.goal.tolerance
+            && let Some(found) = self.through(start, self.sign)
+        {
+            self.slide(found);
+        }
+        self.refine(&parts[..open], &is_steep, workspace);
+    }
+
+    /// Bounds parts by models, where the field is as steep as promised, and keeps what is
+    /// near.
+    fn refine(
+        &mut self,
+        parts: &[Cell<D>],
+        is_steep: &[bool; BLOCK],
+        workspace: &mut BallWorkspace<D>,
+    ) {
+        if parts.is_empty() {
+            return;
+        }
+        for (lane, part) in parts.iter().enumerate() {
+            workspace.boxes.set(lane, Vector(Model::cell(part.centre.0, part.half.0)));
+        }
+        let models = &mut workspace.models;
+        self.body.shape.block_distances(&workspace.boxes, parts.len(), models);
+        self.evaluations += parts.len() as u32;
+        for (lane, part) in parts.iter().enumerate() {
+            let mut part = *part;
+            if is_steep[lane] {
+                let room = self.distance_to_room(&part, &workspace.models.get(lane));
+                part.lower = part.lower.max(room);
+            }
+            if part.lower < self.threshold() {
+                workspace.cells.push(part);
+            } else {
+                self.dropped = self.dropped.min(part.lower);
+            }
+        }
+    }
+
+    fn distance_to_box(&self, part: &Cell<D>) -> f64 {
+        let mut away = (part.centre - self.centre).abs() - part.half;
+        for x in &mut away.0 {
+            *x = x.max(0.0);
+        }
+        away.norm()
+    }
+
+    /// How far the part of a box is in which a model leaves room for points beyond the
+    /// surface, a half-space; infinite if it leaves none.
+    fn distance_to_room(&self, part: &Cell<D>, model: &Model) -> f64 {
+        let remainder = if self.sign > 0.0 { model.lower } else { model.upper };
+        let slack = self.slack(part.centre) + self.geometry;
+        let value = self.sign * model.value - remainder - slack;
+        let (mut at_centre, mut fall, mut slope) = (value, 0.0, Vector::ZERO);
+        let mut size = model.value.abs();
+        for k in 0..D {
+            let change = self.sign * model.gradient[k];
+            fall += change.abs();
+            if part.half[k] > 0.0 {
+                slope[k] = change / part.half[k];
+                let term = slope[k] * (self.centre[k] - part.centre[k]);
+                at_centre += term;
+                size += term.abs();
+            }
+        }
+        if value - fall - ROUNDINGS * (size + fall) > 0.0 {
+            return f64::INFINITY;
+        }
+        let (height, steepness) = (at_centre - ROUNDINGS * size, slope.norm());
+        if height <= 0.0 || steepness == 0.0 {
+            return 0.0;
+        }
+        let offset = part.centre - self.centre;
+        let sides = [offset - part.half, offset + part.half];
+        distance_to_cut_box(sides, slope * (1.0 / steepness), height / steepness)
+    }
+}

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Searches of the literature: they follow a gradient from where they start, and stop
+//! where it leads no further.
+//!
+//! What they find is an upper bound of the minimum and nothing else: there may be a
+//! deeper point elsewhere, and they cannot know. They are here to be compared with
+//! [`minimum`](crate::minimum) and [`separation`](crate::separation), which prove their
+//! answers and do not depend on them.
+//!
+//! | method | of | source |
+//! |---|---|---|
+//! | [`ProjectedGradient`] | field and element | memoir 3.2; Macklin et al. 2020 |
+//! | [`FrankWolfe`] | field and element | Macklin et al. 2020 |
+//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles, the half of it in space) |
+//! | [`AlternatingProjection`] | two fields | memoir 3.3, after Liu et al. 2024 |
+//! | [`MinimaxProximal`] | two fields | the bundle method with two planes |
+//!
+//! Constants are those of the documents, or of the programs that use their methods. What
+//! is wrong in the documents is mended: steps are not constant along a unit gradient, the
+//! best point is returned and not the last one, and it is the projected step that says
+//! when to stop.
+//!
+//! ```
+//! use palpate_field::{Shape, Vector, kernel::Ball};
+//! use palpate_query::local::ElementMethod;
+//! use palpate_query::{Element, Limits, Workspace, minimum};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A ball over the left end, and a smaller one that the segment cuts.
+//! let balls = Shape::union([
+//!     Shape::from_kernel(Ball::new(0.2)?).translated(Vector([-1.0, 0.0]))?,
+//!     Shape::from_kernel(Ball::new(0.1)?).translated(Vector([0.25, -0.3]))?,
+//! ])?;
+//! let segment = Element::new([Vector([-1.0, 0.25]), Vector([1.0, -0.75])])?;
+//! let method: ElementMethod = "projected_gradient".parse()?;
+//! let found = method.descend(&balls, &segment);
+//! let certified = minimum(&balls, &segment, &Limits::default(), &mut Workspace::new());
+//! assert!(found.value > 0.02 && certified.upper < -0.032);
+//! # Ok(())
+//! # }
+//! ```
+
+mod alternating_projection;
+mod frank_wolfe;
+mod golden_section;
+mod minimax_proximal;
+mod projected_gradient;
+
+use std::fmt;
+use std::str::FromStr;
+
+use palpate_field::{Point, Shape};
+
+use crate::element::Element;
+use crate::error::QueryError;
+use crate::placed::Placed;
+
+pub use alternating_projection::AlternatingProjection;
+pub use frank_wolfe::FrankWolfe;
+pub use golden_section::GoldenSection;
+pub use minimax_proximal::MinimaxProximal;
+pub use projected_gradient::ProjectedGradient;
+
+/// What a local search found, and how it came there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Descent<const D: usize> {
+    /// The best point on the way [m].
+    pub best: Point<D>,
+    /// The value there: nothing says that it is the least [m].
+    pub value: f64,
+    /// Steps that were taken.
+    pub steps: u32,
+    /// How often fields were asked; a gradient counts twice.
+    pub evaluations: u32,
+    /// The points at which the search was, from its start on [m].
+    pub path: Vec<Point<D>>,
+}
+
+impl<const D: usize> Descent<D> {
+    /// A search that starts at a point with this value, for which the fields were asked
+    /// so often.
+    fn from_start(start: Point<D>, value: f64, evaluations: u32) -> Self {
+        Self { best: start, value, steps: 0, evaluations, path: vec![start] }
+    }
+
+    /// The search is at `p` now.
+    fn visit(&mut self, p: Point<D>, value: f64) {
+        self.path.push(p);
+        if value < self.value {
+            (self.best, self.value) = (p, value);
+        }
+    }
+}
+
+/// Writes the names of methods, and reads them.
+macro_rules! named {
+    ($method:ident: $($variant:ident = $name:literal),+) => {
+        impl $method {
+            /// All there are.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// The name on command lines.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),+ }
+            }
+        }
+
+        impl fmt::Display for $method {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl FromStr for $method {
+            type Err = QueryError;
+
+            fn from_str(name: &str) -> Result<Self, QueryError> {
+                let is_meant = |method: &&Self| method.name() == name;
+                Self::ALL.iter().find(is_meant).copied().ok_or_else(|| {
+                    let known: Vec<_> = Self::ALL.iter().map(|method| method.name()).collect();
+                    QueryError::UnknownMethod { name: name.to_owned(), known: known.join(", ") }
+                })
+            }
+        }
+    };
+}
+
+/// A local search for the least value of a field over an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementMethod {
+    /// [`ProjectedGradient`].
+    ProjectedGradient,
+    /// [`FrankWolfe`].
+    FrankWolfe,
+    /// [`GoldenSection`].
+    GoldenSection,
+}
+
+named!(ElementMethod:
+    ProjectedGradient = "projected_gradient",
+    FrankWolfe = "frank_wolfe",
+    GoldenSection = "golden_section"
+);
+
+impl ElementMethod {
+    /// The search with its default constants.
+    #[must_use]
+    pub fn descend<const N: usize, const D: usize>(
+        self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+    ) -> Descent<D> {
+        match self {
+            Self::ProjectedGradient => ProjectedGradient::default().descend(shape, element),
+            Self::FrankWolfe => FrankWolfe::default().descend(shape, element),
+            Self::GoldenSection => GoldenSection::default().descend(shape, element),
+        }
+    }
+}
+
+/// A local search for a point in two bodies, or between them.
+///
+/// What is made small is `max(g_a, g_b)` with `g` as in
+/// [`separation`](crate::separation), which is twice its least value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PairMethod {
+    /// [`AlternatingProjection`].
+    AlternatingProjection,
+    /// [`MinimaxProximal`].
+    MinimaxProximal,
+}
+
+named!(PairMethod:
+    AlternatingProjection = "alternating_projection",
+    MinimaxProximal = "minimax_proximal"
+);
+
+impl PairMethod {
+    /// The search from `start` [m], with its default constants, until a step is shorter
+    /// than `tolerance` [m].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m, a pose is not finite, or the
+    /// tolerance is negative.
+    pub fn descend<'a, const D: usize>(
+        self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+        start: Point<D>,
+        tolerance: f64,
+    ) -> Result<Descent<D>, QueryError> {
+        match self {
+            Self::AlternatingProjection => {
+                AlternatingProjection::default().descend(a, b, start, tolerance)
+            }
+            Self::MinimaxProximal => MinimaxProximal::default().descend(a, b, start, tolerance),
+        }
+    }
+}
+
+/// The vertex with the least value, its number first, at which a search may start; all
+/// vertices are asked.
+fn least_vertex<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+) -> (usize, Descent<D>) {
+    let values = element.vertices.map(|vertex| shape.distance(vertex));
+    let least = (1..N).fold(0, |k, i| if values[i] < values[k] { i } else { k });
+    (least, Descent::from_start(element.vertices[least], values[least], N as u32))
+}
+
+/// The number of the vertex that is farthest against a gradient, and by how much the
+/// tangent plane at `p` is lower there, at least zero [m].
+///
+/// That much a convex field may be below its value at `p` somewhere on the element.
+fn support<const N: usize, const D: usize>(
+    element: &Element<N, D>,
+    p: Point<D>,
+    gradient: Point<D>,
+) -> (usize, f64) {
+    let drops = element.vertices.map(|vertex| gradient.dot(p - vertex));
+    let farthest = (1..N).fold(0, |k, i| if drops[i] > drops[k] { i } else { k });
+    (farthest, drops[farthest].max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        for method in ElementMethod::ALL {
+            assert_eq!(method.to_string().parse(), Ok(*method));
+        }
+        for method in PairMethod::ALL {
+            assert_eq!(method.to_string().parse(), Ok(*method));
+        }
+        let error = "newton".parse::<PairMethod>().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "there is no method \"newton\"; there are alternating_projection, minimax_proximal"
+        );
+    }
+}

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a field says at a point.
+
+use palpate_field::{Point, Quality, Shape, Vector};
+
+use crate::error::{QueryError, check_coordinates};
+use crate::sampler::normal;
+
+/// All that a field says at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtPoint<const D: usize> {
+    /// The point [m].
+    pub point: Point<D>,
+    /// The signed distance, as far as [`quality`](Self::quality) goes [m].
+    pub distance: f64,
+    /// The gradient of the field.
+    pub gradient: Vector<f64, D>,
+    /// The gradient's unit vector; `None` where it is shorter than 1e-6.
+    pub normal: Option<Vector<f64, D>>,
+    /// The nearest point of the surface where the promise is exact, else one close by;
+    /// `None` if the way there was not found ([`Shape::surface_point`]) [m].
+    pub surface: Option<Point<D>>,
+    /// Whether the distance is negative.
+    pub is_inside: bool,
+    /// The radius of a ball that is sure to hold no surface, rounding included [m].
+    pub safe_radius: f64,
+    /// What the distance promises on this side of the surface.
+    pub quality: Quality,
+    /// What the distance may be off by from the formula's [m].
+    pub rounding: f64,
+}
+
+impl<const D: usize> AtPoint<D> {
+    /// The answer at a point where the distance [m] and the gradient are known, as
+    /// [`Shape::block_gradients`] gives them for many.
+    #[must_use]
+    pub fn of_slope(
+        shape: &Shape<D>,
+        point: Point<D>,
+        (distance, gradient): (f64, Vector<f64, D>),
+    ) -> Self {
+        let promise = shape.promise();
+        let rounding = promise.rounding.within(point.norm());
+        let is_inside = distance < 0.0;
+        Self {
+            point,
+            distance,
+            gradient,
+            normal: normal(gradient),
+            surface: shape.surface_point(point),
+            is_inside,
+            safe_radius: (promise.safe_radius(point, distance) - rounding).max(0.0),
+            quality: if is_inside { promise.inside } else { promise.outside },
+            rounding,
+        }
+    }
+}
+
+/// What a field says at `p` [m]: one evaluation with its gradient, and those on the way
+/// to the surface.
+///
+/// ```
+/// use palpate_field::{Quality, Shape, Vector, kernel::Ball};
+/// use palpate_query::point;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let answer = point(&ball, Vector([0.0, 2.0]))?;
+/// assert_eq!((answer.distance, answer.is_inside), (1.5, false));
+/// assert_eq!(answer.normal, Some(Vector([0.0, 1.0])));
+/// assert_eq!(answer.surface, Some(Vector([0.0, 0.5])));
+/// assert_eq!(answer.quality, Quality::Exact);
+/// assert!(1.5 - 1e-14 < answer.safe_radius && answer.safe_radius < 1.5);
+/// assert!(point(&ball, Vector([0.0, f64::NAN])).is_err());
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// If a coordinate is not finite or beyond 1e15 m.
+pub fn point<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Result<AtPoint<D>, QueryError> {
+    check_coordinates("a point", p)?;
+    Ok(AtPoint::of_slope(shape, p, shape.distance_gradient(p)))
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::kernel::{Ball, Cuboid};
+
+    use super::*;
+
+    #[test]
+    fn a_union_is_a_bound_inside_and_exact_outside() -> Result<(), Box<dyn std::error::Error>> {
+        let a = Shape::from_kernel(Ball::new(0.3)?);
+        let b = a.clone().translated(Vector([0.4, 0.0, 0.0]))?;
+        let both = Shape::union([a, b])?;
+        let inside = point(&both, Vector([0.2, 0.0, 0.0]))?;
+        assert_eq!((inside.is_inside, inside.quality), (true, Quality::Bound));
+        assert!((inside.distance + 0.1).abs() < 1e-15);
+        assert!(0.1 - 1e-14 < inside.safe_radius && inside.safe_radius < 0.1);
+        let outside = point(&both, Vector([0.0, 0.7, 0.0]))?;
+        assert_eq!((outside.is_inside, outside.quality), (false, Quality::Exact));
+        assert!((outside.distance - 0.4).abs() < 1e-15);
+        Ok(())
+    }
+
+    /// The same as the shape says, and as its parts say of each other.
+    #[test]
+    fn the_surface_is_no_nearer_than_the_safe_radius() -> Result<(), Box<dyn std::error::Error>>
+    {
+        let stretched = Shape::from_kernel(Cuboid::new(Vector([0.3, 0.5]))?)
+            .stretched([1.0, 3.0])?
+            .translated(Vector([0.1, -0.2]))?;
+        for i in 0..200 {
+            let (x, y) = (f64::from(i % 20) * 0.1 - 1.0, f64::from(i / 20) * 0.3 - 1.4);
+            let answer = point(&stretched, Vector([x, y]))?;
+            assert_eq!(answer.distance, stretched.distance(answer.point));
+            assert_eq!(answer.safe_radius, stretched.safe_radius(answer.point));
+            if let Some(surface) = answer.surface {
+                assert!((surface - answer.point).norm() >= answer.safe_radius);
+                assert!(stretched.distance(surface).abs() <= 2.0 * answer.rounding);
+            }
+        }
+        Ok(())
+    }
+}
