@@ -19,34 +19,29 @@ use crate::scenes;
 /// Poses of each mesh.
 const POSES: usize = 40;
 
-/// How deep a mesh dips into the field, as a share of its radius.
-const OVERLAP: [f64; 2] = [0.005 / 0.3, 0.025 / 0.3];
+/// The radius of spheres and circles [m].
+const RADIUS: f64 = 0.3;
 
-/// Up to which clearance a touch is looked for, as a share of the mesh's radius.
-const TOLERANCE: f64 = 1e-6;
+/// How deep they dip into the field [m].
+const OVERLAP: [f64; 2] = [0.005, 0.025];
+
+/// Up to which clearance a touch is looked for [m].
+const TOLERANCE: f64 = 3e-7;
 
 /// Adds the rows of meshes and outlines.
 pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let works = scenes::spatial()?;
     let s3 = works.iter().find(|work| work.name == "S3").ok_or("no S3")?;
-    let radius = 0.3;
-    for (name, mesh) in [("888", sphere(37, 13, radius)?), ("100k", sphere(317, 160, radius)?)]
-    {
-        let poses = poses(&s3.shape, s3.half, radius, spatial_turn)?;
+    for (name, mesh) in [("888", sphere(37, 13)?), ("100k", sphere(317, 160)?)] {
+        let poses = poses(&s3.shape, s3.half, spatial_turn)?;
         measure_one(&format!("mesh.hits_{name}.S3"), &s3.shape, &mesh, &poses, rows)?;
     }
-    // In a tenth of the size.
-    let wrench = scenes::planar()?;
-    let radius = 0.1 * radius;
+    let works = scenes::planar()?;
+    let p3 = works.iter().find(|work| work.name == "P3").ok_or("no P3")?;
     for (name, segments) in [("888", 888), ("100k", 100_806)] {
-        let outline = circle(segments, radius)?;
-        let poses = poses(&wrench.shape, wrench.half, radius, planar_turn)?;
-        let key = format!("outline.hits_{name}.wrench");
-        measure_one(&key, &wrench.shape, &outline, &poses, rows)?;
-        let over = |key: &str| rows.get(&format!("{key}.p50_ns")).copied();
-        if let (Some(ours), Some(mesh)) = (over(&key), over(&format!("mesh.hits_{name}.S3"))) {
-            rows.insert(format!("{key}.over_mesh"), ours / mesh);
-        }
+        let poses = poses(&p3.shape, p3.half, planar_turn)?;
+        let key = format!("outline.hits_{name}.P3");
+        measure_one(&key, &p3.shape, &circle(segments)?, &poses, rows)?;
     }
     Ok(())
 }
@@ -58,8 +53,7 @@ fn measure_one<const N: usize, const D: usize>(
     poses: &[Pose<D>],
     rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
-    let radius = mesh.bounds().half_extents()[0];
-    let limits = Limits { tolerance: TOLERANCE * radius, ..Limits::default() };
+    let limits = Limits { tolerance: TOLERANCE, ..Limits::default() };
     let mut workspace = MeshWorkspace::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided, mut hits) = (0, 0, 0);
@@ -83,25 +77,24 @@ fn measure_one<const N: usize, const D: usize>(
     Ok(())
 }
 
-/// Poses at which a ball of `radius` dips into the shape: points of a cube moved along the
+/// Poses at which a ball dips into the shape: points of a cube moved along the
 /// gradient to where the value is the radius less an overlap, and turned at random.
 fn poses<const D: usize>(
     shape: &Shape<D>,
     half: f64,
-    radius: f64,
     turn: fn(&mut Random) -> Result<Rotation<D>, Box<dyn Error>>,
 ) -> Result<Vec<Pose<D>>, Box<dyn Error>> {
     let mut random = Random::new(7);
     let mut poses = Vec::with_capacity(POSES);
     while poses.len() < POSES {
         let mut centre: Point<D> = Vector(random.point([0.0; D], half));
-        let overlap = radius * random.between(OVERLAP[0], OVERLAP[1]);
+        let value_there = RADIUS - random.between(OVERLAP[0], OVERLAP[1]);
         for _ in 0..32 {
             let (value, gradient) = shape.distance_gradient(centre);
             let steepness = gradient.dot(gradient).max(1e-9);
-            centre -= gradient * ((value - radius + overlap) / steepness);
+            centre -= gradient * ((value - value_there) / steepness);
         }
-        if (shape.distance(centre) - radius + overlap).abs() < 1e-9 {
+        if (shape.distance(centre) - value_there).abs() < 1e-9 {
             poses.push(Pose::new(turn(&mut random)?, centre));
         }
     }
@@ -117,13 +110,13 @@ fn planar_turn(random: &mut Random) -> Result<Rotation<2>, Box<dyn Error>> {
 }
 
 /// A sphere of meridians and parallels.
-fn sphere(meridians: u32, rings: u32, radius: f64) -> Result<TriangleMesh, Box<dyn Error>> {
-    let mut vertices = vec![Vector([0.0, radius, 0.0]), Vector([0.0, -radius, 0.0])];
+fn sphere(meridians: u32, rings: u32) -> Result<TriangleMesh, Box<dyn Error>> {
+    let mut vertices = vec![Vector([0.0, RADIUS, 0.0]), Vector([0.0, -RADIUS, 0.0])];
     for ring in 1..rings {
         let (height, width) = (f64::from(ring) / f64::from(rings) * PI).sin_cos();
         for meridian in 0..meridians {
             let (sin, cos) = (f64::from(meridian) / f64::from(meridians) * TAU).sin_cos();
-            vertices.push(Vector([height * cos, width, height * sin]) * radius);
+            vertices.push(Vector([height * cos, width, height * sin]) * RADIUS);
         }
     }
     let at = |ring: u32, meridian: u32| 2 + (ring - 1) * meridians + meridian % meridians;
@@ -140,10 +133,10 @@ fn sphere(meridians: u32, rings: u32, radius: f64) -> Result<TriangleMesh, Box<d
     Ok(TriangleMesh::new(vertices, triangles)?)
 }
 
-fn circle(segments: u32, radius: f64) -> Result<Outline, Box<dyn Error>> {
+fn circle(segments: u32) -> Result<Outline, Box<dyn Error>> {
     let at = |i: u32| {
         let (sin, cos) = (f64::from(i) / f64::from(segments) * TAU).sin_cos();
-        Vector([radius * cos, radius * sin])
+        Vector([RADIUS * cos, RADIUS * sin])
     };
     let elements = (0..segments).map(|i| [i, (i + 1) % segments]).collect();
     Ok(Outline::new((0..segments).map(at).collect(), elements)?)

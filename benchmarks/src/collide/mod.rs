@@ -24,20 +24,12 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
     for work in scenes::spatial()? {
         eprintln!("measuring triangles on {} …", work.name);
-        triangles::measure::<3, 3>("triangle", &work, 1.0, &mut rows)?;
+        triangles::measure::<3, 3>("triangle", &work, &mut rows)?;
         local::triangles(&work, &mut rows)?;
     }
-    eprintln!("measuring segments on the wrench …");
-    // In a tenth of the size.
-    triangles::measure::<2, 2>("segment", &scenes::planar()?, 0.1, &mut rows)?;
-    for question in ["hit", "minimum_1pc"] {
-        let of = |work: &str| rows.get(&format!("{work}.ns")).copied();
-        let segment = format!("segment.{question}.wrench");
-        if let (Some(plane), Some(space)) =
-            (of(&segment), of(&format!("triangle.{question}.S3")))
-        {
-            rows.insert(format!("{segment}.over_triangle"), plane / space);
-        }
+    for work in scenes::planar()? {
+        eprintln!("measuring segments on {} …", work.name);
+        triangles::measure::<2, 2>("segment", &work, &mut rows)?;
     }
     eprintln!("measuring meshes …");
     meshes::measure(&mut rows)?;

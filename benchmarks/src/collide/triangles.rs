@@ -15,8 +15,7 @@ use crate::fields::Rows;
 use crate::random::Random;
 use crate::scenes::Work;
 
-/// How large elements are: their corners lie in balls of these radii, in parts of half the
-/// side of the cube that starting points are from.
+/// How large elements are: their corners lie in balls of these radii [m].
 pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
 
 /// Elements of each size.
@@ -29,12 +28,10 @@ const NEAR: f64 = 0.7;
 type Ask<const N: usize, const D: usize> =
     fn(&Shape<D>, &Element<N, D>, &Limits, &mut Workspace<N, D>) -> Certified<Point<D>>;
 
-/// Adds the rows of a work. Starting points are from the cube of `half` the side about the
-/// origin [m].
+/// Adds the rows of a work.
 pub(super) fn measure<const N: usize, const D: usize>(
     name: &str,
     work: &Work<D>,
-    half: f64,
     rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
     // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
@@ -43,10 +40,10 @@ pub(super) fn measure<const N: usize, const D: usize>(
     for (question, ask, tolerance) in questions {
         let mut times = Vec::new();
         let (mut evaluations, mut undecided) = (0, 0);
-        for size in SIZES.map(|size| size * half) {
+        for size in SIZES {
             let limits = Limits { tolerance: tolerance * size, ..Limits::default() };
             let mut workspace = Workspace::new();
-            for element in near(&work.shape, half, size)? {
+            for element in near(&work.shape, size)? {
                 let answer = ask(&work.shape, &element, &limits, &mut workspace);
                 evaluations += answer.evaluations;
                 undecided += u32::from(match question {
@@ -70,13 +67,12 @@ pub(super) fn measure<const N: usize, const D: usize>(
 /// [`NEAR`] sizes from it, and corners about each.
 pub(super) fn near<const N: usize, const D: usize>(
     shape: &Shape<D>,
-    half: f64,
     size: f64,
 ) -> Result<Vec<Element<N, D>>, Box<dyn Error>> {
     let mut random = Random::new(7);
     let mut elements = Vec::with_capacity(COUNT);
     while elements.len() < COUNT {
-        let start = Vector(random.point([0.0; D], half));
+        let start = Vector(random.point([0.0; D], 1.0));
         let (distance, gradient) = shape.distance_gradient(start);
         let height = random.between(-NEAR * size, NEAR * size);
         let steepness = gradient.norm().max(1e-9);
