@@ -7,6 +7,7 @@ mod local;
 mod manifolds;
 mod meshes;
 mod pairs;
+mod peers;
 mod triangles;
 mod worlds;
 
@@ -17,29 +18,33 @@ use palpate::field::{Rotation, ShapeError, Vector};
 
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes;
 
-/// All rows of the suite.
-pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
+/// What adds rows.
+type Part = fn(&mut Rows) -> Result<(), Box<dyn Error>>;
+
+/// The parts of the suite.
+const PARTS: &[(&str, Part)] = &[
+    ("triangles", triangles::measure),
+    ("meshes", meshes::measure),
+    ("local", local::measure),
+    ("pairs", pairs::measure),
+    ("peers", peers::measure),
+    ("manifolds", manifolds::measure),
+    ("worlds", worlds::measure),
+];
+
+/// The names of the parts.
+pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
+    PARTS.iter().map(|(name, _)| *name)
+}
+
+/// All rows of the suite, or those of one part.
+pub(crate) fn measure(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
-    for work in scenes::spatial()? {
-        eprintln!("measuring triangles on {} …", work.name);
-        triangles::measure::<3, 3>("triangle", &work, &mut rows)?;
-        local::triangles(&work, &mut rows)?;
+    for (name, part) in PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
+        eprintln!("measuring {name} …");
+        part(&mut rows)?;
     }
-    for work in scenes::planar()? {
-        eprintln!("measuring segments on {} …", work.name);
-        triangles::measure::<2, 2>("segment", &work, &mut rows)?;
-    }
-    eprintln!("measuring meshes …");
-    meshes::measure(&mut rows)?;
-    eprintln!("measuring pairs …");
-    pairs::measure(&mut rows)?;
-    local::pairs(&mut rows)?;
-    eprintln!("measuring manifolds …");
-    manifolds::measure(&mut rows)?;
-    eprintln!("measuring worlds …");
-    worlds::measure(&mut rows)?;
     Ok(rows)
 }
 

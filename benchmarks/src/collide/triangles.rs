@@ -13,7 +13,7 @@ use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 use super::fastest;
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes::Work;
+use crate::scenes::{self, Work};
 
 /// How large elements are: their corners lie in balls of these radii [m].
 pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
@@ -28,8 +28,14 @@ const NEAR: f64 = 0.7;
 type Ask<const N: usize, const D: usize> =
     fn(&Shape<D>, &Element<N, D>, &Limits, &mut Workspace<N, D>) -> Certified<Point<D>>;
 
+/// Adds the rows of triangles in space and of segments in the plane.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    scenes::spatial()?.iter().try_for_each(|work| of::<3, 3>("triangle", work, rows))?;
+    scenes::planar()?.iter().try_for_each(|work| of::<2, 2>("segment", work, rows))
+}
+
 /// Adds the rows of a work.
-pub(super) fn measure<const N: usize, const D: usize>(
+fn of<const N: usize, const D: usize>(
     name: &str,
     work: &Work<D>,
     rows: &mut Rows,
