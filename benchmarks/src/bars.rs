@@ -44,6 +44,8 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("triangle.minimum_1pc.S1.ns", 600.0),
     ("triangle.minimum_1pc.S2.ns", 1200.0),
     ("triangle.minimum_1pc.S3.ns", 3200.0),
+    ("mesh.hits_888.S3.p50_ns", 12_000.0),
+    ("mesh.hits_100k.S3.p50_ns", 75_000.0),
     ("pair.sign.S3_S3.+50mm.p50_ns", 20_000.0),
     ("pair.sign.S3_S3.+5mm.p50_ns", 35_000.0),
     ("pair.sign.S3_S3.-5mm.p50_ns", 5_000.0),
@@ -61,6 +63,14 @@ pub(crate) const COLLIDE: &[Bar] = &[
 
 /// Rows in the plane, and those in space that they take at most as long as.
 const IN_THE_PLANE: &[(&str, &str)] = &[
+    ("segment.hit.P1.ns", "triangle.hit.S1.ns"),
+    ("segment.minimum_1pc.P1.ns", "triangle.minimum_1pc.S1.ns"),
+    ("segment.hit.P2.ns", "triangle.hit.S2.ns"),
+    ("segment.minimum_1pc.P2.ns", "triangle.minimum_1pc.S2.ns"),
+    ("segment.hit.P3.ns", "triangle.hit.S3.ns"),
+    ("segment.minimum_1pc.P3.ns", "triangle.minimum_1pc.S3.ns"),
+    ("outline.hits_888.P3.p50_ns", "mesh.hits_888.S3.p50_ns"),
+    ("outline.hits_100k.P3.p50_ns", "mesh.hits_100k.S3.p50_ns"),
     ("pair.sign.P3_P3.+50mm.p50_ns", "pair.sign.S3_S3.+50mm.p50_ns"),
     ("pair.sign.P3_P3.+5mm.p50_ns", "pair.sign.S3_S3.+5mm.p50_ns"),
     ("pair.sign.P3_P3.-5mm.p50_ns", "pair.sign.S3_S3.-5mm.p50_ns"),

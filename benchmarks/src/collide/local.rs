@@ -43,7 +43,7 @@ fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
         for size in SIZES {
             let limits = Limits { tolerance: 0.01 * MISSED * size, ..Limits::default() };
             let mut workspace = Workspace::new();
-            for triangle in near(shape, size)? {
+            for triangle in near::<3, 3>(shape, size)? {
                 let least = minimum(shape, &triangle, &limits, &mut workspace);
                 let found = method.descend(shape, &triangle);
                 evaluations += found.evaluations;

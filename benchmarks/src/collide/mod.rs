@@ -5,6 +5,7 @@
 
 mod local;
 mod manifolds;
+mod meshes;
 mod pairs;
 mod peers;
 mod triangles;
@@ -24,6 +25,7 @@ type Part = fn(&mut Rows) -> Result<(), Box<dyn Error>>;
 /// The parts of the suite.
 const PARTS: &[(&str, Part)] = &[
     ("triangles", triangles::measure),
+    ("meshes", meshes::measure),
     ("local", local::measure),
     ("pairs", pairs::measure),
     ("peers", peers::measure),
