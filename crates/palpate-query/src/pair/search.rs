@@ -3,14 +3,13 @@
 
 //! Best-first search over boxes for the least of `max(g_a, g_b)`.
 
-use std::collections::BinaryHeap;
-
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
 use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
+use super::frontier::Frontier;
 use crate::certified::{Certified, Limits, Stop};
 use crate::goal::Goal;
 
@@ -25,7 +24,7 @@ const ROOM: usize = 1 << 16;
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best, after those that only may no longer not.
-    cells: BinaryHeap<Cell<D>>,
+    cells: Frontier<D>,
     /// Boxes to be looked at as they are.
     pub(crate) pending: Vec<Cell<D>>,
     /// Boxes that were dropped, if they are to be kept.
@@ -39,7 +38,7 @@ impl<const D: usize> PairWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: BinaryHeap::with_capacity(ROOM),
+            cells: Frontier::new(ROOM),
             pending: Vec::with_capacity(ROOM),
             leaves: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
@@ -172,7 +171,7 @@ impl<'a, const D: usize> Search<'a, D> {
         workspace.cells.clear();
         loop {
             let lowest = if workspace.pending.is_empty() {
-                workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower)
+                workspace.cells.lowest()
             } else {
                 f64::NEG_INFINITY
             };
@@ -180,11 +179,12 @@ impl<'a, const D: usize> Search<'a, D> {
             if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
                 return self.answer(stop, lower);
             }
-            let is_full = workspace.cells.len().max(workspace.leaves.len()) + BLOCK > ROOM;
+            let is_full =
+                !workspace.cells.has_room(BLOCK) || workspace.leaves.len() + BLOCK > ROOM;
             let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
             if is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
-                let lowest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
+                let lowest = workspace.cells.lowest();
                 return self.answer(
                     Stop::BudgetSpent,
                     pending.fold(lowest.min(self.dropped), f64::min),
