@@ -49,7 +49,9 @@ pub(super) fn find<const D: usize>(
         let count = pending.len() - first;
         parts[..count].copy_from_slice(&pending[first..]);
         pending.truncate(first);
-        couple.values(&parts[..count], memory, &mut values);
+        for (body, values) in values.iter_mut().enumerate() {
+            couple.values(body, &parts[..count], memory, values);
+        }
         let mut is_open = [false; BLOCK];
         for (i, part) in parts[..count].iter().enumerate() {
             let ([a, b], radius) = ([values[0][i], values[1][i]], part.radius());
@@ -57,9 +59,13 @@ pub(super) fn find<const D: usize>(
         }
         open.clear();
         open.extend((0..count).filter(|&i| is_open[i]));
-        couple.models(&parts[..count], open, memory);
+        couple.keep_known(&parts[..count], open, memory);
+        for body in 0..2 {
+            couple.models(body, &parts[..count], open, memory);
+        }
         for (lane, &i) in open.iter().enumerate() {
-            is_open[i] = !is_ruled_out(couple.model(memory, lane), settings.margin, slack);
+            let [a, b] = [0, 1].map(|body| couple.model(body, memory, lane));
+            is_open[i] = !is_ruled_out::<D>(&a, &b, settings.margin, slack);
         }
         for part in (0..count).filter(|&i| is_open[i]).map(|i| &parts[i]) {
             let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
@@ -80,7 +86,7 @@ pub(super) fn find<const D: usize>(
 
 /// `true` if a box holds no part of the surface between that matters, by its models:
 /// none at all, none within the margin, or the middle of a flat patch, which its rim spans.
-fn is_ruled_out([a, b]: [Model; 2], margin: f64, slack: f64) -> bool {
+fn is_ruled_out<const D: usize>(a: &Model, b: &Model, margin: f64, slack: f64) -> bool {
     let (mut across, mut along) = (0.0, [0.0; 2]);
     for (a, b) in a.gradient.iter().zip(b.gradient) {
         across += (a - b).abs();
@@ -92,7 +98,7 @@ fn is_ruled_out([a, b]: [Model; 2], margin: f64, slack: f64) -> bool {
         && b.value + along[1] + b.upper < 0.5 * margin;
     is_flat && is_inside
         || (a.value - b.value).abs() > between + 2.0 * slack
-        || least_of_larger([a, b]) > 0.5 * margin + slack
+        || least_of_larger::<D>(a, b, f64::INFINITY) > 0.5 * margin + slack
 }
 
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,

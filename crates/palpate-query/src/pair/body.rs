@@ -7,7 +7,7 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
-use super::cell::reach;
+use super::cell::{larger, reach};
 use crate::error::QueryError;
 use crate::placed::Placed;
 
@@ -139,7 +139,7 @@ impl<'a, const D: usize> Body<'a, D> {
     #[inline]
     pub(crate) fn value(&self, local: Point<D>, f: f64) -> f64 {
         let (outside, _) = self.outside_box(local);
-        (f * self.scale).max(outside)
+        larger(f * self.scale, outside)
     }
 
     /// What `g` is at least within `radius` of a point in the shape's coordinates where
@@ -196,7 +196,7 @@ impl<'a, const D: usize> Body<'a, D> {
         let Some(aabb) = &self.aabb else { return (f64::NEG_INFINITY, Vector::ZERO) };
         let mut away = Vector::ZERO;
         for k in 0..D {
-            away[k] = (local[k] - aabb.max[k]).max(0.0) - (aabb.min[k] - local[k]).max(0.0);
+            away[k] = larger(local[k] - aabb.max[k], 0.0) - larger(aabb.min[k] - local[k], 0.0);
         }
         let squared = away.dot(away);
         // Most points are inside, and need no root.

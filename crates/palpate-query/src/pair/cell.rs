@@ -129,31 +129,49 @@ pub(crate) fn reach<const D: usize>(aabb: &Aabb<D>) -> f64 {
     aabb.centre().norm() + aabb.half_extents().norm()
 }
 
+/// A lower bound of one field over a box, from its model.
+#[inline]
+pub(crate) fn least<const D: usize>(model: &Model) -> f64 {
+    let slope = model.gradient[..D].iter().fold(0.0, |sum, side| sum + side.abs());
+    let size = model.value.abs() + slope;
+    model.value - slope - model.lower * (1.0 + ROUNDINGS) - ROUNDINGS * size
+}
+
 /// A lower bound of the larger of two fields over a box, from their models: the largest
 /// least value of their means, which is at the end of a range or where a component of
-/// the mean's slope changes its sign.
+/// the mean's slope changes its sign. No more than `enough` is looked for.
 #[inline]
-pub(crate) fn least_of_larger([a, b]: [Model; 2]) -> f64 {
-    let mut best = f64::NEG_INFINITY;
-    let mut attempt = |share: f64| {
-        let rest = 1.0 - share;
-        let value = share * a.value + rest * b.value;
-        let (mut slope, mut size) = (0.0, (share * a.value).abs() + (rest * b.value).abs());
-        for (a, b) in a.gradient.iter().zip(b.gradient) {
-            slope += (share * a + rest * b).abs();
-            size += (share * a).abs() + (rest * b).abs();
+pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64) -> f64 {
+    let mut best = larger(least::<D>(a), least::<D>(b));
+    for k in 0..D {
+        if best >= enough {
+            break;
         }
-        let remainder = share * a.lower + rest * b.lower;
-        let least = value - slope - remainder * (1.0 + ROUNDINGS) - ROUNDINGS * size;
-        best = best.max(least);
-    };
-    attempt(0.0);
-    attempt(1.0);
-    for (a, b) in a.gradient.iter().zip(b.gradient) {
-        let share = b / (b - a);
+        let share = b.gradient[k] / (b.gradient[k] - a.gradient[k]);
         if share > 0.0 && share < 1.0 {
-            attempt(share);
+            best = larger(best, least_of_mean::<D>(a, b, share));
         }
     }
     best
+}
+
+/// The least value of `share` of a and the rest of b over a box.
+#[inline]
+fn least_of_mean<const D: usize>(a: &Model, b: &Model, share: f64) -> f64 {
+    let rest = 1.0 - share;
+    let value = share * a.value + rest * b.value;
+    let (mut slope, mut size) = (0.0, (share * a.value).abs() + (rest * b.value).abs());
+    for k in 0..D {
+        let (of_a, of_b) = (share * a.gradient[k], rest * b.gradient[k]);
+        slope += (of_a + of_b).abs();
+        size += of_a.abs() + of_b.abs();
+    }
+    let remainder = share * a.lower + rest * b.lower;
+    value - slope - remainder * (1.0 + ROUNDINGS) - ROUNDINGS * size
+}
+
+/// The larger of two numbers that are numbers.
+#[inline]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }

@@ -35,6 +35,14 @@ impl<const D: usize> Memory<D> {
     }
 }
 
+impl<const D: usize> Memory<D> {
+    /// Moves what is known of one place to another.
+    #[inline]
+    pub(crate) fn keep(&mut self, body: usize, from: usize, to: usize) {
+        self.locals[body][to] = self.locals[body][from];
+    }
+}
+
 /// Two bodies in the frame of the first, so that what is known of places stays true of
 /// it while both move.
 #[derive(Clone, Copy)]
@@ -91,23 +99,23 @@ impl<'a, const D: usize> Couple<'a, D> {
         }
     }
 
-    /// `g` of both at the centres of cells.
+    /// `g` of one body at the centres of cells.
     pub(crate) fn values(
         &mut self,
+        body: usize,
         cells: &[Cell<D>],
         memory: &mut Memory<D>,
-        values: &mut [[f64; BLOCK]; 2],
+        values: &mut [f64; BLOCK],
     ) {
-        self.evaluations += 2 * cells.len() as u32;
-        for ((body, locals), values) in self.bodies.iter().zip(&mut memory.locals).zip(values) {
-            for (i, (cell, local)) in cells.iter().zip(&mut *locals).enumerate() {
-                *local = body.local(cell.centre);
-                memory.points.set(i, *local);
-            }
-            body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
-            for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
-                *value = body.value(*local, memory.values.get(i));
-            }
+        self.evaluations += cells.len() as u32;
+        let (body, locals) = (&self.bodies[body], &mut memory.locals[body]);
+        for (i, (cell, local)) in cells.iter().zip(&mut *locals).enumerate() {
+            *local = body.local(cell.centre);
+            memory.points.set(i, *local);
+        }
+        body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
+        for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
+            *value = body.value(*local, memory.values.get(i));
         }
     }
 
@@ -133,66 +141,59 @@ impl<'a, const D: usize> Couple<'a, D> {
         }
     }
 
-    /// What the larger `g` is at least in the cells, asked for their values just before,
-    /// from the larger value and the radius of each.
+    /// What `g` of one body is at least within `radius` of the `i`-th place that it was
+    /// asked at just before, where it is `value`.
     #[inline]
-    pub(crate) fn floors(
+    pub(crate) fn floor(
         &self,
-        radii: &[f64],
+        body: usize,
+        (i, value): (usize, f64),
+        radius: f64,
         memory: &Memory<D>,
-        values: &[[f64; BLOCK]; 2],
-        floors: &mut [f64; BLOCK],
+    ) -> f64 {
+        self.bodies[body].floor(memory.locals[body][i], value, radius)
+    }
+
+    /// Keeps of the cells, asked for their values just before, those that `open` names in
+    /// which both fields are known to be as steep as promised.
+    pub(crate) fn keep_known(
+        &self,
+        cells: &[Cell<D>],
+        open: &mut Vec<usize>,
+        memory: &Memory<D>,
     ) {
-        let [a, b] = &self.bodies;
-        if a.is_known_everywhere() && b.is_known_everywhere() {
-            for (i, radius) in radii.iter().enumerate() {
-                floors[i] = values[0][i].max(values[1][i]) - radius;
+        for (body, locals) in self.bodies.iter().zip(&memory.locals) {
+            if !body.is_known_everywhere() {
+                open.retain(|&i| body.is_known(locals[i], cells[i].radius()));
             }
-            return;
-        }
-        let [of_a, of_b] = &memory.locals;
-        for (i, radius) in radii.iter().enumerate() {
-            let floor_a = a.floor(of_a[i], values[0][i], *radius);
-            floors[i] = floor_a.max(b.floor(of_b[i], values[1][i], *radius));
         }
     }
 
-    /// Models of both over those of the cells, asked for their values just before, that
-    /// `open` names; and which of these were asked, since fields may be known to be as
-    /// steep as promised in a part of space alone.
+    /// Models of one body over those of the cells, asked for their values just before,
+    /// that `open` names.
     pub(crate) fn models(
         &mut self,
+        body: usize,
         cells: &[Cell<D>],
-        open: &mut Vec<usize>,
+        open: &[usize],
         memory: &mut Memory<D>,
     ) {
-        let [a, b] = &self.bodies;
-        if !(a.is_known_everywhere() && b.is_known_everywhere()) {
-            let [of_a, of_b] = &memory.locals;
-            open.retain(|&i| {
-                let radius = cells[i].radius();
-                a.is_known(of_a[i], radius) && b.is_known(of_b[i], radius)
-            });
-        }
         if open.is_empty() {
             return;
         }
-        self.evaluations += 2 * open.len() as u32;
-        for ((body, locals), models) in
-            self.bodies.iter().zip(&memory.locals).zip(&mut memory.models)
-        {
-            for (lane, &i) in open.iter().enumerate() {
-                memory.boxes.set(lane, body.cell(locals[i], cells[i].half));
-            }
-            body.shape.block_distances(&memory.boxes, open.len(), models);
+        self.evaluations += open.len() as u32;
+        let (locals, models) = (&memory.locals[body], &mut memory.models[body]);
+        let body = &self.bodies[body];
+        for (lane, &i) in open.iter().enumerate() {
+            memory.boxes.set(lane, body.cell(locals[i], cells[i].half));
         }
+        body.shape.block_distances(&memory.boxes, open.len(), models);
     }
 
-    /// The models of `f/L` of both in a lane.
+    /// The model of `f/L` of one body in a lane.
     #[inline]
-    pub(crate) fn model(&self, memory: &Memory<D>, lane: usize) -> [Model; 2] {
-        let [a, b] = &memory.models;
-        [self.bodies[0].scaled(a.get(lane)), self.bodies[1].scaled(b.get(lane))]
+    pub(crate) fn model(&self, body: usize, memory: &Memory<D>, lane: usize) -> Model {
+        self.bodies[body].scaled(memory.models[body].get(lane))
     }
 
     /// A box of the frame that holds all points at which both `g` are at most `least`.

@@ -3,10 +3,11 @@
 
 //! Best-first search over boxes for the least of `max(g_a, g_b)`.
 
+use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, least_of_larger, reach};
+use super::cell::{Cell, larger, least, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
 use super::frontier::Frontier;
@@ -16,6 +17,9 @@ use crate::goal::Goal;
 /// Boxes are bounded by models below this radius, as a share of the first box's: above,
 /// remainders are larger than radii.
 const SMALL: f64 = 0.25;
+
+/// A model that says nothing.
+const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
 /// Boxes that a workspace holds.
 const ROOM: usize = 1 << 16;
@@ -223,36 +227,33 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Looks at a block of boxes: pending ones, or the parts of those of which least is
     /// known.
     fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
-        let mut parts = [Cell::NOTHING; BLOCK];
-        let mut count = 0;
-        if workspace.pending.is_empty() {
-            while count + (1 << D) <= BLOCK {
-                let Some(parent) = workspace.cells.pop() else { break };
-                if parent.lower >= self.threshold() {
-                    self.drop_cell(&parent, workspace);
-                } else {
-                    count = parent.halve(&mut parts, count);
-                }
-            }
-        } else {
-            let first = workspace.pending.len().saturating_sub(BLOCK);
-            for cell in workspace.pending.drain(first..) {
-                parts[count] = cell;
-                count += 1;
-            }
-        }
-        let parts = &mut parts[..count];
+        let (mut parts, mut radii) = ([Cell::NOTHING; BLOCK], [0.0; BLOCK]);
+        let count = self.gather(workspace, &mut parts, &mut radii);
+        // What the first body alone rules out, the second is not asked.
         let mut values = [[0.0; BLOCK]; 2];
-        self.couple.values(parts, &mut workspace.memory, &mut values);
-        let (mut radii, mut floors) = ([0.0; BLOCK], [0.0; BLOCK]);
-        for (radius, part) in radii.iter_mut().zip(&*parts) {
-            *radius = part.radius();
+        self.couple.values(0, &parts[..count], &mut workspace.memory, &mut values[0]);
+        let threshold = self.threshold();
+        let mut kept = 0;
+        for i in 0..count {
+            let (mut part, at) = (parts[i], (i, values[0][i]));
+            let floor = self.couple.floor(0, at, radii[i], &workspace.memory);
+            part.lower = larger(part.lower, floor - self.slack);
+            if part.lower < threshold {
+                (parts[kept], radii[kept], values[0][kept]) = (part, radii[i], values[0][i]);
+                workspace.memory.keep(0, i, kept);
+                kept += 1;
+            } else {
+                self.drop_cell(&part, workspace);
+            }
         }
-        self.couple.floors(&radii[..count], &workspace.memory, &values, &mut floors);
+        let parts = &mut parts[..kept];
+        self.couple.values(1, parts, &mut workspace.memory, &mut values[1]);
         let mut least = (f64::INFINITY, self.best);
         for (i, part) in parts.iter_mut().enumerate() {
-            let value = values[0][i].max(values[1][i]);
-            part.lower = part.lower.max(floors[i] - self.slack);
+            let at = (i, values[1][i]);
+            let floor = self.couple.floor(1, at, radii[i], &workspace.memory);
+            part.lower = larger(part.lower, floor - self.slack);
+            let value = larger(values[0][i], values[1][i]);
             if value < least.0 {
                 least = (value, part.centre);
             }
@@ -260,25 +261,85 @@ impl<'a, const D: usize> Search<'a, D> {
         if least.0 < self.upper - 0.25 * self.goal.tolerance {
             self.descend(least.1);
         }
+        self.model(parts, &radii, workspace, largest);
         let threshold = self.threshold();
-        let PairWorkspace { open, memory, .. } = workspace;
-        open.clear();
-        let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
-        open.extend((0..count).filter(is_open));
-        self.couple.models(parts, open, memory);
-        for (lane, &i) in open.iter().enumerate() {
-            // Boxes are off by a rounding where they meet.
-            let models = self.couple.model(memory, lane);
-            let lower = least_of_larger(models) - self.slack;
-            parts[i].lower = parts[i].lower.max(lower);
-            parts[i].learn(&models);
-        }
         for part in &*parts {
             if part.lower < threshold {
                 workspace.cells.push(*part);
             } else {
                 self.drop_cell(part, workspace);
             }
+        }
+    }
+
+    /// Takes a block of boxes, with their radii; returns how many.
+    fn gather(
+        &mut self,
+        workspace: &mut PairWorkspace<D>,
+        parts: &mut [Cell<D>; BLOCK],
+        radii: &mut [f64; BLOCK],
+    ) -> usize {
+        let mut count = 0;
+        if workspace.pending.is_empty() {
+            let threshold = self.threshold();
+            while count + (1 << D) <= BLOCK {
+                let Some(parent) = workspace.cells.pop() else { break };
+                if parent.lower >= threshold {
+                    self.drop_cell(&parent, workspace);
+                    continue;
+                }
+                let end = parent.halve(parts, count);
+                // Parts of one box are of one size.
+                radii[count..end].fill(parts[count].radius());
+                count = end;
+            }
+        } else {
+            let first = workspace.pending.len().saturating_sub(BLOCK);
+            for cell in workspace.pending.drain(first..) {
+                (parts[count], radii[count]) = (cell, cell.radius());
+                count += 1;
+            }
+        }
+        count
+    }
+
+    /// Bounds by models those boxes that are small and not yet done with, again by the
+    /// first body alone before the second is asked.
+    fn model(
+        &mut self,
+        parts: &mut [Cell<D>],
+        radii: &[f64; BLOCK],
+        workspace: &mut PairWorkspace<D>,
+        largest: f64,
+    ) {
+        let threshold = self.threshold();
+        let PairWorkspace { open, memory, .. } = workspace;
+        open.clear();
+        let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
+        open.extend((0..parts.len()).filter(is_open));
+        self.couple.keep_known(parts, open, memory);
+        self.couple.models(0, parts, open, memory);
+        let mut firsts = [NOTHING; BLOCK];
+        let (mut lane, mut kept) = (0, 0);
+        open.retain(|&i| {
+            let model = self.couple.model(0, memory, lane);
+            lane += 1;
+            // Boxes are off by a rounding where they meet.
+            parts[i].lower = larger(parts[i].lower, least::<D>(&model) - self.slack);
+            let is_open = parts[i].lower < threshold;
+            if is_open {
+                firsts[kept] = model;
+                kept += 1;
+            }
+            is_open
+        });
+        self.couple.models(1, parts, open, memory);
+        for (lane, &i) in open.iter().enumerate() {
+            let (a, b) = (firsts[lane], self.couple.model(1, memory, lane));
+            let enough = threshold + self.slack;
+            let lower = least_of_larger::<D>(&a, &b, enough) - self.slack;
+            parts[i].lower = larger(parts[i].lower, lower);
+            parts[i].learn(&[a, b]);
         }
     }
 
