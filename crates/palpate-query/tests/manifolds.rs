@@ -254,3 +254,34 @@ fn what_cannot_be_asked_is_refused_and_what_is_apart_has_no_contacts() -> Result
     }
     Ok(())
 }
+
+/// Precisions that are shares of a margin of zero once left one contact of a face.
+#[test]
+fn without_a_margin_what_overlaps_is_spanned() -> Result<(), ShapeError> {
+    let (large, small) = (cuboid([1.2, 0.8, 0.6])?, cuboid([0.6, 0.5, 0.4])?);
+    let turn = Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 0.5)?;
+    let pose = Pose::new(turn, Vector([0.1, 0.0, 0.499]));
+    let found = touching(&large, &small, pose, &settings(0.0));
+    laws(&found, &settings(0.0));
+    let corners = [[0.3, 0.25], [-0.3, 0.25], [0.3, -0.25], [-0.3, -0.25]].map(|[x, y]| {
+        let p = turn.rotate(Vector([x, y, 0.0])) + Vector([0.1, 0.0, 0.3]);
+        p.0
+    });
+    includes(&found, &corners, 4e-3);
+    Ok(())
+}
+
+/// A spacing of a hundred thousandth of the bodies: corners once wandered all over faces
+/// of which the budget had left out the rim.
+#[test]
+fn a_tiny_spacing_spends_the_budget_and_little_more() -> Result<(), ShapeError> {
+    let cube = cuboid([1.0, 1.0, 1.0])?;
+    let settings = ManifoldSettings { spacing: 1e-7, ..settings(2e-3) };
+    let mut workspace = PairWorkspace::new();
+    let there = Placed::new(&cube, Pose::translation(Vector([0.1, 0.2, 0.999])));
+    let limits = Limits { budget: 20_000, ..LIMITS };
+    let found = manifold(&cube, there, &settings, &limits, &mut workspace).expect("bounded");
+    assert!(!found.is_whole);
+    assert!(found.separation.evaluations < 200_000, "{}", found.separation.evaluations);
+    Ok(())
+}

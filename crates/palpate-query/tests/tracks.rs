@@ -137,6 +137,40 @@ fn derivatives_are_the_limits_of_differences() -> Result<(), ShapeError> {
     Ok(())
 }
 
+/// Where one body alone is the larger field, the other's gradient is not part of the mean.
+/// It once was, and cancelled that of the first: a ball deep in another seemed to care
+/// where the other is.
+#[test]
+fn a_ball_deep_in_another_is_as_deep_wherever_it_is() -> Result<(), ShapeError> {
+    let (large, small) =
+        (Shape::from_kernel(Ball::new(1.0)?), Shape::from_kernel(Ball::new(0.2)?));
+    let there = Placed::new(&small, Pose::translation(Vector([0.3, 0.1, 0.2])));
+    let limits = Limits { tolerance: 1e-6, budget: 200_000 };
+    let mut workspace = PairWorkspace::new();
+    let nearest = separation(&large, there, &limits, &mut workspace).expect("bounded").best;
+    let rates = rates(&large, there, &nearest).expect("bounded");
+    assert!(rates.of.iter().all(|rate| rate.norm() < 1e-3), "{rates:?}");
+    assert!(rates.residual < 1e-3, "{rates:?}");
+    Ok(())
+}
+
+/// Poses far from the world's origin are known to their last bits alone, and the bounds
+/// say so.
+#[test]
+fn far_from_the_origin_bounds_hold_the_roundings_of_poses() -> Result<(), ShapeError> {
+    let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
+    let limits = Limits { tolerance: 0.0, budget: 2000 };
+    let mut workspace = PairWorkspace::new();
+    let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
+    let far = Vector([1e6, -2e6, 3e6]);
+    // A power of two, so that the distance of the centres is exact.
+    let poses = [far, far + Vector([2.0, 0.0, 0.0])].map(|centre| Pose::new(turn, centre));
+    let [a, b] = poses.map(|pose| Placed::new(&ball, pose));
+    let answer = separation(a, b, &limits, &mut workspace).expect("bounded");
+    assert!(answer.lower <= 1.0 && 1.0 <= answer.upper, "{answer:?}");
+    Ok(())
+}
+
 #[test]
 fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
     let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };

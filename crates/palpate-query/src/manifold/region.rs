@@ -9,15 +9,16 @@ use super::{ManifoldSettings, Touch};
 use crate::pair::PairWorkspace;
 use crate::pair::cell::{Cell, least_of_larger, reach};
 use crate::pair::couple::{Couple, Memory};
+use crate::pair::search::ROOM;
 
 /// Steps to the surface between at most.
 const STEPS: usize = 4;
 
-/// How close to it is on it, as a share of the margin.
+/// How close to it is on it, as a share of [`ManifoldSettings::depth`].
 const ON: f64 = 1e-3;
 
-/// Boxes in which the gap varies by no more than this share of the margin beyond an
-/// affine function are flat.
+/// Boxes in which the gap varies by no more than this share of the same beyond an affine
+/// function are flat.
 const FLAT: f64 = 0.05;
 
 /// Appends candidates on the surface between; `false` if the budget ended first.
@@ -39,8 +40,7 @@ pub(super) fn find<const D: usize>(
     Cell::unknown(&root).grid(pending);
     let mut is_whole = true;
     while !pending.is_empty() {
-        is_whole =
-            couple.evaluations < budget && pending.len() + (BLOCK << D) <= pending.capacity();
+        is_whole = couple.evaluations < budget && pending.len() + (BLOCK << D) <= ROOM;
         if !is_whole {
             break;
         }
@@ -71,7 +71,7 @@ pub(super) fn find<const D: usize>(
                 }
                 let between = across + (a.lower + b.upper).max(a.upper + b.lower);
                 let is_flat =
-                    a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.margin;
+                    a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
                 // The middle of a flat patch is spanned by its rim.
                 let is_inside = a.value + along[0] + a.upper < half_margin
                     && b.value + along[1] + b.upper < half_margin;
@@ -93,7 +93,7 @@ pub(super) fn find<const D: usize>(
         }
     }
     for cells in small.chunks(BLOCK) {
-        settle(couple, cells, settings.margin, memory, candidates);
+        settle(couple, cells, settings, memory, candidates);
     }
     is_whole
 }
@@ -103,7 +103,7 @@ pub(super) fn find<const D: usize>(
 fn settle<const D: usize>(
     couple: &mut Couple<'_, D>,
     cells: &[Cell<D>],
-    margin: f64,
+    settings: &ManifoldSettings,
     memory: &mut Memory<D>,
     candidates: &mut Vec<Touch<D>>,
 ) {
@@ -119,7 +119,7 @@ fn settle<const D: usize>(
         let mut left = 0;
         for i in 0..count {
             let cell = &cells[from[i]];
-            match towards(points[i], [slopes[0][i], slopes[1][i]], margin) {
+            match towards(points[i], [slopes[0][i], slopes[1][i]], settings) {
                 Towards::Nothing => {}
                 Towards::There(touch) => candidates.push(touch),
                 Towards::Next(next) => {
@@ -151,7 +151,7 @@ pub(super) enum Towards<const D: usize> {
 pub(super) fn towards<const D: usize>(
     p: Point<D>,
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
-    margin: f64,
+    settings: &ManifoldSettings,
 ) -> Towards<D> {
     let between = slope_a - slope_b;
     let squared = between.dot(between);
@@ -159,11 +159,11 @@ pub(super) fn towards<const D: usize>(
         return Towards::Nothing;
     }
     let apart = a - b;
-    if apart.abs() > ON * margin {
+    if apart.abs() > ON * settings.depth() {
         return Towards::Next(p - between * (apart / squared));
     }
     let gap = 2.0 * a.max(b);
-    if gap > margin {
+    if gap > settings.margin {
         return Towards::Nothing;
     }
     Towards::There(Touch { point: p, normal: between * (1.0 / squared.sqrt()), gap })

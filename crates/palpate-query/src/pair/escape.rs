@@ -18,6 +18,10 @@ const AROUND: usize = 48;
 const WIDEST: f64 = 0.3;
 const NARROWEST: f64 = 0.01;
 
+/// Directions as far apart are tried once more only where they led to a way that is
+/// shorter than this share of the best; always would be for ever without a tolerance.
+const WORTH: f64 = 0.99;
+
 /// Steps along a direction at most.
 const STEPS: u32 = 60;
 
@@ -66,7 +70,7 @@ pub struct Escape<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
+/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
 pub fn escape<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -123,7 +127,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let [a, mut b] = self.bodies;
         b.world_from_body.translation += direction * length;
         let answer = separation(a, b, &self.limits, self.workspace)?;
-        self.evaluations += answer.evaluations;
+        self.evaluations = self.evaluations.saturating_add(answer.evaluations);
         Ok(answer)
     }
 
@@ -142,7 +146,7 @@ impl<const D: usize> Search<'_, '_, D> {
                     self.attempt(other * (1.0 / other.norm()))?;
                 }
             }
-            let is_better = self.best.is_some_and(|(_, now)| now < length);
+            let is_better = self.best.is_some_and(|(_, now)| now < WORTH * length);
             spread *= if is_better { 1.0 } else { 0.5 };
         }
         Ok(())

@@ -12,6 +12,7 @@ use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
+use crate::error::QueryError;
 use crate::goal::Goal;
 
 /// Boxes are bounded by models below this radius, as a share of the first box's: above,
@@ -19,7 +20,7 @@ use crate::goal::Goal;
 const SMALL: f64 = 0.25;
 
 /// Boxes that a workspace holds.
-const ROOM: usize = 1 << 16;
+pub(crate) const ROOM: usize = 1 << 16;
 
 /// Memory of searches between bodies, to be kept between them.
 #[derive(Debug)]
@@ -83,8 +84,13 @@ pub(crate) struct Search<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Search<'a, D> {
-    pub(crate) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
-        Self {
+    pub(crate) fn new(
+        couple: Couple<'a, D>,
+        goal: Goal,
+        limits: &Limits,
+    ) -> Result<Self, QueryError> {
+        limits.check()?;
+        Ok(Self {
             couple,
             goal,
             budget: limits.budget,
@@ -93,7 +99,7 @@ impl<'a, const D: usize> Search<'a, D> {
             dropped: f64::INFINITY,
             slack: 0.0,
             keeps_leaves: false,
-        }
+        })
     }
 
     /// Searches everywhere, from the middle of what the boxes of both have in common.

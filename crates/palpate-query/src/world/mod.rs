@@ -169,9 +169,11 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     ///
-    /// If a setting is not finite, the margin negative, or the spacing not positive.
+    /// If a setting is not finite or beyond 1e15 m, the margin or the tolerance negative,
+    /// or the spacing not positive.
     pub fn new(settings: WorldSettings) -> Result<Self, QueryError> {
         settings.manifold.check()?;
+        settings.limits.check()?;
         Ok(Self {
             settings,
             bodies: Vec::new(),
