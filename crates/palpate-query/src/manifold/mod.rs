@@ -8,8 +8,9 @@
 //! models, as in the search for the separation, and those that remain are halved down to
 //! the spacing. Each then gives a candidate on the surface between. Candidates that are
 //! neighbours and have like normals make a patch, and of each patch the contacts are its
-//! deepest point and the corners that span it.
+//! deepest point and the corners that span it, and more where these do not span it all.
 
+mod fill;
 mod grid;
 mod names;
 mod patch;
@@ -150,9 +151,12 @@ fn spanning<const D: usize>(
         return found;
     }
     let mut candidates = vec![Touch::at(&mut couple, best)];
-    found.is_whole = region::find(&mut couple, settings, budget, workspace, &mut candidates);
+    let mut middles = Vec::new();
+    let into = (&mut candidates, &mut middles);
+    found.is_whole = region::find(&mut couple, settings, budget, workspace, into);
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
+    patches.fill(&mut middles, &mut touches);
     drop_copies(&mut touches, settings.spacing);
     // Where a field says less than the distance, surfaces are farther apart than it says.
     let is_close = |member: &Member<D>| {
@@ -244,12 +248,17 @@ impl<const D: usize> Touch<D> {
         Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
     }
 
-    /// The contact in world coordinates, with the surfaces' points within `near`.
+    /// The contact in world coordinates, with the surfaces' points within `near` and 45° of
+    /// the normal: in the middle of a body the gradient may lead to any side.
     fn contact(&self, couple: &Couple<'_, D>, near: f64, id: u64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {
             let found = couple.surface_point(body, self.point);
-            let found = found.filter(|p| distance(*p, self.point) <= near);
+            let found = found.filter(|p| {
+                let away = *p - self.point;
+                let along = away.dot(self.normal);
+                away.norm() <= near && 2.0 * along * along >= away.dot(away)
+            });
             found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
         };
         let pose = &couple.world_from_frame;

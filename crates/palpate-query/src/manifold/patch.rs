@@ -172,7 +172,7 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// The point of the surface between next to `p`, if it is within `far` and the
     /// bodies touch there.
-    fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
+    pub(super) fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
         let mut here = p;
         for _ in 0..4 {
             let slopes = self.couple.slopes(here);

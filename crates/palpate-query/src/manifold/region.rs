@@ -5,6 +5,7 @@
 
 use palpate_field::{BLOCK, Point, Vector};
 
+use super::fill::Middle;
 use super::{ManifoldSettings, Touch};
 use crate::pair::PairWorkspace;
 use crate::pair::cell::{Cell, least_of_larger, reach};
@@ -21,13 +22,14 @@ const ON: f64 = 1e-3;
 /// function are flat.
 const FLAT: f64 = 0.05;
 
-/// Appends candidates on the surface between; `false` if the budget ended first.
+/// Appends candidates on the surface between, and the flat boxes in the middle of the
+/// region; `false` if the budget ended first.
 pub(super) fn find<const D: usize>(
     couple: &mut Couple<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
-    candidates: &mut Vec<Touch<D>>,
+    (candidates, middles): (&mut Vec<Touch<D>>, &mut Vec<Middle<D>>),
 ) -> bool {
     let half_margin = 0.5 * settings.margin;
     let root = couple.root(half_margin);
@@ -72,12 +74,15 @@ pub(super) fn find<const D: usize>(
                 let between = across + (a.lower + b.upper).max(a.upper + b.lower);
                 let is_flat =
                     a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
-                // The middle of a flat patch is spanned by its rim.
                 let is_inside = a.value + along[0] + a.upper < half_margin
                     && b.value + along[1] + b.upper < half_margin;
                 is_out = least_of_larger([a, b]) > limit
-                    || (a.value - b.value).abs() > between + 2.0 * slack
-                    || is_flat && is_inside;
+                    || (a.value - b.value).abs() > between + 2.0 * slack;
+                if !is_out && is_flat && is_inside {
+                    // Mostly spanned by the rim.
+                    is_out = true;
+                    middles.extend(Middle::of(&parts[i], &models));
+                }
             }
             let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(parts[i].half[k]));
             if is_out {

@@ -153,7 +153,8 @@ fn around<const D: usize>(
             let is_known = gradients.iter().any(|(other, known): &(usize, Vector<f64, D>)| {
                 *other == body && (*known - gradient).norm() < 1e-9
             });
-            if !(value < larger - nearly) && (i == 0 || !is_known) {
+            let is_less = value < larger - nearly;
+            if !is_less && (i == 0 || !is_known) {
                 gradients.push((body, gradient));
             }
         }
