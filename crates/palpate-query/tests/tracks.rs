@@ -6,7 +6,13 @@
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::operator::Smooth;
 use palpate_field::{Aabb, Pose, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, Placed, Track, proof, rates, separation};
+use palpate_query::{
+    Limits, ManifoldSettings, PairWorkspace, Placed, Track, proof, rates, separation,
+};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::cases;
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::{Solid, Tree};
 
 type Pair<const D: usize> = (&'static str, Shape<D>, Shape<D>);
 
@@ -215,4 +221,72 @@ fn a_proof_has_no_gaps_and_no_untruths() -> Result<(), ShapeError> {
         }
     }
     Ok(())
+}
+
+/// Random trees in random motion, with jumps and ways back, asked for separations and
+/// contacts in turn: what a track says holds the truth that a search without memory
+/// encloses, and contacts keep their laws.
+fn on_trees<const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let (mut warm, mut cold) = (PairWorkspace::new(), PairWorkspace::new());
+    let mut seed = 0;
+    cases::check(count, |u| {
+        seed += 1;
+        let trees: [Tree<D>; 2] = [draw::tree(u, 1 + seed % 3)?, draw::tree(u, 1 + seed % 2)?];
+        let [Ok(a), Ok(b)] = trees.map(|tree| tree.shape()) else { return Ok(Ok(())) };
+        if a.promise().bounds.or(b.promise().bounds).is_none() {
+            return Ok(Ok(()));
+        }
+        let size = draw::size(&a).min(draw::size(&b));
+        let limits = Limits { tolerance: 0.02 * size, budget: 5_000 };
+        let settings = ManifoldSettings { margin: 0.02 * size, spacing: 0.15 * size, most: 16 };
+        let mut track = Track::new(a.clone(), b.clone());
+        let start = [Pose::identity(), draw::pose(u)?];
+        let mut poses = start;
+        for step in 0..8 {
+            match u.int_in_range(0..=5_u8)? {
+                0 => poses = start,
+                1 => poses[step % 2] = draw::pose(u)?,
+                _ => {
+                    let far = size * 10.0_f64.powf(draw::within(u, -6.0, -0.5)?);
+                    poses[step % 2].translation += draw::direction::<D>(u)? * far;
+                }
+            }
+            let said = if u.arbitrary()? {
+                let found = track.manifold(poses, &settings, &limits, &mut warm);
+                let found = found.expect("one is bounded");
+                let is_contact = found.separation.lower <= settings.margin;
+                if found.contacts.is_empty() == is_contact {
+                    return Ok(Err(format!("{found:?}: {a:?} {b:?}")));
+                }
+                for contact in &found.contacts {
+                    let between = (contact.point_b - contact.point_a).dot(contact.normal);
+                    let is_unit = (contact.normal.norm() - 1.0).abs() < 1e-9;
+                    if !(is_unit
+                        && (between - contact.gap).abs() <= 1e-9 * (1.0 + between.abs()))
+                    {
+                        return Ok(Err(format!("{contact:?}: {a:?} {b:?}")));
+                    }
+                }
+                found.separation
+            } else {
+                track.separation(poses, &limits, &mut warm).expect("one is bounded")
+            };
+            let [a, b] = [Placed::new(&a, poses[0]), Placed::new(&b, poses[1])];
+            let truth = separation(a, b, &limits, &mut cold).expect("one is bounded");
+            let agree = said.lower <= truth.upper && truth.lower <= said.upper;
+            if !agree || said.lower > said.upper {
+                return Ok(Err(format!("step {step}: {said:?}, {truth:?}: {a:?} {b:?}")));
+            }
+        }
+        Ok(Ok(()))
+    });
+}
+
+#[test]
+fn tracks_of_random_trees_say_what_searches_say() {
+    on_trees::<2>(150);
+    on_trees::<3>(60);
 }
