@@ -44,6 +44,8 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("triangle.minimum_1pc.S1.ns", 600.0),
     ("triangle.minimum_1pc.S2.ns", 1200.0),
     ("triangle.minimum_1pc.S3.ns", 3200.0),
+    ("mesh.hits_888.S3.p50_ns", 12_000.0),
+    ("mesh.hits_100k.S3.p50_ns", 75_000.0),
     ("pair.sign.S3_S3.+50mm.p50_ns", 20_000.0),
     ("pair.sign.S3_S3.+5mm.p50_ns", 35_000.0),
     ("pair.sign.S3_S3.-5mm.p50_ns", 5_000.0),
@@ -55,11 +57,20 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("manifold.boxes.p50_ns", 100_000.0),
     ("manifold.peg.p50_ns", 400_000.0),
     ("manifold.bar_torus.p50_ns", 20_000.0),
+    ("parry.ball_torus.manifold.ours_over_parry", 0.005),
     ("world.1000_bodies.step_ns", 10_000_000.0),
 ];
 
 /// Rows in the plane, and those in space that they take at most as long as.
 const IN_THE_PLANE: &[(&str, &str)] = &[
+    ("segment.hit.P1.ns", "triangle.hit.S1.ns"),
+    ("segment.minimum_1pc.P1.ns", "triangle.minimum_1pc.S1.ns"),
+    ("segment.hit.P2.ns", "triangle.hit.S2.ns"),
+    ("segment.minimum_1pc.P2.ns", "triangle.minimum_1pc.S2.ns"),
+    ("segment.hit.P3.ns", "triangle.hit.S3.ns"),
+    ("segment.minimum_1pc.P3.ns", "triangle.minimum_1pc.S3.ns"),
+    ("outline.hits_888.P3.p50_ns", "mesh.hits_888.S3.p50_ns"),
+    ("outline.hits_100k.P3.p50_ns", "mesh.hits_100k.S3.p50_ns"),
     ("pair.sign.P3_P3.+50mm.p50_ns", "pair.sign.S3_S3.+50mm.p50_ns"),
     ("pair.sign.P3_P3.+5mm.p50_ns", "pair.sign.S3_S3.+5mm.p50_ns"),
     ("pair.sign.P3_P3.-5mm.p50_ns", "pair.sign.S3_S3.-5mm.p50_ns"),
@@ -74,8 +85,9 @@ const IN_THE_PLANE: &[(&str, &str)] = &[
     ("world.1000_planar_bodies.step_ns", "world.1000_bodies.step_ns"),
 ];
 
-/// Prints all rows and how they stand against their bars, or the rows as JSON.
-pub(crate) fn print(rows: &Rows, bars: &[Bar], as_json: bool) {
+/// Prints all rows and how they stand against their bars, or the rows as JSON. Of a part of
+/// a suite the bars of other parts are left out.
+pub(crate) fn print(rows: &Rows, bars: &[Bar], is_part: bool, as_json: bool) {
     if as_json {
         let object: serde_json::Map<String, serde_json::Value> =
             rows.iter().map(|(key, number)| (key.clone(), (*number).into())).collect();
@@ -88,7 +100,8 @@ pub(crate) fn print(rows: &Rows, bars: &[Bar], as_json: bool) {
     println!();
     let in_the_plane = IN_THE_PLANE.iter().filter(|(key, _)| rows.contains_key(*key));
     let in_the_plane = in_the_plane.map(|(key, other)| (*key, rows.get(*other).copied()));
-    let bars = bars.iter().map(|(key, bar)| (*key, Some(*bar))).chain(in_the_plane);
+    let bars = bars.iter().filter(|(key, _)| !is_part || rows.contains_key(*key));
+    let bars = bars.map(|(key, bar)| (*key, Some(*bar))).chain(in_the_plane);
     let (mut reached, mut all) = (0, 0);
     for (key, bar) in bars {
         let (number, bar) = (rows.get(key).copied(), bar.unwrap_or(f64::NAN));

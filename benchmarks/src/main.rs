@@ -36,6 +36,9 @@ enum Suite {
     },
     /// Searches that prove where things touch.
     Collide {
+        /// One part of the suite alone.
+        #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(collide::parts()))]
+        only: Option<String>,
         /// Print one JSON object of keys and numbers.
         #[arg(long)]
         json: bool,
@@ -43,13 +46,15 @@ enum Suite {
 }
 
 fn main() -> ExitCode {
-    let (measured, bars, json) = match Arguments::parse().suite {
-        Suite::Fields { json } => (fields::measure(), bars::FIELDS, json),
-        Suite::Collide { json } => (collide::measure(), bars::COLLIDE, json),
+    let (measured, bars, is_part, json) = match Arguments::parse().suite {
+        Suite::Fields { json } => (fields::measure(), bars::FIELDS, false, json),
+        Suite::Collide { json, only } => {
+            (collide::measure(only.as_deref()), bars::COLLIDE, only.is_some(), json)
+        }
     };
     match measured {
         Ok(rows) => {
-            bars::print(&rows, bars, json);
+            bars::print(&rows, bars, is_part, json);
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -11,6 +11,7 @@ use crate::command::Failure;
 const LAYERS: &[&str] = &[
     "palpate-field",
     "palpate-scene",
+    "palpate-mesh",
     "palpate-query",
     "palpate-haptics",
     "palpate-plot",

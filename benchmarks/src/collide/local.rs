@@ -16,7 +16,7 @@ use super::pairs::{Pair, placed, plate_and_torus};
 use super::triangles::{SIZES, near};
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes::Work;
+use crate::scenes::{self, Work};
 
 /// What is missed by more than this share of the size is missed.
 const MISSED: f64 = 0.01;
@@ -28,8 +28,14 @@ const TOGETHER: [usize; 3] = [1, 10, STARTS];
 /// The steps with which a search between bodies ends [m].
 const SMALLEST_STEP: f64 = 1e-5;
 
+/// Adds the rows of local searches.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    scenes::spatial()?.iter().try_for_each(|work| triangles(work, rows))?;
+    pairs(rows)
+}
+
 /// Adds the rows of a work: minima over triangles.
-pub(super) fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let shape = &work.shape;
     for method in ElementMethod::ALL {
         let mut times = Vec::new();
@@ -37,7 +43,7 @@ pub(super) fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn E
         for size in SIZES {
             let limits = Limits { tolerance: 0.01 * MISSED * size, ..Limits::default() };
             let mut workspace = Workspace::new();
-            for triangle in near(shape, size)? {
+            for triangle in near::<3, 3>(shape, size)? {
                 let least = minimum(shape, &triangle, &limits, &mut workspace);
                 let found = method.descend(shape, &triangle);
                 evaluations += found.evaluations;
@@ -57,7 +63,7 @@ pub(super) fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn E
 }
 
 /// Adds the rows of two bodies that overlap a little.
-pub(super) fn pairs(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn pairs(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let [plate, torus] = plate_and_torus()?;
     let pairs = placed([&plate, &torus], -0.001)?;
     for method in PairMethod::ALL {

@@ -5,7 +5,9 @@
 
 mod local;
 mod manifolds;
+mod meshes;
 mod pairs;
+mod peers;
 mod triangles;
 mod worlds;
 
@@ -16,23 +18,33 @@ use palpate::field::{Rotation, ShapeError, Vector};
 
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes;
 
-/// All rows of the suite.
-pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
+/// What adds rows.
+type Part = fn(&mut Rows) -> Result<(), Box<dyn Error>>;
+
+/// The parts of the suite.
+const PARTS: &[(&str, Part)] = &[
+    ("triangles", triangles::measure),
+    ("meshes", meshes::measure),
+    ("local", local::measure),
+    ("pairs", pairs::measure),
+    ("peers", peers::measure),
+    ("manifolds", manifolds::measure),
+    ("worlds", worlds::measure),
+];
+
+/// The names of the parts.
+pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
+    PARTS.iter().map(|(name, _)| *name)
+}
+
+/// All rows of the suite, or those of one part.
+pub(crate) fn measure(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
-    for work in scenes::spatial()? {
-        eprintln!("measuring triangles on {} …", work.name);
-        triangles::measure(&work, &mut rows)?;
-        local::triangles(&work, &mut rows)?;
+    for (name, part) in PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
+        eprintln!("measuring {name} …");
+        part(&mut rows)?;
     }
-    eprintln!("measuring pairs …");
-    pairs::measure(&mut rows)?;
-    local::pairs(&mut rows)?;
-    eprintln!("measuring manifolds …");
-    manifolds::measure(&mut rows)?;
-    eprintln!("measuring worlds …");
-    worlds::measure(&mut rows)?;
     Ok(rows)
 }
 
@@ -50,7 +62,7 @@ pub(crate) trait Turn<const D: usize> {
 
 impl Turn<2> for Space {
     fn any(random: &mut Random) -> Result<Rotation<2>, ShapeError> {
-        Rotation::from_angle(random.between(-3.2, 3.2))
+        Rotation::from_angle(random.between(0.0, 6.0))
     }
 
     fn by(_: &mut Random, angle: f64) -> Result<Rotation<2>, ShapeError> {
@@ -60,9 +72,8 @@ impl Turn<2> for Space {
 
 impl Turn<3> for Space {
     fn any(random: &mut Random) -> Result<Rotation<3>, ShapeError> {
-        let quaternion: [f64; 4] = random.point([0.0; 4], 1.0);
-        let size = quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
-        Rotation::from_quaternion(quaternion.map(|q| q / size))
+        let axis = Vector(random.point([0.0; 3], 1.0));
+        Rotation::from_axis_angle(axis, random.between(0.0, 6.0))
     }
 
     fn by(random: &mut Random, angle: f64) -> Result<Rotation<3>, ShapeError> {

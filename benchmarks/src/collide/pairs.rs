@@ -25,7 +25,7 @@ const POSES: usize = 40;
 const PLACED: f64 = 1e-6;
 
 /// Farther apart than any two bodies here touch [m].
-const FAR: f64 = 4.0;
+const FAR: f64 = 3.0;
 
 /// Steps of bodies that are followed.
 const STEPS: usize = 50;
@@ -169,7 +169,7 @@ pub(super) fn placed<'a, const D: usize>(
 where
     Space: super::Turn<D>,
 {
-    let mut random = Random::new(7);
+    let mut random = Random::new(99);
     let mut workspace = PairWorkspace::new();
     let limits = Limits { tolerance: PLACED, budget: 1_000_000 };
     let mut pairs = Vec::with_capacity(POSES);

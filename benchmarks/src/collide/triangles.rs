@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Triangles near a surface: whether they touch it, and how deep.
+//! Triangles near a surface, and segments in the plane: whether they touch it, and how
+//! deep.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -12,26 +13,35 @@ use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 use super::fastest;
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::scenes::Work;
+use crate::scenes::{self, Work};
 
-/// How large triangles are: their corners lie in balls of these radii [m].
+/// How large elements are: their corners lie in balls of these radii [m].
 pub(super) const SIZES: [f64; 2] = [0.05, 0.3];
 
-/// Triangles of each size.
+/// Elements of each size.
 const COUNT: usize = 400;
 
 /// How far from the surface the balls' centres are at most, as a share of the size.
 const NEAR: f64 = 0.7;
 
-pub(super) type Triangle = Element<3, 3>;
-
 /// A way of asking.
-type Ask = fn(&Shape<3>, &Triangle, &Limits, &mut Workspace<3, 3>) -> Certified<Point<3>>;
+type Ask<const N: usize, const D: usize> =
+    fn(&Shape<D>, &Element<N, D>, &Limits, &mut Workspace<N, D>) -> Certified<Point<D>>;
+
+/// Adds the rows of triangles in space and of segments in the plane.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    scenes::spatial()?.iter().try_for_each(|work| of::<3, 3>("triangle", work, rows))?;
+    scenes::planar()?.iter().try_for_each(|work| of::<2, 2>("segment", work, rows))
+}
 
 /// Adds the rows of a work.
-pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn of<const N: usize, const D: usize>(
+    name: &str,
+    work: &Work<D>,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
     // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
-    let questions: [(&str, Ask, f64); 2] =
+    let questions: [(&str, Ask<N, D>, f64); 2] =
         [("hit", touches, 1e-4), ("minimum_1pc", minimum, 1e-2)];
     for (question, ask, tolerance) in questions {
         let mut times = Vec::new();
@@ -39,19 +49,19 @@ pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Err
         for size in SIZES {
             let limits = Limits { tolerance: tolerance * size, ..Limits::default() };
             let mut workspace = Workspace::new();
-            for triangle in near(&work.shape, size)? {
-                let answer = ask(&work.shape, &triangle, &limits, &mut workspace);
+            for element in near(&work.shape, size)? {
+                let answer = ask(&work.shape, &element, &limits, &mut workspace);
                 evaluations += answer.evaluations;
                 undecided += u32::from(match question {
                     "hit" => answer.is_hit().is_none(),
                     _ => answer.upper - answer.lower > limits.tolerance,
                 });
                 times.push(fastest(|| {
-                    black_box(ask(&work.shape, black_box(&triangle), &limits, &mut workspace));
+                    black_box(ask(&work.shape, black_box(&element), &limits, &mut workspace));
                 }));
             }
         }
-        let key = format!("triangle.{question}.{}", work.name);
+        let key = format!("{name}.{question}.{}", work.name);
         super::summarise(&key, &mut times, rows);
         rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
         rows.insert(format!("{key}.undecided"), f64::from(undecided));
@@ -59,13 +69,16 @@ pub(super) fn measure(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-/// Triangles near the surface: points of a cube moved along the gradient to at most
-/// [`NEAR`] sizes from it, and three corners about each.
-pub(super) fn near(shape: &Shape<3>, size: f64) -> Result<Vec<Triangle>, Box<dyn Error>> {
+/// Elements near the surface: points of a cube moved along the gradient to at most
+/// [`NEAR`] sizes from it, and corners about each.
+pub(super) fn near<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    size: f64,
+) -> Result<Vec<Element<N, D>>, Box<dyn Error>> {
     let mut random = Random::new(7);
-    let mut triangles = Vec::with_capacity(COUNT);
-    while triangles.len() < COUNT {
-        let start = Vector(random.point([0.0; 3], 1.0));
+    let mut elements = Vec::with_capacity(COUNT);
+    while elements.len() < COUNT {
+        let start = Vector(random.point([0.0; D], 1.0));
         let (distance, gradient) = shape.distance_gradient(start);
         let height = random.between(-NEAR * size, NEAR * size);
         let steepness = gradient.norm().max(1e-9);
@@ -74,12 +87,12 @@ pub(super) fn near(shape: &Shape<3>, size: f64) -> Result<Vec<Triangle>, Box<dyn
             continue;
         }
         let mut corner = || loop {
-            let offset: Point<3> = Vector(random.point([0.0; 3], 1.0));
+            let offset: Point<D> = Vector(random.point([0.0; D], 1.0));
             if offset.norm() < 1.0 {
                 return middle + offset * size;
             }
         };
-        triangles.push(Element::new([corner(), corner(), corner()])?);
+        elements.push(Element::new(std::array::from_fn(|_| corner()))?);
     }
-    Ok(triangles)
+    Ok(elements)
 }

@@ -102,6 +102,14 @@ Second moments are the integrals of density times coordinates about the centroid
 inertia tensor is their trace times the identity less them. In 2D a body is one metre
 thick. Status 1 if the error of a volume stays above the tolerance.")]
     Mass(MassOptions),
+    /// Check a mesh file (OBJ, STL, PLY, GLB): is it watertight, what is odd about it.
+    #[command(after_help = "\
+Examples:
+  palpate mesh testdata/meshes/nut.ply
+  palpate mesh part.stl --scale 0.001 --json
+
+Status 1 if the mesh is not watertight, or has triangles without an area.")]
+    Mesh(MeshOptions),
     /// Print the JSON schema of scene files.
     #[command(after_help = "Examples:\n  palpate schema > scene.schema.json")]
     Schema,
@@ -454,6 +462,22 @@ pub(crate) struct MassOptions {
     /// The most cells to look at; a million take 160 MB.
     #[arg(long, default_value_t = 3_000_000)]
     pub(crate) cells: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Which mesh is checked.
+#[derive(Args, Debug)]
+pub(crate) struct MeshOptions {
+    /// The mesh file: .obj, .stl, .ply or .glb.
+    pub(crate) file: PathBuf,
+    /// How many metres its unit is: 0.001 for millimetres.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) scale: Option<f64>,
+    /// Make one vertex of those that are exactly equal. In STL they are already.
+    #[arg(long)]
+    pub(crate) weld: bool,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -13,6 +13,7 @@ mod gallery;
 mod hand_csv;
 mod input;
 mod mass;
+mod mesh;
 mod outcome;
 mod picture;
 mod plot;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Gallery(options) => gallery::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Mass(options) => mass::run(&options),
+        Command::Mesh(options) => mesh::run(&options),
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(&options),
     };

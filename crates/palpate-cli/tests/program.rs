@@ -120,6 +120,31 @@ fn mass_is_that_of_a_ball() {
 }
 
 #[test]
+fn a_mesh_is_good_if_it_is_watertight() {
+    let nut = json(&["mesh", "testdata/meshes/nut.ply", "--scale", "0.001", "--json"]);
+    assert_eq!((&nut["ok"], &nut["triangles"]), (&Value::Bool(true), &Value::from(1046)));
+    let volume = nut["volume_m3"].as_f64().unwrap();
+    assert!((volume - 3.217_132_223_698_598e-5).abs() < 1e-15, "{volume}");
+    let airplane = palpate(&["mesh", "testdata/meshes/airplane.ply"]);
+    assert_eq!(status(&airplane), 1);
+    assert!(text(&airplane).contains("223      edges of one triangle alone"));
+    let folder = Folder::new();
+    // Two halves of a square with vertices of their own.
+    let halves = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nv 0 0 0\nv 1 1 0\nv 0 1 0\nf 4 5 6\n";
+    let file = folder.write("halves.obj", halves);
+    assert!(text(&palpate(&["mesh", &file])).contains("--weld joins them"));
+    let welded = palpate(&["mesh", &file, "--weld", "--json"]);
+    let welded: Value = serde_json::from_slice(&welded.stdout).unwrap();
+    assert_eq!((&welded["vertices"], &welded["boundary_edges"]), (&4.into(), &4.into()));
+    let broken = folder.write("broken.stl", "solid x\nfacet");
+    for arguments in [&["mesh", &broken][..], &["mesh", &file, "--scale", "-1"]] {
+        let output = palpate(arguments);
+        assert_eq!(status(&output), 2);
+        assert!(errors(&output).contains(arguments[1]), "{}", errors(&output));
+    }
+}
+
+#[test]
 fn the_schema_is_the_committed_one() {
     let committed = include_str!("../../palpate-scene/schema/scene.schema.json");
     assert_eq!(text(&palpate(&["schema"])), committed);

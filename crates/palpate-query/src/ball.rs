@@ -14,8 +14,6 @@
 //! the model bounds the field by an affine function, so that such points lie in a
 //! half-space, and the box is no nearer than that.
 
-use std::collections::BinaryHeap;
-
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Quality, Shape, Vector};
 
@@ -26,6 +24,7 @@ use crate::error::{QueryError, check_coordinates, check_length};
 use crate::goal::Goal;
 use crate::pair::body::Body;
 use crate::pair::cell::{Cell, ROUNDINGS};
+use crate::pair::frontier::Frontier;
 use crate::sampler::normal;
 
 /// Steps of Newton's method through a surface at most.
@@ -40,7 +39,7 @@ const MOST_SLIDES: u32 = 24;
 /// Memory of searches about balls, to be kept between them.
 #[derive(Debug)]
 pub struct BallWorkspace<const D: usize> {
-    cells: BinaryHeap<Cell<D>>,
+    cells: Frontier<D>,
     points: Block<f64, D, BLOCK>,
     boxes: Block<Model, D, BLOCK>,
     values: Column<f64, BLOCK>,
@@ -52,7 +51,7 @@ impl<const D: usize> BallWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: BinaryHeap::with_capacity(ROOM),
+            cells: Frontier::new(ROOM),
             points: Block::zero(),
             boxes: Block::zero(),
             values: Column::zero(),
@@ -222,7 +221,7 @@ impl<const D: usize> Search<'_, D> {
             workspace.cells.push(Cell { lower: self.safe, ..Cell::unknown(&root) });
         }
         loop {
-            let nearest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
+            let nearest = workspace.cells.lowest();
             let lower = nearest.min(self.dropped).max(self.safe);
             if let Some(stop) = self.reached(lower) {
                 return self.finish(lower, stop);
@@ -231,7 +230,7 @@ impl<const D: usize> Search<'_, D> {
                 // There is no surface as far as was looked.
                 return self.finish(lower, Stop::SignKnown);
             }
-            let is_full = workspace.cells.len() + BLOCK > ROOM;
+            let is_full = !workspace.cells.has_room(BLOCK);
             if workspace.cells.is_empty() || is_full || self.evaluations >= self.budget {
                 return self.finish(lower, Stop::BudgetSpent);
             }

@@ -39,31 +39,9 @@ impl<const N: usize, const D: usize> Element<N, D> {
     }
 
     /// How much of each vertex the centre of the smallest ball around the element is.
-    ///
-    /// That of the two ends of its longest edge if the triangle is not acute; else its
-    /// circumcentre, `a²(b² + c² − a²)` with the edges as seen from each vertex.
+    #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
-        let mut weights = [0.5; N];
-        if N == 3 {
-            let squared = |i: usize, k: usize| {
-                let edge = self.vertices[i] - self.vertices[k];
-                edge.dot(edge)
-            };
-            let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
-            let sum: f64 = edges.iter().sum();
-            let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
-            let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
-            let whole: f64 = parts.iter().sum();
-            if parts[longest] > 0.0 && whole.is_normal() {
-                let scale = 1.0 / whole;
-                for (weight, part) in weights.iter_mut().zip(parts) {
-                    *weight = part * scale;
-                }
-            } else {
-                weights[longest] = 0.0;
-            }
-        }
-        weights
+        palpate_mesh::centre_weights(&self.vertices)
     }
 
     /// A triangle without an area as its longest edge, whose second end is there twice, so
@@ -131,4 +109,9 @@ impl<const N: usize, const D: usize> Element<N, D> {
             part(across),
         ]
     }
+}
+
+/// How many [halves](Element::halves) an element has.
+pub(crate) const fn parts_of_one<const N: usize>() -> usize {
+    if N == 2 { 2 } else { 4 }
 }

@@ -13,7 +13,8 @@
 //!   [`ball_touches`] whether it is.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
-//!   triangle, in two or three dimensions.
+//!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
+//! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
 //! - [`local`] has the searches of the literature that prove nothing, for comparison.
 //!
 //! ```
@@ -40,13 +41,16 @@
 mod ball;
 mod certified;
 mod contact;
+mod contacts;
 mod cut_box;
 mod element;
 mod error;
 mod goal;
 pub mod local;
 mod manifold;
+mod mesh;
 mod pair;
+mod patches;
 mod placed;
 mod point;
 mod ray;
@@ -57,9 +61,13 @@ mod world;
 pub use ball::{BallWorkspace, ball, ball_touches};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
+pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
+pub use mesh::{
+    MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
+};
 pub use pair::{
     Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
     overlap, proof, rates, separation,

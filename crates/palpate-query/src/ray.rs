@@ -106,7 +106,7 @@ pub fn ray<const D: usize>(
 ) -> Certified<Option<RayHit<D>>> {
     let mut samples = Samples::new();
     let mut advance = Advance {
-        sampler: Sampler::new(shape, &mut samples, ray.origin.norm()),
+        sampler: Sampler::new(shape, &mut samples, ray.origin.norm(), 0.0),
         ray,
         height: FIRST_HEIGHT * ray.length,
         witness: None,

@@ -23,39 +23,80 @@ impl<const D: usize> Samples<D> {
     }
 }
 
-/// Asks a field, a short block at a time, and counts.
-pub(crate) struct Sampler<'a, const D: usize> {
-    shape: &'a Shape<D>,
-    samples: &'a mut Samples<D>,
+/// What one value of a field says of others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steepness<const D: usize> {
     pub(crate) lipschitz: f64,
     /// Where `lipschitz` holds, if not everywhere.
     region: Option<BoundingBall<D>>,
     /// What a value may be off by, and what it bounds elsewhere [m].
     pub(crate) slack: f64,
+}
+
+impl<const D: usize> Steepness<D> {
+    /// For points at most `reach` from the origin [m], and values from `level` on.
+    #[inline]
+    pub(crate) fn new(shape: &Shape<D>, reach: f64, level: f64) -> Self {
+        let promise = shape.promise();
+        let roundings = GEOMETRY_ROUNDINGS * reach * promise.lipschitz + 2.0 * level.abs();
+        Self {
+            lipschitz: promise.lipschitz,
+            region: promise.region,
+            slack: promise.rounding.within(reach) + f64::EPSILON * roundings,
+        }
+    }
+
+    /// How much values change at most within `far` of `p`, what they may be off by
+    /// included [m].
+    #[inline]
+    pub(crate) fn change(&self, p: impl FnOnce() -> Point<D>, far: f64) -> f64 {
+        match &self.region {
+            Some(region) if (p() - region.centre).norm() + far > region.radius => f64::INFINITY,
+            _ => self.lipschitz * far + self.slack,
+        }
+    }
+
+    /// What a value at `p` says of all points at most `far` from it [m].
+    #[inline]
+    pub(crate) fn bound(&self, p: Point<D>, value: f64, far: f64) -> f64 {
+        value - self.change(|| p, far)
+    }
+}
+
+/// Asks a field, a short block at a time, and counts.
+pub(crate) struct Sampler<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    samples: &'a mut Samples<D>,
+    pub(crate) steepness: Steepness<D>,
+    /// What is taken from every value, so that zero is where the question is [m].
+    level: f64,
     pub(crate) evaluations: u32,
 }
 
 impl<'a, const D: usize> Sampler<'a, D> {
-    /// For points at most `reach` from the origin [m].
+    /// For points at most `reach` from the origin [m], and values from `level` on.
     #[inline]
-    pub(crate) fn new(shape: &'a Shape<D>, samples: &'a mut Samples<D>, reach: f64) -> Self {
-        let promise = shape.promise();
-        let geometry = GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
-        Self {
-            shape,
-            samples,
-            lipschitz: promise.lipschitz,
-            region: promise.region,
-            slack: promise.rounding.within(reach) + promise.lipschitz * geometry,
-            evaluations: 0,
-        }
+    pub(crate) fn new(
+        shape: &'a Shape<D>,
+        samples: &'a mut Samples<D>,
+        reach: f64,
+        level: f64,
+    ) -> Self {
+        let steepness = Steepness::new(shape, reach, level);
+        Self { shape, samples, steepness, level, evaluations: 0 }
+    }
+
+    /// `true` if the field is a convex function.
+    pub(crate) fn is_convex(&self) -> bool {
+        self.shape.promise().convex
     }
 
     /// The value at a point and its gradient.
     #[inline]
     pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {
         self.evaluations += 2;
-        self.shape.distance_gradient(p)
+        let (value, gradient) = self.shape.distance_gradient(p);
+        (value - self.level, gradient)
     }
 
     /// The values at points.
@@ -69,7 +110,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.shape.block_distances(&samples.block, SHORT, &mut samples.values);
         let mut values = [0.0; SHORT];
         for (i, value) in values.iter_mut().enumerate() {
-            *value = samples.values.get(i);
+            *value = samples.values.get(i) - self.level;
         }
         values
     }
@@ -88,7 +129,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.shape.block_gradients(&samples.block, SHORT, &mut samples.slopes);
         let (mut values, mut directions) = ([0.0; SHORT], [Vector::ZERO; SHORT]);
         for i in 0..SHORT {
-            values[i] = samples.slopes.distance.get(i);
+            values[i] = samples.slopes.distance.get(i) - self.level;
             directions[i] = unit(samples.slopes.gradient.get(i));
         }
         (values, directions)
@@ -103,17 +144,6 @@ impl<'a, const D: usize> Sampler<'a, D> {
             + promise.lipschitz * GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
         let value = value - slack;
         if value > 0.0 { promise.safe_radius(p, value) } else { value }
-    }
-
-    /// What a value at `p` says of all points at most `far` from it [m].
-    #[inline]
-    pub(crate) fn bound(&self, p: Point<D>, value: f64, far: f64) -> f64 {
-        match &self.region {
-            Some(region) if (p - region.centre).norm() + far > region.radius => {
-                f64::NEG_INFINITY
-            }
-            _ => value - self.lipschitz * far - self.slack,
-        }
     }
 }
 

@@ -22,12 +22,14 @@
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::element::Element;
+use crate::contact::Contact;
+use crate::element::{Element, parts_of_one};
 use crate::goal::Goal;
+use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{Sampler, Samples, unit};
 
 /// Heights that are tried first, in radii.
-const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
+pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 
 /// A cell's second height, as a share of its first.
 const LOWER: f64 = 0.4;
@@ -43,32 +45,58 @@ const MOST_LEVELS: u32 = 48;
 /// Cells that a workspace holds.
 const ROOM: usize = 4096;
 
-/// A part of the element, and what is known of it.
+/// A part of the element, and what is known of it: 128 bytes of a triangle in space. What
+/// is larger is copied by a call, which takes longer than all else that is done to a cell.
 #[derive(Clone, Copy, Debug)]
-struct Cell<const N: usize, const D: usize> {
-    element: Element<N, D>,
-    radius: f64,
+pub(crate) struct Cell<const N: usize, const D: usize> {
+    pub(crate) element: Element<N, D>,
     /// Nothing on the cell is less [m].
-    lower: f64,
+    pub(crate) lower: f64,
+    /// Something on the cell is no more [m].
+    pub(crate) upper: f64,
     /// How far samples are lifted [m], and which way.
     height: f64,
-    direction: Vector<f64, D>,
+    pub(crate) direction: Vector<f64, D>,
     /// How often the element was halved.
-    level: u32,
+    pub(crate) level: u32,
+}
+
+impl<const N: usize, const D: usize> Cell<N, D> {
+    /// Writes the first `halves` of its halves behind the first `count` parts, and counts
+    /// them.
+    #[inline]
+    pub(crate) fn halve_into(
+        &self,
+        halves: usize,
+        parts: &mut [Self; SHORT],
+        count: &mut usize,
+    ) {
+        for element in &self.element.halves()[..halves] {
+            parts[*count] = Self { element: *element, level: self.level + 1, ..*self };
+            *count += 1;
+        }
+    }
 }
 
 /// Memory of searches, to be kept between them: it is allocated once.
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
-    cells: Vec<Cell<N, D>>,
-    samples: Samples<D>,
+    pub(crate) cells: Vec<Cell<N, D>>,
+    pub(crate) samples: Samples<D>,
+    pub(crate) patches: Patches<N, D>,
+    pub(crate) contacts: Vec<Contact<D>>,
 }
 
 impl<const N: usize, const D: usize> Workspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
     pub fn new() -> Self {
-        Self { cells: Vec::with_capacity(ROOM), samples: Samples::new() }
+        Self {
+            cells: Vec::with_capacity(ROOM),
+            samples: Samples::new(),
+            patches: Patches::new(),
+            contacts: Vec::with_capacity(MOST_CELLS),
+        }
     }
 }
 
@@ -88,7 +116,7 @@ pub fn minimum<const N: usize, const D: usize>(
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
     let goal = Goal::least(limits.tolerance);
-    search(shape, element, goal, limits.budget, workspace)
+    search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
 /// Whether a field is at most zero anywhere on an element.
@@ -103,80 +131,143 @@ pub fn touches<const N: usize, const D: usize>(
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
     let goal = Goal::sign(limits.tolerance);
-    search(shape, element, goal, limits.budget, workspace)
+    search(shape, element, &Terms::new(goal, limits.budget), workspace)
 }
 
-fn search<const N: usize, const D: usize>(
+/// What is asked of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    pub(crate) goal: Goal,
+    pub(crate) budget: u32,
+    /// What is taken from all values [m].
+    pub(crate) level: f64,
+    /// Roundings are those of coordinates as large as this, at least [m].
+    pub(crate) reach: f64,
+}
+
+impl Terms {
+    fn new(goal: Goal, budget: u32) -> Self {
+        Self { goal, budget, level: 0.0, reach: 0.0 }
+    }
+}
+
+#[inline]
+pub(crate) fn search<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
-    goal: Goal,
-    budget: u32,
+    terms: &Terms,
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
-    let weights = element.centre_weights();
-    let centre = element.at(&weights);
-    let radius = element.farthest(centre);
-    let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
-    let reach = centre.norm() + (1.0 + highest) * radius;
-    let search = Search {
-        sampler: Sampler::new(shape, &mut workspace.samples, reach),
-        goal,
-        budget,
-        weights,
-        parts: if N == 2 { 2 } else { 4 },
-        radius,
-        upper: f64::INFINITY,
-        best: centre,
-        dropped: f64::INFINITY,
-    };
-    search.run(element, &mut workspace.cells)
+    Search::new(shape, element, terms, &mut workspace.samples)
+        .run(element, &mut workspace.cells)
 }
 
 /// A search under way.
-struct Search<'a, const N: usize, const D: usize> {
-    sampler: Sampler<'a, D>,
-    goal: Goal,
-    budget: u32,
+pub(crate) struct Search<'a, const N: usize, const D: usize> {
+    pub(crate) sampler: Sampler<'a, D>,
+    pub(crate) goal: Goal,
+    pub(crate) budget: u32,
     /// Of each vertex in a cell's centre.
-    weights: [f64; N],
+    pub(crate) weights: [f64; N],
     /// How many halves of a cell make it up.
-    parts: usize,
-    radius: f64,
+    pub(crate) parts: usize,
+    pub(crate) radius: f64,
     /// The least value found, what it may be off by included, and where.
-    upper: f64,
-    best: Point<D>,
+    pub(crate) upper: f64,
+    pub(crate) best: Point<D>,
     /// Nothing in the cells that were dropped is less.
-    dropped: f64,
+    pub(crate) dropped: f64,
+    /// Cells are kept for all that is below zero, and not for the least alone.
+    pub(crate) keeps_all: bool,
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D> {
+impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
+    // Inlined always, since a search that ends at its first look is mostly this.
+    #[inline(always)]
+    pub(crate) fn new(
+        shape: &'a Shape<D>,
+        element: &Element<N, D>,
+        terms: &Terms,
+        samples: &'a mut Samples<D>,
+    ) -> Self {
+        let weights = element.centre_weights();
+        let centre = element.at(&weights);
+        let radius = element.farthest(centre);
+        let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
+        let reach = larger(terms.reach, centre.norm() + (1.0 + highest) * radius);
+        Self {
+            sampler: Sampler::new(shape, samples, reach, terms.level),
+            goal: terms.goal,
+            budget: terms.budget,
+            weights,
+            parts: parts_of_one::<N>(),
+            radius,
+            upper: f64::INFINITY,
+            best: centre,
+            dropped: f64::INFINITY,
+            keeps_all: false,
+        }
+    }
+
+    /// The radius of the smallest ball around a cell [m], which each halving halves.
+    #[inline]
+    pub(crate) fn radius_of(&self, cell: &Cell<N, D>) -> f64 {
+        // The power of two by its exponent.
+        let share = f64::from_bits(u64::from(1023 - cell.level) << 52);
+        self.radius * share
+    }
+
+    /// Cells with nothing below this need no more looking at.
+    #[inline]
+    fn threshold(&self) -> f64 {
+        if self.keeps_all { f64::MIN_POSITIVE } else { self.goal.threshold(self.upper) }
+    }
+
     /// A value found on the element.
     #[inline]
     fn found(&mut self, p: Point<D>, value: f64) {
-        let value = value + self.sampler.slack;
+        let value = value + self.sampler.steepness.slack;
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
     }
 
-    fn answer(&self, lower: f64, stop: Stop) -> Certified<Point<D>> {
+    pub(crate) fn answer(&self, lower: f64, stop: Stop) -> Certified<Point<D>> {
         let (best, upper) = (self.best, self.upper);
         let lower = lower.min(upper);
         Certified { best, lower, upper, stop, evaluations: self.sampler.evaluations }
     }
 
+    #[inline(always)]
     fn run(
-        mut self,
+        &mut self,
         element: &Element<N, D>,
         cells: &mut Vec<Cell<N, D>>,
     ) -> Certified<Point<D>> {
-        cells.clear();
+        match self.begin(element) {
+            Err(answer) => answer,
+            Ok(whole) => {
+                cells.clear();
+                cells.push(whole);
+                self.finish(cells)
+            }
+        }
+    }
+
+    /// The whole element as a cell, unless a first look is all that is needed.
+    #[inline(always)]
+    pub(crate) fn begin(
+        &mut self,
+        element: &Element<N, D>,
+    ) -> Result<Cell<N, D>, Certified<Point<D>>> {
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
-        let lower = self.sampler.bound(centre, value, self.radius);
+        // Of what is no number nothing is known.
+        let lower =
+            larger(f64::NEG_INFINITY, self.sampler.steepness.bound(centre, value, self.radius));
         if let Some(stop) = self.goal.reached(lower, self.upper) {
-            return self.answer(lower, stop);
+            return Err(self.answer(lower, stop));
         }
         let flat = element.flattened(&self.weights);
         if let Some(flat) = &flat {
@@ -184,14 +275,19 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         }
         let mut whole = Cell {
             element: flat.unwrap_or(*element),
-            radius: self.radius,
             lower,
+            upper: self.upper,
             height: FIRST_HEIGHTS[0] * self.radius,
             direction: unit(gradient),
             level: 0,
         };
         self.look_around(&mut whole, centre);
-        cells.push(whole);
+        Ok(whole)
+    }
+
+    /// Searches cells until enough is known.
+    #[inline]
+    pub(crate) fn finish(&mut self, cells: &mut Vec<Cell<N, D>>) -> Certified<Point<D>> {
         loop {
             let lowest = cells.iter().fold(self.dropped, |low, cell| low.min(cell.lower));
             if let Some(stop) = self.goal.reached(lowest, self.upper) {
@@ -206,6 +302,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     }
 
     /// The vertices, and points over the centre at several heights.
+    #[inline(always)]
     fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
         let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
@@ -218,7 +315,8 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
                 None => self.found(p, value),
                 Some(_) if self.goal.is_hit(self.upper) => return,
                 Some(k) => {
-                    let lower = self.sampler.bound(p, value, cell.element.farthest(p));
+                    let lower =
+                        self.sampler.steepness.bound(p, value, cell.element.farthest(p));
                     if lower > cell.lower {
                         cell.lower = lower;
                         cell.height = heights[k.min(heights.len() - 1)];
@@ -229,6 +327,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     }
 
     /// Halves the cells of which least is known, a block of parts.
+    #[inline]
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
         let mut parts = [cells[0]; SHORT];
@@ -236,18 +335,24 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         while count < SHORT && !cells.is_empty() {
             let lowest = (1..cells.len())
                 .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            let parent = cells.swap_remove(lowest);
-            for element in &parent.element.halves()[..self.parts] {
-                let (radius, level) = (0.5 * parent.radius, parent.level + 1);
-                parts[count] = Cell { element: *element, radius, level, ..parent };
-                count += 1;
-            }
+            cells.swap_remove(lowest).halve_into(self.parts, &mut parts, &mut count);
         }
+        self.look_at(&mut parts, count, cells);
+    }
+
+    /// Bounds the first `count` parts, and keeps those that matter.
+    #[inline]
+    pub(crate) fn look_at(
+        &mut self,
+        parts: &mut [Cell<N, D>; SHORT],
+        count: usize,
+        kept: &mut Vec<Cell<N, D>>,
+    ) {
         for i in count..SHORT {
             parts[i] = parts[count - 1];
         }
         let mut centres = [Vector::ZERO; SHORT];
-        for (centre, part) in centres.iter_mut().zip(&parts) {
+        for (centre, part) in centres.iter_mut().zip(&*parts) {
             *centre = part.element.at(&self.weights);
         }
         let parts = &mut parts[..count];
@@ -264,10 +369,10 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             self.settle(parts, &centres, &values);
             self.lift(parts, &centres, &values, 1.0);
         }
-        let threshold = self.goal.threshold(self.upper);
+        let threshold = self.threshold();
         for part in parts {
             if part.lower < threshold && part.level < MOST_LEVELS {
-                cells.push(*part);
+                kept.push(*part);
             } else {
                 self.dropped = self.dropped.min(part.lower);
             }
@@ -284,7 +389,9 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     ) {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
-            part.lower = larger(part.lower, self.sampler.bound(*centre, *value, part.radius));
+            part.upper = *value + self.sampler.steepness.slack;
+            let lower = self.sampler.steepness.bound(*centre, *value, self.radius_of(part));
+            part.lower = larger(part.lower, lower);
         }
     }
 
@@ -298,7 +405,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         values: &[f64; SHORT],
         share: f64,
     ) {
-        let threshold = self.goal.threshold(self.upper);
+        let threshold = self.threshold();
         let is_open = |part: &Cell<N, D>| part.lower < threshold;
         if self.goal.is_hit(self.upper) || !parts.iter().any(is_open) {
             return;
@@ -310,14 +417,18 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         let lifted = self.sampler.values(&points);
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
-            let lower =
-                self.sampler.bound(points[i], lifted[i], part.element.farthest(points[i]));
+            let radius = self.radius_of(part);
+            let lower = self.sampler.steepness.bound(
+                points[i],
+                lifted[i],
+                part.element.farthest(points[i]),
+            );
             if lower >= part.lower {
-                let nearly_all = values[i] - 0.25 * self.sampler.lipschitz * part.radius;
+                let nearly_all = values[i] - 0.25 * self.sampler.steepness.lipschitz * radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };
                 part.height = (grown * share * part.height).min(highest);
                 part.lower = lower;
-            } else if lower <= self.sampler.bound(centres[i], values[i], part.radius) {
+            } else if lower <= self.sampler.steepness.bound(centres[i], values[i], radius) {
                 part.height *= SHRINK;
             }
         }

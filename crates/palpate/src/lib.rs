@@ -24,6 +24,7 @@
 
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
+pub use palpate_mesh as mesh;
 pub use palpate_plot as plot;
 pub use palpate_query as query;
 pub use palpate_scene as scene;

@@ -5,8 +5,8 @@
 
 use palpate_field::{Aabb, Point};
 
-/// More places than this many times the points are not worth their memory.
-const MOST_PLACES: usize = 16;
+/// So many places a point at most: empty ones take time too.
+const MOST_PLACES: usize = 1;
 
 /// Points sorted into cubes, so that those near a point are found in the cubes around.
 #[derive(Debug)]
@@ -72,7 +72,11 @@ impl<const D: usize> Grid<D> {
     }
 
     fn place(&self, p: Point<D>) -> usize {
-        self.cube(p).iter().zip(self.counts).rfold(0, |place, (k, count)| place * count + k)
+        self.place_of(self.cube(p))
+    }
+
+    fn place_of(&self, cube: [usize; D]) -> usize {
+        cube.iter().zip(self.counts).rfold(0, |place, (k, count)| place * count + k)
     }
 
     /// Takes out the points within a side of `p`, and maybe some others, of which
@@ -105,18 +109,15 @@ impl<const D: usize> Grid<D> {
     /// Calls `visit` with the cubes around a point.
     fn each_place(&mut self, p: Point<D>, mut visit: impl FnMut(&mut Self, usize)) {
         let centre = self.cube(p);
-        for code in 0..3_usize.pow(D as u32) {
-            let (mut place, mut scale, mut rest, mut is_inside) = (0, 1, code, true);
-            for (centre, count) in centre.into_iter().zip(self.counts) {
-                let index = (centre + rest % 3).wrapping_sub(1);
-                is_inside &= index < count;
-                place += scale * index.min(count);
-                scale *= count;
-                rest /= 3;
-            }
-            if is_inside {
-                visit(self, place);
-            }
+        let first = centre.map(|k| k.saturating_sub(1));
+        let last: [usize; D] = std::array::from_fn(|k| (centre[k] + 1).min(self.counts[k] - 1));
+        let mut cube = first;
+        loop {
+            visit(self, self.place_of(cube));
+            // The next one, the first coordinate fastest.
+            let Some(k) = (0..D).find(|&k| cube[k] < last[k]) else { break };
+            cube[k] += 1;
+            cube[..k].copy_from_slice(&first[..k]);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 //! The region in which two bodies touch, box by box.
 
+use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Point, Vector};
 
 use super::fill::Middle;
@@ -51,48 +52,29 @@ pub(super) fn find<const D: usize>(
         parts[..count].copy_from_slice(&pending[first..]);
         pending.truncate(first);
         couple.values(&parts[..count], memory, &mut values);
+        let mut is_open = [false; BLOCK];
+        for (i, part) in parts[..count].iter().enumerate() {
+            let ([a, b], radius) = ([values[0][i], values[1][i]], part.radius());
+            is_open[i] = a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + slack);
+        }
         open.clear();
-        open.extend((0..count).filter(|&i| {
-            let ([a, b], radius) = ([values[0][i], values[1][i]], parts[i].radius());
-            a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + slack)
-        }));
-        // Where fields are known by their values alone, nothing more is ruled out.
-        let unknown = open.clone();
+        open.extend((0..count).filter(|&i| is_open[i]));
         couple.models(&parts[..count], open, memory);
-        let mut lane = 0;
-        for i in unknown {
-            let mut is_out = false;
-            if open.get(lane) == Some(&i) {
-                let models = couple.model(memory, lane);
-                let [a, b] = models;
-                lane += 1;
-                let (mut across, mut along) = (0.0, [0.0; 2]);
-                for (a, b) in a.gradient.iter().zip(b.gradient) {
-                    across += (a - b).abs();
-                    along = [along[0] + a.abs(), along[1] + b.abs()];
-                }
-                let between = across + (a.lower + b.upper).max(a.upper + b.lower);
-                let is_flat =
-                    a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
-                let is_inside = a.value + along[0] + a.upper < half_margin
-                    && b.value + along[1] + b.upper < half_margin;
-                is_out = least_of_larger([a, b]) > limit
-                    || (a.value - b.value).abs() > between + 2.0 * slack;
-                if !is_out && is_flat && is_inside {
-                    // Mostly spanned by the rim.
-                    is_out = true;
-                    middles.extend(Middle::of(&parts[i], &models));
-                }
+        for (lane, &i) in open.iter().enumerate() {
+            let models = couple.model(memory, lane);
+            let found = look(&models, settings, slack);
+            is_open[i] = found == Look::Open;
+            if found == Look::Middle {
+                middles.extend(Middle::of(&parts[i], &models));
             }
-            let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(parts[i].half[k]));
-            if is_out {
-                continue;
-            }
+        }
+        for part in (0..count).filter(|&i| is_open[i]).map(|i| &parts[i]) {
+            let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
             if longest <= 0.5 * settings.spacing {
-                small.push(parts[i]);
+                small.push(*part);
             } else {
                 let mut halves = [Cell::NOTHING; 8];
-                let count = parts[i].halve(&mut halves, 0);
+                let count = part.halve(&mut halves, 0);
                 pending.extend_from_slice(&halves[..count]);
             }
         }
@@ -101,6 +83,39 @@ pub(super) fn find<const D: usize>(
         settle(couple, cells, settings, memory, candidates);
     }
     is_whole
+}
+
+/// What the models of a box say of the surface between.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    /// The box may hold a part of it.
+    Open,
+    /// It holds the middle of a flat patch, which its rim spans, where there is one.
+    Middle,
+    /// It holds none, or none within the margin.
+    Nothing,
+}
+
+fn look([a, b]: &[Model; 2], settings: &ManifoldSettings, slack: f64) -> Look {
+    let (mut across, mut along) = (0.0, [0.0; 2]);
+    for (a, b) in a.gradient.iter().zip(b.gradient) {
+        across += (a - b).abs();
+        along = [along[0] + a.abs(), along[1] + b.abs()];
+    }
+    let half_margin = 0.5 * settings.margin;
+    let between = across + (a.lower + b.upper).max(a.upper + b.lower);
+    let is_flat = a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
+    let is_inside = a.value + along[0] + a.upper < half_margin
+        && b.value + along[1] + b.upper < half_margin;
+    if (a.value - b.value).abs() > between + 2.0 * slack
+        || least_of_larger([*a, *b]) > half_margin + slack
+    {
+        Look::Nothing
+    } else if is_flat && is_inside {
+        Look::Middle
+    } else {
+        Look::Open
+    }
 }
 
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,

@@ -196,8 +196,10 @@ impl<'a, const D: usize> Body<'a, D> {
         for k in 0..D {
             away[k] = (local[k] - aabb.max[k]).max(0.0) - (aabb.min[k] - local[k]).max(0.0);
         }
-        let distance = away.norm();
-        if distance > 0.0 {
+        let squared = away.dot(away);
+        // Most points are inside, and need no root.
+        if squared > 0.0 {
+            let distance = squared.sqrt();
             (distance, away * (1.0 / distance))
         } else {
             (f64::NEG_INFINITY, away)

@@ -3,8 +3,6 @@
 
 //! Boxes of a search, and what is known of them.
 
-use std::cmp::Ordering;
-
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
@@ -130,27 +128,6 @@ impl<const D: usize> Cell<D> {
 pub(crate) fn reach<const D: usize>(aabb: &Aabb<D>) -> f64 {
     aabb.centre().norm() + aabb.half_extents().norm()
 }
-
-/// The box of which least is known comes first.
-impl<const D: usize> Ord for Cell<D> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower)
-    }
-}
-
-impl<const D: usize> PartialOrd for Cell<D> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const D: usize> PartialEq for Cell<D> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<const D: usize> Eq for Cell<D> {}
 
 /// A lower bound of the larger of two fields over a box, from their models: the largest
 /// least value of their means, which is at the end of a range or where a component of

@@ -141,20 +141,28 @@ impl<'a, const D: usize> Couple<'a, D> {
         }
     }
 
-    /// What the larger `g` is at least in the `i`-th of the cells, asked for their values
-    /// just before.
+    /// What the larger `g` is at least in the cells, asked for their values just before,
+    /// from the larger value and the radius of each.
     #[inline]
-    pub(crate) fn floor(
+    pub(crate) fn floors(
         &self,
-        cell: &Cell<D>,
-        i: usize,
+        radii: &[f64],
         memory: &Memory<D>,
         values: &[[f64; BLOCK]; 2],
-    ) -> f64 {
+        floors: &mut [f64; BLOCK],
+    ) {
         let [a, b] = &self.bodies;
+        if a.is_known_everywhere() && b.is_known_everywhere() {
+            for (i, radius) in radii.iter().enumerate() {
+                floors[i] = values[0][i].max(values[1][i]) - radius;
+            }
+            return;
+        }
         let [of_a, of_b] = &memory.locals;
-        let radius = cell.radius();
-        a.floor(of_a[i], values[0][i], radius).max(b.floor(of_b[i], values[1][i], radius))
+        for (i, radius) in radii.iter().enumerate() {
+            let floor_a = a.floor(of_a[i], values[0][i], *radius);
+            floors[i] = floor_a.max(b.floor(of_b[i], values[1][i], *radius));
+        }
     }
 
     /// Models of both over those of the cells, asked for their values just before, that
@@ -167,11 +175,13 @@ impl<'a, const D: usize> Couple<'a, D> {
         memory: &mut Memory<D>,
     ) {
         let [a, b] = &self.bodies;
-        let [of_a, of_b] = &memory.locals;
-        open.retain(|&i| {
-            let radius = cells[i].radius();
-            a.is_known(of_a[i], radius) && b.is_known(of_b[i], radius)
-        });
+        if !(a.is_known_everywhere() && b.is_known_everywhere()) {
+            let [of_a, of_b] = &memory.locals;
+            open.retain(|&i| {
+                let radius = cells[i].radius();
+                a.is_known(of_a[i], radius) && b.is_known(of_b[i], radius)
+            });
+        }
         if open.is_empty() {
             return;
         }

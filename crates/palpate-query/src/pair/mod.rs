@@ -27,6 +27,7 @@ pub(crate) mod cell;
 pub(crate) mod couple;
 pub(crate) mod descent;
 mod escape;
+pub(crate) mod frontier;
 mod nearest;
 mod proof;
 mod rates;

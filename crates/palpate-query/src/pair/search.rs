@@ -3,14 +3,13 @@
 
 //! Best-first search over boxes for the least of `max(g_a, g_b)`.
 
-use std::collections::BinaryHeap;
-
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
 use super::cell::{Cell, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
+use super::frontier::Frontier;
 use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -26,7 +25,7 @@ pub(crate) const ROOM: usize = 1 << 16;
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best, after those that only may no longer not.
-    cells: BinaryHeap<Cell<D>>,
+    cells: Frontier<D>,
     /// Boxes to be looked at as they are.
     pub(crate) pending: Vec<Cell<D>>,
     /// Boxes that were dropped, if they are to be kept.
@@ -40,7 +39,7 @@ impl<const D: usize> PairWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: BinaryHeap::with_capacity(ROOM),
+            cells: Frontier::new(ROOM),
             pending: Vec::with_capacity(ROOM),
             leaves: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
@@ -55,10 +54,11 @@ impl<const D: usize> PairWorkspace<D> {
 
     /// Moves all boxes that the last search left into `known`.
     pub(super) fn take_known(&mut self, known: &mut Vec<Cell<D>>) {
-        known.clear();
+        // Most of them are leaves, and there are many: they change places only.
+        std::mem::swap(known, &mut self.leaves);
+        self.leaves.clear();
         known.extend(self.cells.drain());
         known.append(&mut self.pending);
-        known.append(&mut self.leaves);
     }
 }
 
@@ -177,7 +177,7 @@ impl<'a, const D: usize> Search<'a, D> {
         workspace.cells.clear();
         loop {
             let lowest = if workspace.pending.is_empty() {
-                workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower)
+                workspace.cells.lowest()
             } else {
                 f64::NEG_INFINITY
             };
@@ -185,11 +185,12 @@ impl<'a, const D: usize> Search<'a, D> {
             if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
                 return self.answer(stop, lower);
             }
-            let is_full = workspace.cells.len().max(workspace.leaves.len()) + BLOCK > ROOM;
+            let is_full =
+                !workspace.cells.has_room(BLOCK) || workspace.leaves.len() + BLOCK > ROOM;
             let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
             if is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
-                let lowest = workspace.cells.peek().map_or(f64::INFINITY, |cell| cell.lower);
+                let lowest = workspace.cells.lowest();
                 return self.answer(
                     Stop::BudgetSpent,
                     pending.fold(lowest.min(self.dropped), f64::min),
@@ -249,11 +250,15 @@ impl<'a, const D: usize> Search<'a, D> {
         let parts = &mut parts[..count];
         let mut values = [[0.0; BLOCK]; 2];
         self.couple.values(parts, &mut workspace.memory, &mut values);
+        let (mut radii, mut floors) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for (radius, part) in radii.iter_mut().zip(&*parts) {
+            *radius = part.radius();
+        }
+        self.couple.floors(&radii[..count], &workspace.memory, &values, &mut floors);
         let mut least = (f64::INFINITY, self.best);
         for (i, part) in parts.iter_mut().enumerate() {
             let value = values[0][i].max(values[1][i]);
-            let floor = self.couple.floor(part, i, &workspace.memory, &values);
-            part.lower = part.lower.max(floor - self.slack);
+            part.lower = part.lower.max(floors[i] - self.slack);
             if value < least.0 {
                 least = (value, part.centre);
             }
@@ -262,10 +267,10 @@ impl<'a, const D: usize> Search<'a, D> {
             self.descend(least.1);
         }
         let threshold = self.threshold();
-        let is_open = |part: &Cell<D>| part.lower < threshold && part.radius() <= largest;
         let PairWorkspace { open, memory, .. } = workspace;
         open.clear();
-        open.extend((0..count).filter(|&i| is_open(&parts[i])));
+        let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
+        open.extend((0..count).filter(is_open));
         self.couple.models(parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             // Boxes are off by a rounding where they meet.

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A ball on a torus, as parry asks it of a mesh and we of a field.
+
+use std::error::Error;
+use std::hint::black_box;
+
+use palpate::field::kernel::{Ball, Torus};
+use palpate::field::{Shape, Vector};
+use palpate::query::{BallWorkspace, Limits, ball};
+use parry3d_f64::math::Pose;
+use parry3d_f64::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d_f64::shape::{Ball as ParryBall, TriMesh};
+
+use super::{fastest, pairs};
+use crate::fields::Rows;
+
+/// The radii of the torus and of the ball [m].
+const TORUS: [f64; 2] = [0.35, 0.15];
+const BALL: f64 = 0.25;
+
+/// How deep the ball is [m].
+const DEPTH: f64 = 0.005;
+
+/// Corners of the mesh along the ring and around the tube: 6000 triangles.
+const CORNERS: [u32; 2] = [75, 40];
+
+/// Adds the rows of the ball on the torus, ours and parry's.
+pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+    let torus = Shape::from_kernel(Torus::new(TORUS[0], TORUS[1])?);
+    let (of_ball, mesh) = (Shape::from_kernel(Ball::new(BALL)?), mesh()?);
+    let poses = pairs::placed([&torus, &of_ball], -DEPTH)?;
+    let limits = Limits::default();
+    let mut workspace = BallWorkspace::new();
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let mut missed = 0;
+    for [_, there] in &poses {
+        let centre = there.world_from_body.translation;
+        let found = ball(&torus, centre, BALL, &limits, &mut workspace)?;
+        missed += u32::from(found.best.is_none_or(|contact| contact.gap > 0.0));
+        ours.push(fastest(|| {
+            // That it is no error was seen above.
+            let _ = black_box(ball(&torus, black_box(centre), BALL, &limits, &mut workspace));
+        }));
+        let [x, y, z] = centre.0;
+        let there = Pose::translation(x, y, z);
+        let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+        let mut memory = None;
+        theirs.push(fastest(|| {
+            let asked = DefaultQueryDispatcher.contact_manifolds(
+                black_box(&there),
+                &mesh,
+                &ParryBall::new(BALL),
+                0.0,
+                &mut manifolds,
+                &mut memory,
+            );
+            let _ = black_box(asked);
+        }));
+        missed += u32::from(manifolds.iter().all(|manifold| manifold.points.is_empty()));
+    }
+    if missed > 0 {
+        return Err(format!("{missed} contacts of a ball and a torus were not found").into());
+    }
+    super::summarise("ball.torus", &mut ours, rows);
+    super::summarise("parry.ball_torus.manifold", &mut theirs, rows);
+    let ratio = ours[ours.len() / 2] / theirs[theirs.len() / 2];
+    rows.insert("parry.ball_torus.manifold.ours_over_parry".into(), ratio);
+    Ok(())
+}
+
+/// The torus about the y axis as triangles, seen from outside counter-clockwise.
+fn mesh() -> Result<TriMesh, Box<dyn Error>> {
+    let [along, around] = CORNERS;
+    let angle = |i: u32, n: u32| std::f64::consts::TAU * f64::from(i % n) / f64::from(n);
+    let mut points = Vec::new();
+    for i in 0..along {
+        for k in 0..around {
+            let (ring, tube) = (angle(i, along), angle(k, around));
+            let radius = TORUS[0] + TORUS[1] * tube.cos();
+            let p = Vector([radius * ring.cos(), TORUS[1] * tube.sin(), radius * ring.sin()]);
+            points.push(parry3d_f64::math::Vector::from_array(p.0));
+        }
+    }
+    let corner = |i: u32, k: u32| (i % along) * around + k % around;
+    let mut triangles = Vec::new();
+    for i in 0..along {
+        for k in 0..around {
+            let [a, b, c, d] =
+                [corner(i, k), corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    Ok(TriMesh::new(points, triangles)?)
+}

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate mesh`: is a mesh file good?
+
+use std::io::Write;
+
+use palpate::mesh::{Report, read_file};
+use serde_json::json;
+
+use crate::arguments::MeshOptions;
+use crate::outcome::{Failure, Outcome};
+
+/// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
+pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
+    let mut mesh = read_file(&options.file).map_err(Failure::input)?;
+    if let Some(scale) = options.scale {
+        mesh = mesh.scaled(scale).map_err(|error| Failure::file(&options.file, error))?;
+    }
+    if options.weld {
+        mesh = mesh.welded();
+    }
+    let report = mesh.report();
+    let is_good = report.is_watertight() && report.degenerate == 0;
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        writeln!(out, "{:#}", as_json(&report, is_good))?;
+    } else {
+        let name = options.file.display();
+        let verdict = if is_good { "good" } else { "not good" };
+        writeln!(out, "{name}: {verdict}, {}", in_words(&report))?;
+    }
+    Ok(if is_good { Outcome::Yes } else { Outcome::No })
+}
+
+fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {
+    json!({
+        "ok": is_good,
+        "triangles": report.elements,
+        "vertices": report.vertices,
+        "watertight": report.is_watertight(),
+        "boundary_edges": report.boundary,
+        "non_manifold_edges": report.non_manifold,
+        "inconsistent_edges": report.inconsistent,
+        "degenerate_triangles": report.degenerate,
+        "duplicate_triangles": report.duplicates,
+        "unreferenced_vertices": report.unreferenced,
+        "coincident_vertices": report.coincident,
+        "bounds": { "min_m": report.bounds.min.0, "max_m": report.bounds.max.0 },
+        "area_m2": report.surface,
+        "volume_m3": report.enclosed,
+    })
+}
+
+fn in_words(report: &Report<3>) -> String {
+    let size = (report.bounds.half_extents() * 2.0).0.map(|side| format!("{side:.4}"));
+    let mut words = format!(
+        "{} triangles, {} vertices\n  size     {} m\n  area     {:.6e} m²\n",
+        report.elements,
+        report.vertices,
+        size.join(" × "),
+        report.surface,
+    );
+    words += &match report.enclosed {
+        Some(volume) if volume < 0.0 => format!("  volume   {volume:.6e} m³: inside out"),
+        Some(volume) => format!("  volume   {volume:.6e} m³"),
+        None => "  volume   none: not watertight".to_owned(),
+    };
+    let flaws = [
+        (report.boundary, "edges of one triangle alone"),
+        (report.non_manifold, "edges of more than two triangles"),
+        (report.inconsistent, "edges between triangles that do not agree on the inside"),
+        (report.degenerate, "triangles without an area"),
+        (report.duplicates, "triangles that are there already"),
+        (report.unreferenced, "vertices of no triangle"),
+        (report.coincident, "vertices at the place of another: --weld joins them"),
+    ];
+    for (count, what) in flaws.into_iter().filter(|(count, _)| *count > 0) {
+        words += &format!("\n  {count:<8} {what}");
+    }
+    words
+}

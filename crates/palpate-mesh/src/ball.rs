@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The smallest ball around a segment or a triangle.
+
+use palpate_field::{BoundingBall, Point, Vector};
+
+/// Room for the roundings of a centre and a distance, relative to the coordinates.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+
+/// How much of each vertex the centre of the smallest ball around a segment or a triangle
+/// is. It lies on the element.
+///
+/// That of the two ends of its longest edge if the triangle is not acute; else its
+/// circumcentre, `a²(b² + c² − a²)` with the edges as seen from each vertex.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_mesh::centre_weights;
+///
+/// let right = [Vector([0.0, 0.0]), Vector([3.0, 0.0]), Vector([0.0, 4.0])];
+/// assert_eq!(centre_weights(&right), [0.0, 0.5, 0.5]);
+/// ```
+#[inline]
+#[must_use]
+pub fn centre_weights<const N: usize, const D: usize>(vertices: &[Point<D>; N]) -> [f64; N] {
+    const { assert!(N == 2 || N == 3, "segments and triangles") };
+    let mut weights = [0.5; N];
+    if N == 3 {
+        let squared = |i: usize, k: usize| {
+            let edge = vertices[i] - vertices[k];
+            edge.dot(edge)
+        };
+        let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
+        let sum: f64 = edges.iter().sum();
+        let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
+        let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
+        let whole: f64 = parts.iter().sum();
+        if parts[longest] > 0.0 && whole.is_normal() {
+            let scale = 1.0 / whole;
+            for (weight, part) in weights.iter_mut().zip(parts) {
+                *weight = part * scale;
+            }
+        } else {
+            weights[longest] = 0.0;
+        }
+    }
+    weights
+}
+
+/// The smallest ball around a segment or a triangle, its radius rounded up.
+#[must_use]
+pub fn smallest_ball<const N: usize, const D: usize>(
+    vertices: &[Point<D>; N],
+) -> BoundingBall<D> {
+    let mut centre = Vector::ZERO;
+    for (vertex, weight) in vertices.iter().zip(centre_weights(vertices)) {
+        centre += *vertex * weight;
+    }
+    BoundingBall { centre, radius: radius_about(centre, vertices) }
+}
+
+/// The radius of a ball about `centre` that holds all `points`, rounded up.
+pub(crate) fn radius_about<'a, const D: usize>(
+    centre: Point<D>,
+    points: impl IntoIterator<Item = &'a Point<D>>,
+) -> f64 {
+    let (mut radius, mut largest) = (0.0_f64, 0.0_f64);
+    for point in points {
+        radius = radius.max((*point - centre).norm());
+        largest = point.0.iter().fold(largest, |m, x| m.max(x.abs()));
+    }
+    radius * (1.0 + ROUNDINGS) + largest * ROUNDINGS
+}

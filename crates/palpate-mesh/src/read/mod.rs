@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Files of meshes.
+//!
+//! Parsing is left to crates made for it; what is here says what they need to be told
+//! before they are given a file that nobody vouches for, and puts their answers together.
+//! Reading takes memory in proportion to the size of the file and no more.
+
+mod glb;
+mod obj;
+mod ply;
+mod stl;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::error::{ReadError, ReadProblem};
+use crate::mesh::TriangleMesh;
+use crate::polygon::{MOST_CORNERS, triangulate};
+use palpate_field::Point;
+
+/// The largest file that is read [bytes]: 1 GiB.
+pub const LARGEST_FILE: u64 = 1 << 30;
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ: its vertices and faces, all objects and groups together.
+    Obj,
+    /// STL, text or binary. Vertices that are exactly equal are welded.
+    Stl,
+    /// PLY, ASCII or binary of either byte order.
+    Ply,
+    /// Binary glTF 2.0: the triangles of its scene, where its nodes put them.
+    Glb,
+}
+
+impl Format {
+    /// The format that the ending of a file's name says.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "ply" => Some(Self::Ply),
+            "glb" => Some(Self::Glb),
+            _ => None,
+        }
+    }
+
+    /// The name of the format.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "OBJ",
+            Self::Stl => "STL",
+            Self::Ply => "PLY",
+            Self::Glb => "GLB",
+        }
+    }
+
+    /// The complaint that a file is not what this format asks for.
+    fn malformed(self, problem: impl std::fmt::Display) -> ReadProblem {
+        ReadProblem::Malformed { format: self.name(), problem: problem.to_string() }
+    }
+}
+
+/// Reads a mesh file whose name ends in `.obj`, `.stl`, `.ply` or `.glb`.
+///
+/// Coordinates are taken as metres; [`scaled`](crate::Mesh::scaled) makes metres of other
+/// units. Faces with more than three corners are cut into triangles.
+///
+/// # Errors
+///
+/// If the file cannot be read, is larger than [`LARGEST_FILE`], is not what its ending
+/// says, or holds no [mesh](crate::Mesh::new).
+pub fn read_file(path: impl AsRef<Path>) -> Result<TriangleMesh, ReadError> {
+    let path = path.as_ref();
+    from_path(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
+}
+
+fn from_path(path: &Path) -> Result<TriangleMesh, ReadProblem> {
+    let ending = || path.extension().unwrap_or_default().to_string_lossy().into_owned();
+    let format = Format::of(path).ok_or_else(|| ReadProblem::Ending { ending: ending() })?;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    read(&bytes, format)
+}
+
+/// Reads a mesh from the bytes of a file; see [`read_file`].
+///
+/// # Errors
+///
+/// If the bytes are not what the format asks for, or hold no [mesh](crate::Mesh::new).
+pub fn read(bytes: &[u8], format: Format) -> Result<TriangleMesh, ReadProblem> {
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(ReadProblem::TooLarge { bytes: bytes.len() as u64 });
+    }
+    match format {
+        Format::Obj => obj::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Ply => ply::read(bytes),
+        Format::Glb => glb::read(bytes),
+    }
+}
+
+/// The mesh of polygons: how many corners each has, and the corners of all.
+fn of_polygons(
+    vertices: Vec<Point<3>>,
+    sizes: &[u32],
+    corners: &[u32],
+    format: Format,
+) -> Result<TriangleMesh, ReadProblem> {
+    let mut triangles = Vec::with_capacity(sizes.len());
+    let mut rest = corners;
+    for (face, &size) in sizes.iter().enumerate() {
+        let size = size as usize;
+        let Some((polygon, after)) = rest.split_at_checked(size) else {
+            return Err(format.malformed(format_args!("face {face} ends too early")));
+        };
+        rest = after;
+        if size < 3 {
+            return Err(format.malformed(format_args!("face {face} has {size} corners")));
+        }
+        if size > MOST_CORNERS {
+            return Err(ReadProblem::Polygon { face, corners: size });
+        }
+        if let Some(&index) = polygon.iter().find(|&&i| i as usize >= vertices.len()) {
+            let vertices = vertices.len();
+            let index = u64::from(index);
+            return Err(crate::MeshError::Index { element: face, index, vertices }.into());
+        }
+        triangulate(polygon, &vertices, &mut triangles);
+    }
+    Ok(TriangleMesh::new(vertices, triangles)?)
+}

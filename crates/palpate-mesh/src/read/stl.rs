@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! STL, with stl_io.
+//!
+//! A file is binary if it is as long as its count of triangles says, whatever its header
+//! says: headers of binary files may begin as those of text do.
+
+use std::io::Cursor;
+
+use palpate_field::Vector;
+
+use super::Format;
+use crate::error::ReadProblem;
+use crate::mesh::TriangleMesh;
+
+/// Bytes of a binary header, of the count behind it, and of a triangle.
+const HEADER: usize = 80;
+const COUNT: usize = 4;
+const TRIANGLE: usize = 50;
+
+pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
+    let mut vertices = Vec::new();
+    if is_binary(bytes) {
+        let mut copy = bytes.to_vec();
+        copy[..HEADER].fill(0);
+        append(&copy, &mut vertices)?;
+    } else {
+        let text = String::from_utf8_lossy(bytes);
+        for solid in solids(&text) {
+            append(solid.as_bytes(), &mut vertices)?;
+        }
+    }
+    let corners = (0..vertices.len() as u32).collect::<Vec<_>>();
+    let (triangles, _) = corners.as_chunks::<3>();
+    Ok(TriangleMesh::new(vertices, triangles.to_vec())?.welded())
+}
+
+fn is_binary(bytes: &[u8]) -> bool {
+    let Some(count) = bytes.get(HEADER..).and_then(|rest| rest.first_chunk::<COUNT>()) else {
+        return false;
+    };
+    let triangles = u32::from_le_bytes(*count) as usize;
+    let length = triangles.saturating_mul(TRIANGLE).saturating_add(HEADER + COUNT);
+    bytes.len() == length || !bytes.trim_ascii_start().starts_with(b"solid")
+}
+
+/// The solids of a text file, each with the name that stl_io asks for.
+fn solids(text: &str) -> Vec<String> {
+    let mut solids: Vec<String> = Vec::new();
+    let mut is_open = false;
+    for line in text.lines() {
+        let line = line.trim();
+        match line.split_whitespace().next() {
+            None => {}
+            Some("solid") if !is_open => {
+                is_open = true;
+                solids.push("solid of a file\n".to_owned());
+            }
+            word => {
+                is_open = is_open && word != Some("endsolid");
+                match solids.last_mut() {
+                    Some(solid) => {
+                        solid.push_str(line);
+                        solid.push('\n');
+                    }
+                    // What does not begin as a solid is for stl_io to refuse.
+                    None => solids.push(format!("{line}\n")),
+                }
+            }
+        }
+    }
+    solids
+}
+
+fn append(file: &[u8], vertices: &mut Vec<Vector<f64, 3>>) -> Result<(), ReadProblem> {
+    let mut file = Cursor::new(file);
+    let triangles =
+        stl_io::create_stl_reader(&mut file).map_err(|error| Format::Stl.malformed(error))?;
+    for (i, triangle) in triangles.enumerate() {
+        let triangle = triangle
+            .map_err(|error| Format::Stl.malformed(format_args!("triangle {i}: {error}")))?;
+        vertices.extend(triangle.vertices.map(|vertex| Vector(vertex.0.map(f64::from))));
+    }
+    Ok(())
+}

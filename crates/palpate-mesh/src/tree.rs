@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! An implicit tree of balls over the elements of a mesh.
+//!
+//! Elements are ordered by recursive medians of their middles, so that a left part is
+//! always a power of two times eight. Then each run of `8ᵏ` elements, from the first on,
+//! is compact, and a ball around each run is a tree of eight children a node in which
+//! nothing points to anything: the children of node i are `8i` to `8i + 7` one level
+//! below. Each level is a few plain arrays, and padded to whole groups of eight.
+
+use palpate_field::{Aabb, Point, Vector};
+
+use crate::ball::{radius_about, smallest_ball};
+
+/// Children of a node.
+pub const FAN: usize = 8;
+
+/// The balls of one level of a [`BallTree`].
+#[derive(Clone, Debug)]
+pub struct Level<const D: usize> {
+    centres: [Vec<f64>; D],
+    radii: Vec<f64>,
+}
+
+impl<const D: usize> Level<D> {
+    /// Those of `balls`, and what completes the last group.
+    fn new(balls: impl ExactSizeIterator<Item = (Point<D>, f64)>) -> Self {
+        let padded = balls.len().div_ceil(FAN) * FAN;
+        let mut level = Self {
+            centres: std::array::from_fn(|_| vec![0.0; padded]),
+            radii: vec![f64::NEG_INFINITY; padded],
+        };
+        for (i, (centre, radius)) in balls.enumerate() {
+            for (column, x) in level.centres.iter_mut().zip(centre.0) {
+                column[i] = x;
+            }
+            level.radii[i] = radius;
+        }
+        level
+    }
+
+    /// The centres of the children of a node one level up [m].
+    ///
+    /// # Panics
+    ///
+    /// If there is no such node.
+    #[inline]
+    #[must_use]
+    pub fn children(&self, node: usize) -> [Point<D>; FAN] {
+        let mut children = [Vector::ZERO; FAN];
+        for (axis, column) in self.centres.iter().enumerate() {
+            let column = &column[node * FAN..][..FAN];
+            for (child, x) in children.iter_mut().zip(column) {
+                child[axis] = *x;
+            }
+        }
+        children
+    }
+
+    /// The radii [m], rounded up; minus infinity where there is no ball.
+    #[inline]
+    #[must_use]
+    pub fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// The centre of ball `i` [m].
+    ///
+    /// # Panics
+    ///
+    /// If there is no such ball.
+    #[inline]
+    #[must_use]
+    pub fn centre(&self, i: usize) -> Point<D> {
+        let mut centre = Vector::ZERO;
+        for (axis, column) in self.centres.iter().enumerate() {
+            centre[axis] = column[i];
+        }
+        centre
+    }
+}
+
+/// Balls around the elements of a mesh, around groups of eight of them, and so on.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_mesh::{MeshError, Outline};
+///
+/// # fn main() -> Result<(), MeshError> {
+/// // A row of 20 segments, each half a metre long: 20 balls, 3 around eight each, 1.
+/// let vertices = (0..21_u32).map(|i| Vector([0.5 * f64::from(i), 0.0])).collect();
+/// let row = Outline::new(vertices, (0..20).map(|i| [i, i + 1]).collect())?;
+/// let [elements, groups] = row.tree().levels() else { panic!("two levels") };
+/// assert_eq!(elements.centre(0), Vector([0.25, 0.0]));
+/// assert!(groups.radii()[0] >= 2.0 && groups.radii()[0] < 2.0 + 1e-12);
+/// assert_eq!(row.tree().elements_below(1, 2), [16, 17, 18, 19]);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct BallTree<const D: usize> {
+    levels: Vec<Level<D>>,
+    order: Vec<u32>,
+}
+
+impl<const D: usize> BallTree<D> {
+    pub(crate) fn new<const N: usize>(vertices: &[Point<D>], elements: &[[u32; N]]) -> Self {
+        let corners =
+            |element: u32| elements[element as usize].map(|index| vertices[index as usize]);
+        let middles: Vec<Point<D>> = (0..elements.len() as u32)
+            .map(|element| corners(element).into_iter().fold(Vector::ZERO, |sum, p| sum + p))
+            .collect();
+        let mut order: Vec<u32> = (0..elements.len() as u32).collect();
+        sort(&mut order, &middles);
+
+        let mut levels = vec![Level::new(order.iter().map(|&element| {
+            let ball = smallest_ball(&corners(element));
+            (ball.centre, ball.radius)
+        }))];
+        let mut size = FAN;
+        while order.len().div_ceil(size / FAN) > FAN {
+            levels.push(Level::new(order.chunks(size).map(|group| {
+                let points: Vec<_> =
+                    group.iter().flat_map(|&element| corners(element)).collect();
+                let centre = Aabb::around(points.iter().copied())
+                    .map_or(Vector::ZERO, |bounds| bounds.centre());
+                (centre, radius_about(centre, &points))
+            })));
+            size *= FAN;
+        }
+        Self { levels, order }
+    }
+
+    /// The levels, from the elements' own balls up to one of at most eight.
+    #[must_use]
+    pub fn levels(&self) -> &[Level<D>] {
+        &self.levels
+    }
+
+    /// The elements, in the order of their balls.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The elements in ball `i` of a level; none in what completes a group.
+    #[inline]
+    #[must_use]
+    pub fn elements_below(&self, level: usize, i: usize) -> &[u32] {
+        let size = FAN.saturating_pow(level as u32);
+        let start = i.saturating_mul(size).min(self.order.len());
+        let end = start.saturating_add(size).min(self.order.len());
+        &self.order[start..end]
+    }
+}
+
+/// Sorts elements by the medians of their middles, along the longest side of the box
+/// around those; a tie goes to the lower element.
+fn sort<const D: usize>(order: &mut [u32], middles: &[Point<D>]) {
+    if order.len() <= FAN {
+        return;
+    }
+    let Some(bounds) = Aabb::around(order.iter().map(|&i| middles[i as usize])) else { return };
+    let sides = bounds.half_extents();
+    let axis = (1..D).fold(0, |longest, k| if sides[k] > sides[longest] { k } else { longest });
+    let mut half = FAN;
+    while 2 * half < order.len() {
+        half *= 2;
+    }
+    order.select_nth_unstable_by(half, |&a, &b| {
+        let along = |i: u32| middles[i as usize][axis];
+        along(a).total_cmp(&along(b)).then(a.cmp(&b))
+    });
+    let (left, right) = order.split_at_mut(half);
+    sort(left, middles);
+    sort(right, middles);
+}

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Files of every format: one tetrahedron in all of them, real meshes, and files that are
+//! cut off, altered or made of noise.
+
+mod samples;
+
+use palpate_field::Vector;
+use palpate_mesh::{Format, MeshError, ReadProblem, TriangleMesh, read, read_file};
+use palpate_testkit::cases;
+
+use samples::{all, glb, of_nodes};
+
+/// The corners of a mesh's triangles, whatever its vertices are called.
+fn corners(mesh: &TriangleMesh) -> Vec<[[f64; 3]; 3]> {
+    (0..mesh.elements().len()).map(|i| mesh.corners(i).map(|p| p.0)).collect()
+}
+
+#[test]
+fn one_tetrahedron_is_the_same_in_every_format() {
+    let samples = all();
+    let first = read(&samples[0].1, samples[0].0).unwrap();
+    assert_eq!(first.report().enclosed, Some(1.0));
+    for (format, bytes) in samples {
+        let mesh = read(&bytes, format).unwrap();
+        assert_eq!(corners(&mesh), corners(&first), "{format:?}");
+        assert!(mesh.report().is_watertight());
+        assert_eq!(mesh.report().vertices, 4);
+    }
+}
+
+#[test]
+fn objects_groups_textures_and_signs_of_obj_are_understood() {
+    let text = "# a comment\nmtllib none.mtl\no one\nv 0 0 0 1 0 0\nv 1 0 0\n\
+                v 1 1 0 # another\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\
+                f 1/1/1 2//1 3/1\\\n 4\nv 0 0 5\nv 7 7 7\no two\nf -6 -5 -2\nl 1 2\n";
+    let mesh = read(text.as_bytes(), Format::Obj).unwrap();
+    assert_eq!(mesh.elements().len(), 3);
+    assert_eq!(mesh.corners(2).map(|p| p.0), [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 5.0]]);
+    let report = mesh.report();
+    assert_eq!((report.vertices, report.unreferenced), (6, 1));
+}
+
+#[test]
+fn a_text_file_may_hold_several_solids_without_names() {
+    let facet = |z: i32| {
+        format!(
+            "solid\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 {z}\n   vertex 1 0 {z}\n   \
+             vertex 0 1 {z}\n  endloop\n endfacet\nendsolid\n"
+        )
+    };
+    let mesh = read((facet(0) + &facet(1)).as_bytes(), Format::Stl).unwrap();
+    assert_eq!((mesh.elements().len(), mesh.vertices().len()), (2, 6));
+}
+
+#[test]
+fn nodes_of_glb_move_turn_and_mirror_what_they_show() {
+    // Within the first node, which doubles, a second moves; a third mirrors.
+    let nodes = r#"{"scale":[2,2,2],"children":[1]},{"translation":[1,0,0],"mesh":0},
+                   {"scale":[-1,1,1],"mesh":0}"#;
+    let mesh = read(&of_nodes(nodes, "0,2"), Format::Glb).unwrap();
+    assert_eq!(mesh.elements().len(), 8);
+    assert_eq!(mesh.vertices()[1], Vector([4.0, 0.0, 0.0]));
+    assert_eq!(mesh.vertices()[5], Vector([-1.0, 0.0, 0.0]));
+    // Doubled, eight times the volume; mirrored, turned over so that it is positive too.
+    assert_eq!(mesh.report().enclosed, Some(9.0));
+}
+
+#[test]
+fn a_node_in_two_places_is_refused() {
+    for nodes in [r#"{"children":[1]},{"children":[0]}"#, r#"{"children":[1,1]},{"mesh":0}"#] {
+        let wrong = read(&of_nodes(nodes, "0"), Format::Glb).unwrap_err().to_string();
+        assert!(wrong.contains("in two places"), "{wrong}");
+    }
+}
+
+#[test]
+fn real_meshes_are_what_they_are() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/meshes");
+    let load = |name: &str| read_file(format!("{folder}/{name}.ply")).unwrap();
+    let counts = |mesh: &TriangleMesh| (mesh.vertices().len(), mesh.elements().len());
+
+    // File, vertices, triangles, what it encloses, summed up in fractions.
+    for (name, vertices, elements, enclosed) in [
+        ("nut", 523, 1046, 32_171.322_236_985_983),
+        ("bunny", 1839, 3674, 194.288_371_256_762_2),
+        ("ant", 486, 912, 482.143_627_889_193_4),
+    ] {
+        let mesh = load(name);
+        assert_eq!(counts(&mesh), (vertices, elements));
+        let report = mesh.report();
+        assert!(report.is_watertight() && report.degenerate == 0, "{name}: {report:?}");
+        assert_eq!((report.unreferenced, report.coincident, report.duplicates), (0, 0, 0));
+        let off = report.enclosed.unwrap() - enclosed;
+        assert!(off.abs() < 1e-9 * enclosed.abs(), "{name}: {report:?}");
+    }
+    let airplane = load("airplane");
+    assert_eq!(counts(&airplane), (1335, 2452));
+    let report = airplane.report();
+    assert_eq!((report.boundary, report.non_manifold, report.inconsistent), (223, 1, 0));
+    assert_eq!(report.enclosed, None);
+}
+
+#[test]
+fn files_that_are_cut_off_are_errors_or_meshes() {
+    for (format, bytes) in all() {
+        for length in 0..bytes.len() {
+            // Some formats end where a shorter file would: that it returns is the test.
+            let _ = read(&bytes[..length], format);
+        }
+    }
+}
+
+#[test]
+fn files_that_were_altered_are_errors_or_meshes() {
+    let samples = all();
+    cases::check(20000, |u| {
+        let (format, mut bytes) = samples[u.choose_index(samples.len())?].clone();
+        for _ in 0..u.int_in_range(1..=4)? {
+            let place = u.choose_index(bytes.len())?;
+            match u.int_in_range(0..=3)? {
+                0 => bytes[place] = u.arbitrary()?,
+                1 => bytes[place] ^= 1 << u.int_in_range(0..=7)?,
+                2 => drop(bytes.drain(place..bytes.len().min(place + 8))),
+                // A large count, or a number that is negative.
+                _ => {
+                    for byte in bytes.iter_mut().skip(place).take(4) {
+                        *byte = if byte.is_ascii_digit() { b'9' } else { 0xff };
+                    }
+                }
+            }
+            if bytes.is_empty() {
+                break;
+            }
+        }
+        let _ = read(&bytes, format);
+        Ok(Ok(()))
+    });
+}
+
+#[test]
+fn noise_is_an_error() {
+    cases::check(2000, |u| {
+        let count = u.int_in_range(0..=400)?;
+        let mut bytes = vec![0; count];
+        u.fill_buffer(&mut bytes)?;
+        for format in [Format::Obj, Format::Stl, Format::Ply, Format::Glb] {
+            if read(&bytes, format).is_ok() {
+                return Ok(Err(format!("{bytes:?} is a mesh in {format:?}")));
+            }
+        }
+        Ok(Ok(()))
+    });
+}
+
+#[test]
+fn counts_that_no_file_holds_take_no_memory() {
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n\
+               property float x\nproperty float y\nproperty float z\nend_header\n";
+    let wrong = read(ply.as_bytes(), Format::Ply).unwrap_err().to_string();
+    assert!(wrong.contains("hold no 4000000000 rows of \"vertex\""), "{wrong}");
+    let nothing = "ply\nformat ascii 1.0\nelement face 9\nend_header\n";
+    assert!(matches!(
+        read(nothing.as_bytes(), Format::Ply),
+        Err(ReadProblem::Malformed { format: "PLY", .. })
+    ));
+    let mut stl = vec![0; 84];
+    stl[80..].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(matches!(read(&stl, Format::Stl), Err(ReadProblem::Malformed { .. })));
+    let accessor = r#"{"componentType":5126,"count":4000000000,"type":"VEC3","bufferView":0,
+                      "min":[0,0,0],"max":[1,1,1]}"#;
+    let wrong =
+        read(&glb(accessor, r#"{"mesh":0}"#, "0"), Format::Glb).unwrap_err().to_string();
+    assert!(wrong.contains("more than"), "{wrong}");
+}
+
+#[test]
+fn errors_say_which_file_and_what_to_do() {
+    let missing = read_file("no/such/file.stl").unwrap_err();
+    assert!(missing.to_string().starts_with("no/such/file.stl: it cannot be read: "));
+    let other = read_file("model.fbx").unwrap_err();
+    assert_eq!(
+        other.to_string(),
+        "model.fbx: the ending \"fbx\" is none of .obj, .stl, .ply and .glb: convert the file"
+    );
+    let empty = read(b"v 0 0 0\nv 1 0 0\n", Format::Obj).unwrap_err();
+    assert!(matches!(empty, ReadProblem::Mesh(MeshError::Empty { vertices: 2 })), "{empty:?}");
+    let outside = read(b"v 0 0 0\nv 1 0 0\nf 1 2 4\n", Format::Obj).unwrap_err();
+    assert_eq!(
+        outside.to_string(),
+        "it is no good OBJ: face vertex index out of bounds; export it again"
+    );
+    let nan = read(b"v 0 0 0\nv 1 nan 0\nv 1 1 1\nf 1 2 3\n", Format::Obj).unwrap_err();
+    assert_eq!(nan.to_string(), "vertex 1 must be finite and at most 1e15 m, got NaN m");
+}

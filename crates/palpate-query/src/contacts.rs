@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! All contacts of a field on one segment or triangle.
+//!
+//! An element that crosses two bumps touches twice. The part of it within the gap is
+//! divided into [patches](crate::patches), each with a minimum of its own, and each is
+//! searched by itself.
+
+use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
+
+use crate::certified::{Certified, Limits, Stop};
+use crate::contact::Contact;
+use crate::element::Element;
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::patches::{MOST_CELLS, Patches};
+use crate::sampler::{normal as direction, unit};
+use crate::search::{Cell, Search, Terms, Workspace};
+
+/// Heights over and under the centre of an element from which it is seen to be plain, in
+/// radii: half a block each.
+const HEIGHTS: [f64; SHORT / 2] = [1.5, 4.0, 12.0, 40.0];
+
+/// An element that is not plain is looked at in as many cells at least: 8 to the edge of a
+/// triangle. Bumps that are narrower may hide between their centres.
+const FEW_CELLS: usize = 64;
+
+/// A point is this much off the surface, in parts of the coordinates, before the way to
+/// the surface is a direction.
+const DIRECTION: f64 = 1e-9;
+
+/// All contacts of one element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementContacts<'a, const D: usize> {
+    /// The contacts, the deepest first, in the shape's coordinates.
+    pub contacts: &'a [Contact<D>],
+    /// The field's least value on the element, as of [`minimum`](crate::minimum) if the
+    /// element comes within the gap, which it is proven not to do if `lower` is above it.
+    pub least: Certified<Point<D>>,
+}
+
+/// All contacts of a shape on an element, up to a gap [m], in the shape's coordinates.
+///
+/// The element comes within `gap` where the field is at most that, times its steepness if
+/// that is more than one. There is a contact for each patch of it:
+///
+/// - **The deepest** contact comes first, at the least value of the field on the element, to
+///   `limits.tolerance`.
+/// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
+///   lies a barrier: every path on the element from one to the other passes a point where
+///   the field is larger than at both, by more than the tolerance. That is proven.
+/// - **Nothing is missed:** from every point within the gap a path on the element, of cells
+///   that are no higher than it as far as their bounds tell, leads to a contact that is as
+///   deep as it is, up to the tolerance.
+///
+/// What is not promised: two minima closer to each other than an eighth of a triangle's edge,
+/// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two
+/// between which no barrier can be proven with a thirty-second of the edge, or with
+/// `limits.budget`.
+///
+/// A contact's normal points from the shape to the element. Its gap is the way to the
+/// surface point that Newton's method finds, the nearest one where the field is exact. It
+/// may exceed `gap` by the tolerance, and more where the field is a bound. Its `id` counts
+/// the contacts of the element.
+///
+/// # Errors
+///
+/// If `gap` is negative, too large or no number.
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+/// use palpate_query::{Element, Limits, Workspace, contacts};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let bump = |x: f64| Shape::from_kernel(Ball::new(1.0)?).translated(Vector([x, 0.0]));
+/// let bumps = Shape::union([bump(-2.0)?, bump(2.0)?])?;
+/// let segment = Element::new([Vector([-3.0, 0.8]), Vector([3.0, 0.9])])?;
+/// let mut workspace = Workspace::new();
+/// let touching = contacts(&bumps, &segment, 0.0, &Limits::default(), &mut workspace)?;
+/// let [left, right] = touching.contacts else { panic!("two contacts") };
+/// assert!(left.point_b[0] < 0.0 && right.point_b[0] > 0.0 && left.gap < right.gap);
+/// # Ok(())
+/// # }
+/// ```
+pub fn contacts<'w, const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    gap: f64,
+    limits: &Limits,
+    workspace: &'w mut Workspace<N, D>,
+) -> Result<ElementContacts<'w, D>, QueryError> {
+    let terms = Terms {
+        goal: Goal::least(limits.tolerance),
+        budget: limits.budget,
+        level: level(shape, gap)?,
+        reach: 0.0,
+    };
+    let mut contacts = std::mem::take(&mut workspace.contacts);
+    contacts.clear();
+    let least = append(shape, element, &terms, workspace, &mut contacts);
+    workspace.contacts = contacts;
+    Ok(ElementContacts { contacts: &workspace.contacts, least })
+}
+
+/// What values are compared with for a gap [m].
+pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, QueryError> {
+    if !(0.0..=LARGEST_LENGTH).contains(&gap) {
+        return Err(QueryError::Length { value: gap });
+    }
+    Ok(gap * shape.promise().lipschitz.max(1.0))
+}
+
+/// Appends the contacts on an element, and says what is known of its minimum.
+pub(crate) fn append<const N: usize, const D: usize>(
+    shape: &Shape<D>,
+    element: &Element<N, D>,
+    terms: &Terms,
+    workspace: &mut Workspace<N, D>,
+    out: &mut Vec<Contact<D>>,
+) -> Certified<Point<D>> {
+    let first = out.len();
+    let Workspace { cells, samples, patches, .. } = workspace;
+    let tolerance = terms.goal.tolerance;
+    let mut search = Search::new(shape, element, terms, samples);
+    let answer = search.patches(element, patches, cells, |answer| {
+        if answer.lower <= 0.0 && answer.upper <= tolerance.max(0.0) {
+            out.push(at(shape, answer.best));
+        }
+    });
+    out[first..].sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+    for (id, contact) in out[first..].iter_mut().enumerate() {
+        contact.id = id as u64;
+    }
+    Certified { lower: answer.lower + terms.level, upper: answer.upper + terms.level, ..answer }
+}
+
+impl<const N: usize, const D: usize> Search<'_, N, D> {
+    /// Tells what is known of each patch of an element, and returns what is known of all.
+    fn patches(
+        &mut self,
+        element: &Element<N, D>,
+        patches: &mut Patches<N, D>,
+        cells: &mut Vec<Cell<N, D>>,
+        mut tell: impl FnMut(&Certified<Point<D>>),
+    ) -> Certified<Point<D>> {
+        let tolerance = self.goal.tolerance;
+        let whole = match self.begin(element) {
+            Err(answer) => {
+                tell(&answer);
+                return answer;
+            }
+            Ok(whole) if whole.lower > 0.0 => return self.answer(whole.lower, Stop::SignKnown),
+            Ok(whole) => whole,
+        };
+        patches.cells.clear();
+        patches.cells.push(whole);
+        patches.radius = self.radius;
+        if !self.sampler.is_convex() && !self.is_plain(&whole, tolerance) {
+            self.keeps_all = true;
+            self.refine(tolerance, patches);
+            self.keeps_all = false;
+        }
+        if patches.cells.is_empty() {
+            return self.answer(self.dropped, Stop::SignKnown);
+        }
+        let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
+        let mut all = self.answer(self.dropped, Stop::Converged);
+        for patch in 0..patches.divide(&self.weights, tolerance, |cell| cell.lower) {
+            let deepest = patches.copy(patch, cells);
+            self.dropped = f64::INFINITY;
+            if !is_whole {
+                // What was found is at the centre.
+                (self.upper, self.best) = (deepest.upper, deepest.element.at(&self.weights));
+            }
+            let answer = self.finish(cells);
+            tell(&answer);
+            if answer.upper < all.upper {
+                (all.upper, all.best) = (answer.upper, answer.best);
+            }
+            all.lower = all.lower.min(answer.lower);
+            if answer.stop == Stop::BudgetSpent {
+                all.stop = Stop::BudgetSpent;
+            }
+        }
+        Certified { evaluations: self.sampler.evaluations, ..all }
+    }
+
+    /// Halves all cells until there are as many patches as their values let expect, or as
+    /// many cells as are looked at together.
+    fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
+        let parts = self.parts;
+        let mut cells_of_whole = 1;
+        while !patches.cells.is_empty()
+            && patches.cells.len() * parts <= MOST_CELLS
+            && patches.radius * self.sampler.steepness.lipschitz > tolerance
+            && self.sampler.evaluations < self.budget
+        {
+            let Patches { cells, halves, .. } = &mut *patches;
+            halves.clear();
+            for parents in cells.chunks(SHORT / parts) {
+                let (mut block, mut count) = ([parents[0]; SHORT], 0);
+                for parent in parents {
+                    parent.halve_into(parts, &mut block, &mut count);
+                }
+                self.look_at(&mut block, count, halves);
+            }
+            std::mem::swap(cells, halves);
+            patches.radius *= 0.5;
+            cells_of_whole *= parts;
+            if cells_of_whole >= FEW_CELLS {
+                let seen = patches.divide(&self.weights, tolerance, |cell| cell.upper);
+                let proven = patches.divide(&self.weights, tolerance, |cell| cell.lower);
+                if proven >= seen {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// `true` if no barrier on a cell is higher than the tolerance.
+    ///
+    /// The field lies between `f(p) − L‖x − p‖` and `f(q) + L‖x − q‖`, of points over and
+    /// under the centre. The second is convex: from any point to a lower one a straight
+    /// path on the cell does not climb. So where both differ by at most the tolerance, it
+    /// climbs by no more in the field. Their difference is convex, and largest at a vertex.
+    fn is_plain(&mut self, cell: &Cell<N, D>, tolerance: f64) -> bool {
+        let centre = cell.element.at(&self.weights);
+        let mut points = [centre; SHORT];
+        for (k, height) in HEIGHTS.iter().enumerate() {
+            let offset = cell.direction * (height * self.radius_of(cell));
+            (points[2 * k], points[2 * k + 1]) = (centre + offset, centre - offset);
+        }
+        let values = self.sampler.values(&points);
+        let steepness = &self.sampler.steepness;
+        (0..HEIGHTS.len()).any(|k| {
+            let change = |i: usize, vertex: Point<D>| {
+                steepness.change(|| points[i], (vertex - points[i]).norm())
+            };
+            cell.element.vertices.iter().all(|&vertex| {
+                let changes = change(2 * k, vertex) + change(2 * k + 1, vertex);
+                values[2 * k + 1] - values[2 * k] + changes <= tolerance
+            })
+        })
+    }
+}
+
+/// The contact of a shape at a point of something else; its id is still to be given.
+pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
+    let (value, gradient) = shape.distance_gradient(p);
+    let sign = if value < 0.0 { -1.0 } else { 1.0 };
+    let surface = shape
+        .surface_point(p)
+        .unwrap_or_else(|| p - unit(gradient) * (value / shape.promise().lipschitz.max(1.0)));
+    let apart = (p - surface) * sign;
+    let length = apart.norm();
+    let normal = if length > DIRECTION * p.norm() {
+        apart * (1.0 / length)
+    } else {
+        // On the surface, or where the field has no direction.
+        let there = direction(shape.distance_gradient(surface).1);
+        there.or(direction(gradient)).unwrap_or(Vector::unit(D - 1))
+    };
+    let gap = (p - surface).dot(normal);
+    Contact { point_a: surface, point_b: p, normal, gap, id: 0 }
+}

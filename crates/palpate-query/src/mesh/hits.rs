@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Which elements of a mesh touch a field.
+//!
+//! Breadth first through the tree of balls, eight nodes with eight children each in a
+//! block. From the value at a centre, with the ball's radius r and the field's steepness L,
+//!
+//! ```text
+//! f(centre) > L·r     nothing below touches;
+//! f(centre) < −L·r    everything below does, and nothing more is asked of it.
+//! ```
+//!
+//! What is left of the elements is looked at 64 at a time: a point lifted off the centre
+//! along the gradient frees most (see [`search`](crate::search)), the lowest corner of the
+//! linear model hits most. Those that stay open are halved twice and looked at again. Few
+//! remain to be searched one by one.
+
+use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
+use palpate_mesh::FAN;
+
+use super::placed::{PlacedMesh, View};
+use crate::certified::Limits;
+use crate::contact::Contact;
+use crate::contacts::level;
+use crate::element::{Element, parts_of_one};
+use crate::error::QueryError;
+use crate::goal::Goal;
+use crate::placed::Placed;
+use crate::sampler::{Steepness, unit};
+use crate::search::{Terms, Workspace, search};
+
+/// How high points are lifted off elements, in radii.
+const HEIGHT: f64 = 4.0;
+
+/// How often elements that stay open are halved together with others.
+const HALVINGS: u32 = 2;
+
+/// Memory of searches over meshes, to be kept between them: after the first on a mesh of
+/// some size, none allocates.
+#[derive(Debug)]
+pub struct MeshWorkspace<const N: usize, const D: usize> {
+    block: Block<f64, D, BLOCK>,
+    values: Column<f64, BLOCK>,
+    slopes: Gradients<f64, D, BLOCK>,
+    frontier: Vec<u32>,
+    next: Vec<u32>,
+    open: Vec<Part<N, D>>,
+    still_open: Vec<Part<N, D>>,
+    marks: Marks,
+    pub(super) hits: Vec<u32>,
+    pub(super) undecided: Vec<Undecided>,
+    pub(super) contacts: Vec<Contact<D>>,
+    pub(super) search: Workspace<N, D>,
+}
+
+/// An element or a part of one, where the field sees it.
+#[derive(Clone, Copy, Debug)]
+struct Part<const N: usize, const D: usize> {
+    name: u32,
+    element: Element<N, D>,
+    /// Of the smallest ball around it.
+    centre: Point<D>,
+    radius: f64,
+}
+
+impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
+    /// Room for searches over elements of `N` points in `D` dimensions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            block: Block::zero(),
+            values: Column::zero(),
+            slopes: Gradients::zero(),
+            frontier: Vec::new(),
+            next: Vec::new(),
+            open: Vec::new(),
+            still_open: Vec::new(),
+            marks: Marks::default(),
+            hits: Vec::new(),
+            undecided: Vec::new(),
+            contacts: Vec::new(),
+            search: Workspace::new(),
+        }
+    }
+}
+
+impl<const N: usize, const D: usize> Default for MeshWorkspace<N, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// An element of which it is not known whether it touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undecided {
+    /// The element.
+    pub element: u32,
+    /// The field is no less on it [m].
+    pub lower: f64,
+    /// The field is no more somewhere on it [m].
+    pub upper: f64,
+}
+
+/// What is known of every element of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshHits<'a> {
+    /// The elements that touch, ascending.
+    pub hits: &'a [u32],
+    /// Those of which it is not known, ascending. All others are proven free.
+    pub undecided: &'a [Undecided],
+    /// How often the field was asked; a gradient counts twice.
+    pub evaluations: u32,
+}
+
+/// Which elements of a mesh come as close to a field as `gap` [m], for certain.
+///
+/// An element touches if the field is at most `gap` somewhere on it, times the field's
+/// steepness if that is more than one: so no element within `gap` of the surface is
+/// missed, and where the field is exact none that is further off is named.
+///
+/// The mesh stays as it is: its tree is moved on the way. Each element of which the tree
+/// and a few points say too little is searched with `limits` of its own, and is undecided
+/// if they do not suffice. Before that, the field is asked at most 65 times an element, and
+/// not even once of those in large balls that are all free, or all inside.
+///
+/// # Errors
+///
+/// If `gap` is negative or no number, or a pose is not finite or beyond 1e15 m.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_mesh::Outline;
+/// use palpate_query::{Limits, MeshWorkspace, PlacedMesh, mesh_hits};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let disc = Shape::from_kernel(Ball::new(1.0)?);
+/// let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]].map(Vector).to_vec();
+/// let triangle = Outline::new(corners, vec![[0, 1], [1, 2], [2, 0]])?;
+/// let mut workspace = MeshWorkspace::new();
+/// // Its lowest side passes the disc at 0.5, and its long side at 1.3.
+/// let placed = PlacedMesh::new(&triangle, Pose::translation(Vector([-2.0, 0.5])));
+/// let near = mesh_hits(&disc, placed, 0.0, &Limits::default(), &mut workspace)?;
+/// assert_eq!(near.hits, [0]);
+/// assert!(near.undecided.is_empty());
+/// # Ok(())
+/// # }
+/// ```
+pub fn mesh_hits<'a, 'w, const N: usize, const D: usize>(
+    field: impl Into<Placed<'a, D>>,
+    mesh: impl Into<PlacedMesh<'a, N, D>>,
+    gap: f64,
+    limits: &Limits,
+    workspace: &'w mut MeshWorkspace<N, D>,
+) -> Result<MeshHits<'w>, QueryError> {
+    let evaluations = find(&field.into(), &mesh.into(), gap, limits, workspace)?;
+    Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
+}
+
+/// Finds the hits of a mesh and what is undecided, in its workspace.
+pub(super) fn find<const N: usize, const D: usize>(
+    field: &Placed<'_, D>,
+    placed: &PlacedMesh<'_, N, D>,
+    gap: f64,
+    limits: &Limits,
+    workspace: &mut MeshWorkspace<N, D>,
+) -> Result<u32, QueryError> {
+    let level = level(field.shape, gap)?;
+    let view = placed.seen_from(field)?;
+    // No element is larger than the mesh.
+    let highest = HEIGHT * placed.mesh.bounds().half_extents().norm();
+    let sweep = Sweep {
+        shape: field.shape,
+        steepness: Steepness::new(field.shape, view.reach + highest, level),
+        view,
+        level,
+        evaluations: 0,
+    };
+    let evaluations = sweep.run(limits, workspace);
+    workspace.marks.move_to(&mut workspace.hits);
+    workspace.undecided.sort_unstable_by_key(|undecided| undecided.element);
+    Ok(evaluations)
+}
+
+/// A bit for each element that touches: there may be thousands, and to sort them would take
+/// longer than finding them did.
+#[derive(Debug, Default)]
+struct Marks(Vec<u64>);
+
+impl Marks {
+    /// None set, of `count`.
+    fn reset(&mut self, count: usize) {
+        self.0.clear();
+        self.0.resize(count.div_ceil(64), 0);
+    }
+
+    #[inline]
+    fn set(&mut self, i: u32) {
+        self.0[i as usize / 64] |= 1 << (i % 64);
+    }
+
+    #[inline]
+    fn is_set(&self, i: u32) -> bool {
+        self.0[i as usize / 64] >> (i % 64) & 1 == 1
+    }
+
+    /// Writes those that are set into `list`, ascending.
+    fn move_to(&mut self, list: &mut Vec<u32>) {
+        list.clear();
+        for (i, word) in self.0.iter().enumerate() {
+            let mut rest = *word;
+            while rest != 0 {
+                list.push(64 * i as u32 + rest.trailing_zeros());
+                rest &= rest - 1;
+            }
+        }
+    }
+}
+
+/// A way through a mesh.
+struct Sweep<'a, const N: usize, const D: usize> {
+    shape: &'a Shape<D>,
+    view: View<'a, N, D>,
+    steepness: Steepness<D>,
+    level: f64,
+    evaluations: u32,
+}
+
+impl<const N: usize, const D: usize> Sweep<'_, N, D> {
+    fn run(mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) -> u32 {
+        workspace.marks.reset(self.view.mesh.elements().len());
+        workspace.open.clear();
+        workspace.undecided.clear();
+        workspace.frontier.clear();
+        // The top level is the children of one node that is not asked.
+        workspace.frontier.push(0);
+        for level in (0..self.view.mesh.tree().levels().len()).rev() {
+            self.descend(level, workspace);
+        }
+        self.look_closer(workspace);
+        for _ in 0..HALVINGS {
+            halve(workspace);
+            self.look_closer(workspace);
+        }
+        self.search_rest(limits, workspace);
+        // Lists that take turns may each need the room of the other next time.
+        equalise(&mut workspace.frontier, &mut workspace.next);
+        equalise(&mut workspace.open, &mut workspace.still_open);
+        self.evaluations
+    }
+
+    /// Asks at the centres of all children of the frontier.
+    fn descend(&mut self, level: usize, workspace: &mut MeshWorkspace<N, D>) {
+        let tree = self.view.mesh.tree();
+        let MeshWorkspace { block, values, frontier, next, open, marks, .. } = workspace;
+        let balls = &tree.levels()[level];
+        next.clear();
+        for group in frontier.chunks(BLOCK / FAN) {
+            let count = group.len() * FAN;
+            for (lane, &node) in group.iter().enumerate() {
+                for (i, centre) in balls.children(node as usize).into_iter().enumerate() {
+                    block
+                        .set(lane * FAN + i, self.view.field_from_mesh.transform_point(centre));
+                }
+            }
+            self.shape.block_distances(block, count, values);
+            self.evaluations += count as u32;
+            for (lane, &node) in group.iter().enumerate() {
+                let first = node as usize * FAN;
+                for (i, &radius) in balls.radii()[first..][..FAN].iter().enumerate() {
+                    let (child, lane) = (first + i, lane * FAN + i);
+                    let value = values.get(lane) - self.level;
+                    let change = self.steepness.change(|| block.get(lane), radius);
+                    // What completes a group has no radius. NaN is neither free nor a hit.
+                    if radius < 0.0 || value > change {
+                        continue;
+                    }
+                    match level {
+                        0 if value <= -self.steepness.slack => marks.set(tree.order()[child]),
+                        0 => {
+                            let (name, centre) = (tree.order()[child], block.get(lane));
+                            open.push(Part {
+                                name,
+                                element: self.view.element(name),
+                                centre,
+                                radius,
+                            });
+                        }
+                        _ if value < -change => {
+                            for &element in tree.elements_below(level, child) {
+                                marks.set(element);
+                            }
+                        }
+                        _ => next.push(child as u32),
+                    }
+                }
+            }
+        }
+        std::mem::swap(frontier, next);
+    }
+
+    /// Asks about the parts that are open, a block at a time, and keeps those that stay so.
+    fn look_closer(&mut self, workspace: &mut MeshWorkspace<N, D>) {
+        let MeshWorkspace { block, values, slopes, open, still_open, marks, .. } = workspace;
+        still_open.clear();
+        for parts in open.chunks(BLOCK) {
+            for (lane, part) in parts.iter().enumerate() {
+                block.set(lane, part.centre);
+            }
+            self.shape.block_gradients(block, parts.len(), slopes);
+            let mut is_on_it = [false; BLOCK];
+            for (lane, part) in parts.iter().enumerate() {
+                let (value, gradient) =
+                    (slopes.distance.get(lane) - self.level, slopes.gradient.get(lane));
+                let rise = |p: Point<D>| (p - part.centre).dot(gradient);
+                let [first, rest @ ..] = part.element.vertices().as_slice() else { continue };
+                let lowest =
+                    rest.iter().fold(*first, |a, b| if rise(*b) < rise(a) { *b } else { a });
+                is_on_it[lane] = value + rise(lowest) <= 0.0;
+                let lifted = part.centre + unit(gradient) * (HEIGHT * part.radius);
+                block.set(lane, if is_on_it[lane] { lowest } else { lifted });
+                if value <= -self.steepness.slack {
+                    marks.set(part.name);
+                }
+            }
+            self.shape.block_distances(block, parts.len(), values);
+            self.evaluations += 3 * parts.len() as u32;
+            for (lane, part) in parts.iter().enumerate() {
+                let (p, value) = (block.get(lane), values.get(lane) - self.level);
+                if is_on_it[lane] && value <= -self.steepness.slack {
+                    marks.set(part.name);
+                }
+                let lower = self.steepness.bound(p, value, part.element.farthest(p));
+                let is_free = lower > 0.0;
+                if !is_free && !marks.is_set(part.name) {
+                    still_open.push(*part);
+                }
+            }
+        }
+        std::mem::swap(open, still_open);
+    }
+
+    /// Searches the elements that are still open, one by one.
+    fn search_rest(&mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) {
+        let terms = Terms {
+            goal: Goal::sign(limits.tolerance),
+            budget: limits.budget,
+            level: self.level,
+            reach: self.view.reach,
+        };
+        let MeshWorkspace { open, marks, undecided, search: memory, .. } = workspace;
+        open.dedup_by_key(|part| part.name);
+        for &Part { name, .. } in &*open {
+            if marks.is_set(name) {
+                continue;
+            }
+            let element = self.view.element(name);
+            let answer = search(self.shape, &element, &terms, memory);
+            self.evaluations += answer.evaluations;
+            match answer.is_hit() {
+                Some(true) => marks.set(name),
+                Some(false) => {}
+                None => undecided.push(Undecided {
+                    element: name,
+                    lower: answer.lower + self.level,
+                    upper: answer.upper + self.level,
+                }),
+            }
+        }
+    }
+}
+
+/// Gives two lists the room of the larger, and empties them.
+fn equalise<T>(a: &mut Vec<T>, b: &mut Vec<T>) {
+    let room = a.capacity().max(b.capacity());
+    for list in [a, b] {
+        list.clear();
+        list.reserve_exact(room);
+    }
+}
+
+/// Halves the parts that are open.
+fn halve<const N: usize, const D: usize>(workspace: &mut MeshWorkspace<N, D>) {
+    let MeshWorkspace { open, still_open, marks, .. } = workspace;
+    still_open.clear();
+    for part in open.iter().filter(|part| !marks.is_set(part.name)) {
+        let weights = part.element.centre_weights();
+        let (name, radius) = (part.name, 0.5 * part.radius);
+        still_open.extend(
+            part.element.halves()[..parts_of_one::<N>()].iter().map(|&element| Part {
+                name,
+                element,
+                centre: element.at(&weights),
+                radius,
+            }),
+        );
+    }
+    std::mem::swap(open, still_open);
+}

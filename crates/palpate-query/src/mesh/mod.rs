@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Meshes against fields.
+
+mod contacts;
+mod hits;
+mod placed;
+
+pub use contacts::{MeshContacts, mesh_contacts};
+pub use hits::{MeshHits, MeshWorkspace, Undecided, mesh_hits};
+pub use placed::PlacedMesh;

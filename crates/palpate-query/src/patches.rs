@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Parts of an element with a minimum of their own.
+//!
+//! Water rises over the cells of an element. A cell is under water from its lower bound
+//! on, and joined with the cells under water that it may touch. Where two pools meet, a
+//! path between them must climb to the lower bound of the cell that joins them, at least.
+//! If that is higher than the floor found in each pool, by more than the tolerance, the
+//! shallower pool is a patch, complete as it is; else the two are one. What is
+//! left at the end, the deepest pool of each connected part, is a patch too.
+//!
+//! This is the persistence of minima (Edelsbrunner, Letscher and Zomorodian 2002), with
+//! bounds in the place of values, so that what is told apart is apart.
+
+use palpate_field::Point;
+
+use crate::sampler::unit;
+use crate::search::Cell;
+
+/// The most cells that are looked at together: 32 to the edge of a triangle.
+pub(crate) const MOST_CELLS: usize = 1024;
+
+/// Room for the rounding of how far centres of cells are apart, relative to their radii.
+const ROUNDINGS: f64 = 1e-9;
+
+/// Memory of a division into patches.
+#[derive(Debug)]
+pub(crate) struct Patches<const N: usize, const D: usize> {
+    pub(crate) cells: Vec<Cell<N, D>>,
+    /// Of all cells [m].
+    pub(crate) radius: f64,
+    /// While cells are halved: those that become `cells`.
+    pub(crate) halves: Vec<Cell<N, D>>,
+    /// How far cells lie along a direction; they are sorted by it.
+    places: Vec<f64>,
+    centres: Vec<Point<D>>,
+    /// Cells as they go under water; in the end the deepest of each patch.
+    order: Vec<u32>,
+    is_wet: Vec<bool>,
+    /// For each cell, one whose water it is connected with, and one of the same patch: in
+    /// the end both lead to the deepest.
+    water: Vec<u32>,
+    patch: Vec<u32>,
+}
+
+impl<const N: usize, const D: usize> Patches<N, D> {
+    pub(crate) fn new() -> Self {
+        let room = MOST_CELLS;
+        Self {
+            cells: Vec::with_capacity(room),
+            radius: 0.0,
+            halves: Vec::with_capacity(room),
+            places: Vec::with_capacity(room),
+            centres: Vec::with_capacity(room),
+            order: Vec::with_capacity(room),
+            is_wet: Vec::with_capacity(room),
+            water: Vec::with_capacity(room),
+            patch: Vec::with_capacity(room),
+        }
+    }
+
+    /// Finds the patches of `cells`, which are all of one size, and how many there are. A
+    /// cell is under water from `shore` of it on, its lower bound if what is told apart is
+    /// to be so.
+    pub(crate) fn divide(
+        &mut self,
+        weights: &[f64; N],
+        tolerance: f64,
+        shore: impl Fn(&Cell<N, D>) -> f64,
+    ) -> usize {
+        self.sort_along_element(weights);
+        let Self { cells, order, .. } = self;
+        order.clear();
+        order.extend(0..cells.len() as u32);
+        order.sort_unstable_by(|&a, &b| {
+            let shore = |i: u32| shore(&cells[i as usize]);
+            shore(a).total_cmp(&shore(b)).then(a.cmp(&b))
+        });
+        self.is_wet.clear();
+        self.is_wet.resize(self.cells.len(), false);
+        for names in [&mut self.water, &mut self.patch] {
+            names.clear();
+            names.extend(0..self.cells.len() as u32);
+        }
+        for i in 0..self.order.len() {
+            let cell = self.order[i];
+            self.flood(cell, shore(&self.cells[cell as usize]) - tolerance);
+        }
+        let Self { cells, order, patch, .. } = self;
+        order.retain(|&i| patch[i as usize] == i);
+        order.sort_unstable_by(|&a, &b| {
+            let floor = |i: u32| cells[i as usize].upper;
+            floor(a).total_cmp(&floor(b)).then(a.cmp(&b))
+        });
+        order.len()
+    }
+
+    /// Sorts the cells along the longest edge, so that those that touch are not far apart.
+    fn sort_along_element(&mut self, weights: &[f64; N]) {
+        let Self { cells, places, centres, .. } = self;
+        let Some(first) = cells.first() else { return };
+        let edge = |i: usize| first.element.vertices[(i + 1) % N] - first.element.vertices[i];
+        let longest =
+            (1..N).fold(edge(0), |l, i| if edge(i).norm() > l.norm() { edge(i) } else { l });
+        let direction = unit(longest);
+        let place = |cell: &Cell<N, D>| cell.element.at(weights).dot(direction);
+        cells.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)));
+        places.clear();
+        places.extend(cells.iter().map(place));
+        centres.clear();
+        centres.extend(cells.iter().map(|cell| cell.element.at(weights)));
+    }
+
+    /// Puts a cell under water, and joins those pools through it of which the shallower has
+    /// its floor at `least` or above.
+    fn flood(&mut self, cell: u32, least: f64) {
+        let (centre, place) = (self.centres[cell as usize], self.places[cell as usize]);
+        let touching = 2.0 * self.radius * (1.0 + ROUNDINGS);
+        let start = self.places.partition_point(|&other| other < place - touching);
+        let end = self.places.partition_point(|&other| other <= place + touching);
+        self.is_wet[cell as usize] = true;
+        for other in start..end {
+            let apart = self.centres[other] - centre;
+            if !self.is_wet[other] || apart.dot(apart) > touching * touching {
+                continue;
+            }
+            let (a, b) = (root(&mut self.water, cell), root(&mut self.water, other as u32));
+            if a == b {
+                continue;
+            }
+            let floor = |i: u32| self.cells[i as usize].upper;
+            let (deep, shallow) = if floor(a) <= floor(b) { (a, b) } else { (b, a) };
+            // A cell that is alone has its floor above its shore, and is never apart.
+            if floor(shallow) >= least {
+                self.patch[shallow as usize] = deep;
+            }
+            self.water[shallow as usize] = deep;
+        }
+    }
+
+    /// The cells of a patch, into `cells`, and the one with the least value found. The patch
+    /// of which that is least comes first.
+    pub(crate) fn copy(&mut self, patch: usize, cells: &mut Vec<Cell<N, D>>) -> Cell<N, D> {
+        let deepest = self.order[patch];
+        cells.clear();
+        for (i, cell) in self.cells.iter().enumerate() {
+            if root(&mut self.patch, i as u32) == deepest {
+                cells.push(*cell);
+            }
+        }
+        self.cells[deepest as usize]
+    }
+}
+
+/// The last of those that each name the next; they are made to name it sooner.
+fn root(names: &mut [u32], mut name: u32) -> u32 {
+    while names[name as usize] != name {
+        let next = names[names[name as usize] as usize];
+        names[name as usize] = next;
+        name = next;
+    }
+    name
+}
