@@ -61,6 +61,30 @@ fn all_pairs_are_told_of_with_bounds_that_hold() {
 }
 
 #[test]
+fn what_the_budget_left_out_is_told() {
+    let folder = Folder::new();
+    let cube = |name: &str, x: f64| {
+        format!(
+            r#"{{ "name": "{name}", "shape": {{ "cuboid": {{ "size": [1, 1, 1] }} }},
+                  "pose": {{ "translation": [{x}, 0, 0] }} }}"#
+        )
+    };
+    let scene = format!(
+        r#"{{ "palpate": 1, "dimension": 3, "bodies": [{}, {}] }}"#,
+        cube("one", 0.0),
+        cube("other", 0.999)
+    );
+    let scene = folder.write("cubes.json", &scene);
+    let whole = json(&["contact", &scene, "--json"]);
+    assert_eq!(whole["pairs"][0]["is_whole"], true);
+    let options = ["contact", &scene, "--spacing", "1e-6", "--budget", "20000"];
+    let part = json(&[&options[..], &["--json"]].concat());
+    assert_eq!(part["pairs"][0]["is_whole"], false);
+    let told = text(&palpate(&options));
+    assert!(told.contains("the budget of 20000 evaluations is spent"), "{told}");
+}
+
+#[test]
 fn the_status_says_whether_anything_touches() {
     let folder = Folder::new();
     let scene = folder.write("row.json", &row(0.001));

@@ -102,7 +102,7 @@ impl<const D: usize> Default for BallWorkspace<D> {
 ///
 /// # Errors
 ///
-/// If a coordinate is not finite or beyond 1e15 m, or the radius is negative.
+/// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
 pub fn ball<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
@@ -123,7 +123,7 @@ pub fn ball<const D: usize>(
 ///
 /// # Errors
 ///
-/// If a coordinate is not finite or beyond 1e15 m, or the radius is negative.
+/// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
 pub fn ball_touches<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
@@ -143,6 +143,7 @@ fn search<const D: usize>(
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
     check_coordinates("a centre", centre)?;
     check_length(radius)?;
+    check_length(goal.tolerance)?;
     let (value, gradient) = shape.distance_gradient(centre);
     let promise = shape.promise();
     let is_inside = value < 0.0;

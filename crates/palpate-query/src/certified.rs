@@ -3,6 +3,8 @@
 
 //! Answers with their proof.
 
+use crate::error::{QueryError, check_length};
+
 /// The answer of a search: the truth lies in `[lower, upper]`, rounding included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<T> {
@@ -51,6 +53,13 @@ pub struct Limits {
     pub tolerance: f64,
     /// The most evaluations, but for those of the round that reaches it.
     pub budget: u32,
+}
+
+impl Limits {
+    /// Refuses a tolerance that is negative, no number or too large.
+    pub(crate) fn check(&self) -> Result<(), QueryError> {
+        check_length(self.tolerance)
+    }
 }
 
 impl Default for Limits {

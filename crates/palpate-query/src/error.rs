@@ -26,8 +26,8 @@ pub enum QueryError {
         /// The length.
         value: f64,
     },
-    /// A setting that is negative, zero or not finite.
-    #[error("{what} must be finite and positive, got {value:?} m")]
+    /// A setting that is negative, zero or too large to compute with.
+    #[error("{what} must be positive and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Setting {
         /// What is set.
         what: &'static str,

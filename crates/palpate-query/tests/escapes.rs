@@ -84,3 +84,13 @@ fn bodies_apart_need_no_way() -> Result<(), ShapeError> {
     assert_eq!((way.length, way.at_least), (0.0, 0.0));
     Ok(())
 }
+
+/// Steps of what overlaps once left a speck in a cube without a way out.
+#[test]
+fn what_is_tiny_leaves_what_is_large() -> Result<(), ShapeError> {
+    let cube = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.4, 0.4]))?);
+    let speck = Shape::from_kernel(Ball::new(1e-6)?);
+    let way = out(&cube, &speck, Pose::translation(Vector([0.1, 0.05, 0.02])));
+    assert!((way.length - 0.1).abs() < 2e-3, "{way:?}");
+    Ok(())
+}

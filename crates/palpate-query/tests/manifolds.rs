@@ -246,11 +246,55 @@ fn what_cannot_be_asked_is_refused_and_what_is_apart_has_no_contacts() -> Result
     let apart = Pose::translation(Vector([0.7, 0.0, 0.0]));
     let found = touching(&ball, &ball, apart, &settings(2e-3));
     assert!(found.contacts.is_empty() && found.separation.lower > 0.09);
-    // Concentric: one contact, whichever way it parts them.
+    // Concentric: one contact, whichever way it parts them. Its points were once both on one
+    // side, with no gap.
     let found = touching(&ball, &ball, Pose::identity(), &settings(2e-3));
     assert!(!found.contacts.is_empty());
     for contact in &found.contacts {
         assert!((contact.normal.norm() - 1.0).abs() < 1e-9, "{contact:?}");
+    }
+    assert!((found.contacts[0].gap + 0.6).abs() < 2e-3, "{:?}", found.contacts);
+    Ok(())
+}
+
+/// Precisions that are shares of the margin are never zero.
+#[test]
+fn without_a_margin_what_overlaps_is_spanned() -> Result<(), ShapeError> {
+    let (torus, slab) = (Shape::from_kernel(Torus::new(0.35, 0.15)?), cuboid([1.2, 0.2, 1.2])?);
+    let pose = Pose::translation(Vector([0.0, 0.248, 0.0]));
+    let found = touching(&torus, &slab, pose, &settings(0.0));
+    laws(&found, &settings(0.0));
+    assert!(found.contacts.len() >= 4, "{:?}", found.contacts);
+    Ok(())
+}
+
+/// A spacing of a hundred thousandth of the bodies: corners once wandered all over faces
+/// of which the budget had left out the rim.
+#[test]
+fn a_tiny_spacing_spends_the_budget_and_little_more() -> Result<(), ShapeError> {
+    let cube = cuboid([1.0, 1.0, 1.0])?;
+    let settings = ManifoldSettings { margin: 2e-9, spacing: 4e-8, most: 32 };
+    let mut workspace = PairWorkspace::new();
+    let there = Placed::new(&cube, Pose::translation(Vector([1.0, 0.0, 0.0])));
+    let limits = Limits { tolerance: 1e-10, budget: 100_000 };
+    let found = manifold(&cube, there, &settings, &limits, &mut workspace).expect("bounded");
+    assert!(!found.is_whole);
+    assert!(found.separation.evaluations < 400_000, "{}", found.separation.evaluations);
+    Ok(())
+}
+
+/// Flat boxes inside a region were once left to its rim, where there is none: one contact.
+#[test]
+fn a_ball_in_a_hollow_one_touches_it_all_around() -> Result<(), ShapeError> {
+    let cavity = Shape::<3>::from_kernel(Ball::new(0.301)?);
+    let hollow = Shape::from_kernel(Ball::new(0.9)?).difference([cavity])?;
+    let ball = Shape::from_kernel(Ball::new(0.3)?);
+    let settings = ManifoldSettings { margin: 0.1, spacing: 0.02, most: 200 };
+    let there = Pose::translation(Vector([1e-4, 0.0, 0.0]));
+    let found = touching(&hollow, &ball, there, &settings);
+    laws(&found, &settings);
+    for way in [[1.0, 0.0, 0.0], [0.0, 0.6, 0.8], [-0.48, -0.64, 0.6], [0.0, -1.0, 0.0]] {
+        includes(&found, &[way.map(|x| 0.301 * x)], 0.2);
     }
     Ok(())
 }

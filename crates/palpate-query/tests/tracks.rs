@@ -6,7 +6,13 @@
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::operator::Smooth;
 use palpate_field::{Aabb, Pose, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, Placed, Track, proof, rates, separation};
+use palpate_query::{
+    Limits, ManifoldSettings, PairWorkspace, Placed, Track, proof, rates, separation,
+};
+use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::cases;
+use palpate_testkit::kernels::Space;
+use palpate_testkit::tree::{Solid, Tree};
 
 type Pair<const D: usize> = (&'static str, Shape<D>, Shape<D>);
 
@@ -137,6 +143,40 @@ fn derivatives_are_the_limits_of_differences() -> Result<(), ShapeError> {
     Ok(())
 }
 
+/// Where one body alone is the larger field, the other's gradient is not part of the mean.
+/// It once was, and cancelled that of the first: a ball deep in another seemed to care
+/// where the other is.
+#[test]
+fn a_ball_deep_in_another_is_as_deep_wherever_it_is() -> Result<(), ShapeError> {
+    let (large, small) =
+        (Shape::from_kernel(Ball::new(1.0)?), Shape::from_kernel(Ball::new(0.2)?));
+    let there = Placed::new(&small, Pose::translation(Vector([0.3, 0.1, 0.2])));
+    let limits = Limits { tolerance: 1e-6, budget: 200_000 };
+    let mut workspace = PairWorkspace::new();
+    let nearest = separation(&large, there, &limits, &mut workspace).expect("bounded").best;
+    let rates = rates(&large, there, &nearest).expect("bounded");
+    assert!(rates.of.iter().all(|rate| rate.norm() < 1e-3), "{rates:?}");
+    assert!(rates.residual < 1e-3, "{rates:?}");
+    Ok(())
+}
+
+/// Poses far from the world's origin are known to their last bits alone, and the bounds
+/// say so.
+#[test]
+fn far_from_the_origin_bounds_hold_the_roundings_of_poses() -> Result<(), ShapeError> {
+    let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
+    let limits = Limits { tolerance: 0.0, budget: 2000 };
+    let mut workspace = PairWorkspace::new();
+    let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
+    let far = Vector([1e6, -2e6, 3e6]);
+    // A power of two, so that the distance of the centres is exact.
+    let poses = [far, far + Vector([2.0, 0.0, 0.0])].map(|centre| Pose::new(turn, centre));
+    let [a, b] = poses.map(|pose| Placed::new(&ball, pose));
+    let answer = separation(a, b, &limits, &mut workspace).expect("bounded");
+    assert!(answer.lower <= 1.0 && 1.0 <= answer.upper, "{answer:?}");
+    Ok(())
+}
+
 #[test]
 fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
     let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };
@@ -181,4 +221,72 @@ fn a_proof_has_no_gaps_and_no_untruths() -> Result<(), ShapeError> {
         }
     }
     Ok(())
+}
+
+/// Random trees in random motion, with jumps and ways back, asked for separations and
+/// contacts in turn: what a track says holds the truth that a search without memory
+/// encloses, and contacts keep their laws.
+fn on_trees<const D: usize>(count: u64)
+where
+    Space: Solid<D> + Turn<D>,
+{
+    let (mut warm, mut cold) = (PairWorkspace::new(), PairWorkspace::new());
+    let mut seed = 0;
+    cases::check(count, |u| {
+        seed += 1;
+        let trees: [Tree<D>; 2] = [draw::tree(u, 1 + seed % 3)?, draw::tree(u, 1 + seed % 2)?];
+        let [Ok(a), Ok(b)] = trees.map(|tree| tree.shape()) else { return Ok(Ok(())) };
+        if a.promise().bounds.or(b.promise().bounds).is_none() {
+            return Ok(Ok(()));
+        }
+        let size = draw::size(&a).min(draw::size(&b));
+        let limits = Limits { tolerance: 0.02 * size, budget: 5_000 };
+        let settings = ManifoldSettings { margin: 0.02 * size, spacing: 0.15 * size, most: 16 };
+        let mut track = Track::new(a.clone(), b.clone());
+        let start = [Pose::identity(), draw::pose(u)?];
+        let mut poses = start;
+        for step in 0..8 {
+            match u.int_in_range(0..=5_u8)? {
+                0 => poses = start,
+                1 => poses[step % 2] = draw::pose(u)?,
+                _ => {
+                    let far = size * 10.0_f64.powf(draw::within(u, -6.0, -0.5)?);
+                    poses[step % 2].translation += draw::direction::<D>(u)? * far;
+                }
+            }
+            let said = if u.arbitrary()? {
+                let found = track.manifold(poses, &settings, &limits, &mut warm);
+                let found = found.expect("one is bounded");
+                let is_contact = found.separation.lower <= settings.margin;
+                if found.contacts.is_empty() == is_contact {
+                    return Ok(Err(format!("{found:?}: {a:?} {b:?}")));
+                }
+                for contact in &found.contacts {
+                    let between = (contact.point_b - contact.point_a).dot(contact.normal);
+                    let is_unit = (contact.normal.norm() - 1.0).abs() < 1e-9;
+                    if !(is_unit
+                        && (between - contact.gap).abs() <= 1e-9 * (1.0 + between.abs()))
+                    {
+                        return Ok(Err(format!("{contact:?}: {a:?} {b:?}")));
+                    }
+                }
+                found.separation
+            } else {
+                track.separation(poses, &limits, &mut warm).expect("one is bounded")
+            };
+            let [a, b] = [Placed::new(&a, poses[0]), Placed::new(&b, poses[1])];
+            let truth = separation(a, b, &limits, &mut cold).expect("one is bounded");
+            let agree = said.lower <= truth.upper && truth.lower <= said.upper;
+            if !agree || said.lower > said.upper {
+                return Ok(Err(format!("step {step}: {said:?}, {truth:?}: {a:?} {b:?}")));
+            }
+        }
+        Ok(Ok(()))
+    });
+}
+
+#[test]
+fn tracks_of_random_trees_say_what_searches_say() {
+    on_trees::<2>(150);
+    on_trees::<3>(60);
 }

@@ -103,6 +103,62 @@ fn a_world_says_what_all_pairs_say() -> Test {
 }
 
 #[test]
+fn bodies_that_come_and_go_are_asked_while_they_are_there() -> Test {
+    let margin = WorldSettings::of_size(1.0).manifold.margin;
+    let limits = Limits { tolerance: 1e-5, budget: 200_000 };
+    let mut workspace = PairWorkspace::new();
+    let mut world = World::new(WorldSettings::of_size(1.0))?;
+    // Name, shape, pose, groups and mask of those that are there.
+    let mut there: Vec<(BodyId, Shape<3>, Pose<3>, u32, u32)> = Vec::new();
+    let mut touching = 0;
+    for step in 0..60 {
+        let (shape, mut pose) = in_space(step)?;
+        pose.translation = pose.translation * 0.5;
+        there.push((world.add(shape.clone(), pose)?, shape, pose, 1, u32::MAX));
+        if step % 3 == 2 {
+            let gone = there.remove(step * 7 % there.len());
+            world.remove(gone.0)?;
+        }
+        let chosen = step * 5 % there.len();
+        let (id, _, pose, groups, mask) = &mut there[chosen];
+        if step % 4 == 0 {
+            (*groups, *mask) = (1 + step as u32 % 3, 1 + step as u32 / 2 % 3);
+            world.set_groups(*id, *groups, *mask)?;
+        } else {
+            let far = 0.1_f64.powi((step % 5) as i32);
+            pose.translation += (Vector(place(step)) - Vector([0.5, 0.5, 0.5])) * far;
+            world.set_poses(&[(*id, *pose)])?;
+        }
+        if there.len() > 12 {
+            world.remove(there.remove(0).0)?;
+        }
+        let found = world.step();
+        for (k, b) in there.iter().enumerate() {
+            for a in &there[..k] {
+                let said = found.iter().find(|pair| pair.bodies == [a.0, b.0]);
+                if a.3 & b.4 == 0 || b.3 & a.4 == 0 {
+                    assert!(said.is_none(), "step {step}: {said:?} is not asked");
+                    continue;
+                }
+                let two = [Placed::new(&a.1, a.2), Placed::new(&b.1, b.2)];
+                let truth = separation(two[0], two[1], &limits, &mut workspace)?;
+                if truth.upper <= margin {
+                    touching += 1;
+                    let said = said.unwrap_or_else(|| panic!("step {step}: {truth:?}"));
+                    let [lower, upper] = said.bounds();
+                    assert!(lower <= truth.upper && truth.lower <= upper, "{said:?}");
+                    assert!(!said.contacts().is_empty(), "{said:?}");
+                } else if truth.lower > 2.0 * margin {
+                    assert!(said.is_none(), "step {step}: {said:?}, {truth:?}");
+                }
+            }
+        }
+    }
+    assert!(touching > 100, "{touching}");
+    Ok(())
+}
+
+#[test]
 fn threads_change_no_bit() -> Test {
     let run = |threads: usize| -> Result<String, Box<dyn std::error::Error>> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;

@@ -3,6 +3,8 @@
 
 //! What counts as touching in a scene, and the answers of the library.
 
+use std::collections::BTreeSet;
+
 use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
     Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
@@ -31,6 +33,8 @@ pub(crate) struct Pair<const D: usize> {
     pub(crate) groups: Vec<usize>,
     /// How many contacts were left out.
     pub(crate) dropped: usize,
+    /// `false` if the budget was spent before the whole region was looked at.
+    pub(crate) is_whole: bool,
 }
 
 impl Question {
@@ -76,6 +80,7 @@ impl Question {
                 contacts: found.contacts().to_vec(),
                 groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
                 dropped: manifold.map_or(0, |manifold| manifold.dropped),
+                is_whole: manifold.is_none_or(|manifold| manifold.is_whole),
             }
         });
         Ok(pairs.collect())
@@ -88,9 +93,10 @@ impl Question {
         near: &[Pair<D>],
     ) -> Result<Vec<Pair<D>>, Failure> {
         let mut workspace = PairWorkspace::new();
+        let near: BTreeSet<[usize; 2]> = near.iter().map(|pair| pair.bodies).collect();
         let mut apart = Vec::new();
         for k in 0..scene.bodies.len() {
-            for i in (0..k).filter(|i| near.iter().all(|pair| pair.bodies != [*i, k])) {
+            for i in (0..k).filter(|i| !near.contains(&[*i, k])) {
                 let [a, b] = [i, k].map(|i| placed(&scene.bodies[i]));
                 let found = separation(a, b, &self.settings.limits, &mut workspace)
                     .map_err(Failure::input)?;
@@ -101,6 +107,7 @@ impl Question {
                     contacts: found.best.contact(a, b).into_iter().collect(),
                     groups: Vec::new(),
                     dropped: 0,
+                    is_whole: true,
                 });
             }
         }

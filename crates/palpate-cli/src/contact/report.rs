@@ -52,6 +52,13 @@ impl<const D: usize> Report<'_, D> {
             if pair.dropped > 0 {
                 writeln!(out, "       and {} more that these span", pair.dropped)?;
             }
+            if !pair.is_whole {
+                writeln!(
+                    out,
+                    "       and maybe others: the budget of {} evaluations is spent (--budget, --spacing)",
+                    self.question.settings.limits.budget
+                )?;
+            }
         }
         let count = |verdict| self.pairs.iter().filter(|pair| pair.verdict == verdict).count();
         let [touching, open] = [Verdict::Touching, Verdict::Undecided].map(count);
@@ -98,6 +105,7 @@ impl<const D: usize> Report<'_, D> {
             "bodies": pair.bodies.map(|i| self.names[i]),
             "verdict": word(pair.verdict),
             "dropped": pair.dropped,
+            "is_whole": pair.is_whole,
             "groups": pair.groups,
         });
         let key = if pair.verdict == Verdict::Apart { "witnesses" } else { "contacts" };

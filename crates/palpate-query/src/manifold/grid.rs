@@ -39,7 +39,7 @@ impl<const D: usize> Grid<D> {
         };
         loop {
             for k in 0..D {
-                grid.counts[k] = (extent[k] / grid.side) as usize + 1;
+                grid.counts[k] = ((extent[k] / grid.side) as usize).saturating_add(1);
             }
             let places = grid.counts.iter().fold(1_usize, |n, count| n.saturating_mul(*count));
             if places <= MOST_PLACES * (number + 1) {

@@ -8,8 +8,9 @@
 //! models, as in the search for the separation, and those that remain are halved down to
 //! the spacing. Each then gives a candidate on the surface between. Candidates that are
 //! neighbours and have like normals make a patch, and of each patch the contacts are its
-//! deepest point and the corners that span it.
+//! deepest point and the corners that span it, and more where these do not span it all.
 
+mod fill;
 mod grid;
 mod names;
 mod patch;
@@ -20,7 +21,7 @@ use palpate_field::{Point, Vector};
 
 use crate::certified::{Certified, Limits};
 use crate::contact::Contact;
-use crate::error::QueryError;
+use crate::error::{QueryError, check_length};
 use crate::goal::Goal;
 use crate::pair::couple::Couple;
 use crate::pair::search::Search;
@@ -34,6 +35,10 @@ pub(crate) use names::Names;
 /// Contacts closer than this many spacings, with normals within 37°, are copies.
 const COPIES: f64 = 1.5;
 const LIKE: f64 = 0.8;
+
+/// Margins below this share of the spacing ask for no more precision: where it is zero,
+/// nothing would be precise enough.
+const SHALLOW: f64 = 1e-3;
 
 /// Which contacts are to be found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,8 +114,8 @@ pub struct Manifold<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or a setting is not finite, or the spacing not
-/// positive.
+/// If neither body is bounded, a pose is not finite, the margin or the tolerance is
+/// negative, or the spacing not positive.
 pub fn manifold<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -121,7 +126,7 @@ pub fn manifold<'a, const D: usize>(
     settings.check()?;
     let couple = Couple::new(a.into(), b.into())?;
     let goal = settings.goal(limits);
-    let mut search = Search::new(couple, goal, limits);
+    let mut search = Search::new(couple, goal, limits)?;
     let separation = search.run(workspace);
     let budget = limits.budget;
     Ok(spanning(couple, (search.best, separation), settings, budget, workspace))
@@ -146,9 +151,12 @@ fn spanning<const D: usize>(
         return found;
     }
     let mut candidates = vec![Touch::at(&mut couple, best)];
-    found.is_whole = region::find(&mut couple, settings, budget, workspace, &mut candidates);
+    let mut middles = Vec::new();
+    let into = (&mut candidates, &mut middles);
+    found.is_whole = region::find(&mut couple, settings, budget, workspace, into);
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
+    patches.fill(&mut middles, &mut touches);
     drop_copies(&mut touches, settings.spacing);
     // Where a field says less than the distance, surfaces are farther apart than it says.
     let is_close = |member: &Member<D>| {
@@ -162,9 +170,7 @@ fn spanning<const D: usize>(
     found.dropped = touches.len().saturating_sub(settings.most.max(1));
     keep_spread(&mut touches, settings.most.max(1));
     touches.sort_by(|one, other| {
-        (one.group, one.touch.gap)
-            .partial_cmp(&(other.group, other.touch.gap))
-            .unwrap_or(std::cmp::Ordering::Equal)
+        one.group.cmp(&other.group).then(one.touch.gap.total_cmp(&other.touch.gap))
     });
     for (i, member) in touches.iter().enumerate() {
         if i == 0 || touches[i - 1].group != member.group {
@@ -203,15 +209,17 @@ impl ManifoldSettings {
     }
 
     pub(crate) fn check(&self) -> Result<(), QueryError> {
-        for (what, value, is_fine) in [
-            ("a margin", self.margin, self.margin.is_finite() && self.margin >= 0.0),
-            ("a spacing", self.spacing, self.spacing.is_finite() && self.spacing > 0.0),
-        ] {
-            if !is_fine {
-                return Err(QueryError::Setting { what, value });
-            }
+        check_length(self.margin)?;
+        check_length(self.spacing)?;
+        if self.spacing == 0.0 {
+            return Err(QueryError::Setting { what: "a spacing", value: self.spacing });
         }
         Ok(())
+    }
+
+    /// What precisions are shares of [m]: the margin, unless it is all but nothing.
+    fn depth(&self) -> f64 {
+        self.margin.max(SHALLOW * self.spacing)
     }
 }
 
@@ -240,12 +248,17 @@ impl<const D: usize> Touch<D> {
         Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
     }
 
-    /// The contact in world coordinates, with the surfaces' points within `near`.
+    /// The contact in world coordinates, with the surfaces' points within `near` and 45° of
+    /// the normal: in the middle of a body the gradient may lead to any side.
     fn contact(&self, couple: &Couple<'_, D>, near: f64, id: u64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {
             let found = couple.surface_point(body, self.point);
-            let found = found.filter(|p| distance(*p, self.point) <= near);
+            let found = found.filter(|p| {
+                let away = *p - self.point;
+                let along = away.dot(self.normal);
+                away.norm() <= near && 2.0 * along * along >= away.dot(away)
+            });
             found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
         };
         let pose = &couple.world_from_frame;
@@ -282,17 +295,21 @@ fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
 /// Keeps the first `most` contacts in this order: the first, and then always the one
 /// that is farthest from those kept.
 fn keep_spread<const D: usize>(touches: &mut Vec<Member<D>>, most: usize) {
-    for kept in 1..most.min(touches.len()) {
-        let apart = |member: &Member<D>| {
-            let others = touches[..kept].iter();
-            others.fold(f64::INFINITY, |least, other| {
-                least.min(distance(other.touch.point, member.touch.point))
-            })
-        };
+    if touches.len() <= most {
+        return;
+    }
+    // How far each is from those kept.
+    let mut apart = vec![f64::INFINITY; touches.len()];
+    for kept in 1..most {
+        let last = touches[kept - 1].touch.point;
+        for (apart, member) in apart.iter_mut().zip(&*touches).skip(kept) {
+            *apart = apart.min(distance(last, member.touch.point));
+        }
         let farthest = (kept..touches.len())
-            .max_by(|&i, &k| apart(&touches[i]).total_cmp(&apart(&touches[k])).then(k.cmp(&i)));
+            .max_by(|&i, &k| apart[i].total_cmp(&apart[k]).then(k.cmp(&i)));
         if let Some(farthest) = farthest {
             touches.swap(kept, farthest);
+            apart.swap(kept, farthest);
         }
     }
     touches.truncate(most);

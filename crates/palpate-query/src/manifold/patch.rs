@@ -18,15 +18,18 @@ const NEIGHBOURS: f64 = 2.0;
 /// The cosine of how far normals of a patch may be from that of its first, 25°.
 const ALIKE: f64 = 0.906;
 
-/// By how much of the margin what is next to a patch may be less deep and still be a
+/// By how much of [`ManifoldSettings::depth`] what is next to a patch may be less deep and still be a
 /// patch of its own; beyond it is the patch's slope.
 const SLOPE: f64 = 0.1;
 
-/// How precisely the deepest point of a patch is found, as a share of the margin.
+/// How precisely the deepest point of a patch is found, as a share of the same.
 const PRECISE: f64 = 1e-3;
 
 /// Patches smaller than this many spacings are one contact, as are corners.
 const SMALL: f64 = 1.5;
+
+/// A corner is moved by at most so many spacings.
+const FAR: f64 = 4.0;
 
 /// The last step of a corner, as a share of the spacing.
 const SHARP: f64 = 0.06;
@@ -60,7 +63,7 @@ impl<const D: usize> Patches<'_, '_, D> {
             is_owned[seed] = true;
             let mut is_slope = false;
             grid.taken(first.point, |i| {
-                let is_deeper = candidates[i].gap < first.gap - SLOPE * self.settings.margin;
+                let is_deeper = candidates[i].gap < first.gap - SLOPE * self.settings.depth();
                 is_slope |= is_deeper && is_near(i, first.point);
             });
             if is_slope {
@@ -133,7 +136,7 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// The deepest point near a candidate.
     fn deepest(&mut self, start: Touch<D>) -> Touch<D> {
-        let goal = Goal::least(PRECISE * self.settings.margin);
+        let goal = Goal::least(PRECISE * self.settings.depth());
         let (_, p) = descend(&mut self.couple, start.point, goal, 0.0);
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
@@ -141,13 +144,14 @@ impl<const D: usize> Patches<'_, '_, D> {
     }
 
     /// Moves a corner outwards along the patch until the gap is the margin or the
-    /// bodies no longer face each other.
+    /// bodies no longer face each other: never far, unless the budget left out the rim.
     fn sharpen(&mut self, corner: Touch<D>, centre: Point<D>) -> Touch<D> {
         let away = corner.point - centre;
         let away = away - corner.normal * away.dot(corner.normal);
         let outwards = away * (1.0 / away.norm().max(f64::MIN_POSITIVE));
         let sideways = square_to(corner.normal, outwards).unwrap_or(Vector::ZERO);
         let ways = [outwards, (outwards + sideways) * 0.7, (outwards - sideways) * 0.7];
+        let start = corner.point;
         let mut corner = corner;
         let mut step = 0.5 * self.settings.spacing;
         while step > SHARP * self.settings.spacing {
@@ -155,7 +159,8 @@ impl<const D: usize> Patches<'_, '_, D> {
                 let touch = self.settle(corner.point + *way * step, step)?;
                 let is_on = touch.normal.dot(corner.normal) > super::LIKE;
                 let is_out = (touch.point - corner.point).dot(outwards) > 0.3 * step;
-                (is_on && is_out).then_some(touch)
+                let is_far = distance(touch.point, start) > FAR * self.settings.spacing;
+                (is_on && is_out && !is_far).then_some(touch)
             });
             match moved {
                 Some(touch) => corner = touch,
@@ -167,11 +172,11 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// The point of the surface between next to `p`, if it is within `far` and the
     /// bodies touch there.
-    fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
+    pub(super) fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
         let mut here = p;
         for _ in 0..4 {
             let slopes = self.couple.slopes(here);
-            match towards(here, slopes, self.settings.margin) {
+            match towards(here, slopes, self.settings) {
                 Towards::There(touch) => return Some(touch),
                 Towards::Next(next) if distance(next, p) <= far => here = next,
                 _ => return None,

@@ -6,28 +6,31 @@
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Point, Vector};
 
+use super::fill::Middle;
 use super::{ManifoldSettings, Touch};
 use crate::pair::PairWorkspace;
 use crate::pair::cell::{Cell, least_of_larger, reach};
 use crate::pair::couple::{Couple, Memory};
+use crate::pair::search::ROOM;
 
 /// Steps to the surface between at most.
 const STEPS: usize = 4;
 
-/// How close to it is on it, as a share of the margin.
+/// How close to it is on it, as a share of [`ManifoldSettings::depth`].
 const ON: f64 = 1e-3;
 
-/// Boxes in which the gap varies by no more than this share of the margin beyond an
-/// affine function are flat.
+/// Boxes in which the gap varies by no more than this share of the same beyond an affine
+/// function are flat.
 const FLAT: f64 = 0.05;
 
-/// Appends candidates on the surface between; `false` if the budget ended first.
+/// Appends candidates on the surface between, and the flat boxes in the middle of the
+/// region; `false` if the budget ended first.
 pub(super) fn find<const D: usize>(
     couple: &mut Couple<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
-    candidates: &mut Vec<Touch<D>>,
+    (candidates, middles): (&mut Vec<Touch<D>>, &mut Vec<Middle<D>>),
 ) -> bool {
     let half_margin = 0.5 * settings.margin;
     let root = couple.root(half_margin);
@@ -40,8 +43,7 @@ pub(super) fn find<const D: usize>(
     Cell::unknown(&root).grid(pending);
     let mut is_whole = true;
     while !pending.is_empty() {
-        is_whole =
-            couple.evaluations < budget && pending.len() + (BLOCK << D) <= pending.capacity();
+        is_whole = couple.evaluations < budget && pending.len() + (BLOCK << D) <= ROOM;
         if !is_whole {
             break;
         }
@@ -64,8 +66,12 @@ pub(super) fn find<const D: usize>(
             couple.models(body, &parts[..count], open, memory);
         }
         for (lane, &i) in open.iter().enumerate() {
-            let [a, b] = [0, 1].map(|body| couple.model(body, memory, lane));
-            is_open[i] = !is_ruled_out::<D>(&a, &b, settings.margin, slack);
+            let models = [0, 1].map(|body| couple.model(body, memory, lane));
+            let found = look::<D>(&models, settings, slack);
+            is_open[i] = found == Look::Open;
+            if found == Look::Middle {
+                middles.extend(Middle::of(&parts[i], &models));
+            }
         }
         for part in (0..count).filter(|&i| is_open[i]).map(|i| &parts[i]) {
             let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
@@ -79,26 +85,42 @@ pub(super) fn find<const D: usize>(
         }
     }
     for cells in small.chunks(BLOCK) {
-        settle(couple, cells, settings.margin, memory, candidates);
+        settle(couple, cells, settings, memory, candidates);
     }
     is_whole
 }
 
-/// `true` if a box holds no part of the surface between that matters, by its models:
-/// none at all, none within the margin, or the middle of a flat patch, which its rim spans.
-fn is_ruled_out<const D: usize>(a: &Model, b: &Model, margin: f64, slack: f64) -> bool {
+/// What the models of a box say of the surface between.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    /// The box may hold a part of it.
+    Open,
+    /// It holds the middle of a flat patch, which its rim spans, where there is one.
+    Middle,
+    /// It holds none, or none within the margin.
+    Nothing,
+}
+
+fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack: f64) -> Look {
     let (mut across, mut along) = (0.0, [0.0; 2]);
     for (a, b) in a.gradient.iter().zip(b.gradient) {
         across += (a - b).abs();
         along = [along[0] + a.abs(), along[1] + b.abs()];
     }
+    let half_margin = 0.5 * settings.margin;
     let between = across + (a.lower + b.upper).max(a.upper + b.lower);
-    let is_flat = a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * margin;
-    let is_inside = a.value + along[0] + a.upper < 0.5 * margin
-        && b.value + along[1] + b.upper < 0.5 * margin;
-    is_flat && is_inside
-        || (a.value - b.value).abs() > between + 2.0 * slack
-        || least_of_larger::<D>(a, b, f64::INFINITY) > 0.5 * margin + slack
+    let is_flat = a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
+    let is_inside = a.value + along[0] + a.upper < half_margin
+        && b.value + along[1] + b.upper < half_margin;
+    if (a.value - b.value).abs() > between + 2.0 * slack
+        || least_of_larger::<D>(a, b, f64::INFINITY) > half_margin + slack
+    {
+        Look::Nothing
+    } else if is_flat && is_inside {
+        Look::Middle
+    } else {
+        Look::Open
+    }
 }
 
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,
@@ -106,7 +128,7 @@ fn is_ruled_out<const D: usize>(a: &Model, b: &Model, margin: f64, slack: f64) -
 fn settle<const D: usize>(
     couple: &mut Couple<'_, D>,
     cells: &[Cell<D>],
-    margin: f64,
+    settings: &ManifoldSettings,
     memory: &mut Memory<D>,
     candidates: &mut Vec<Touch<D>>,
 ) {
@@ -122,7 +144,7 @@ fn settle<const D: usize>(
         let mut left = 0;
         for i in 0..count {
             let cell = &cells[from[i]];
-            match towards(points[i], [slopes[0][i], slopes[1][i]], margin) {
+            match towards(points[i], [slopes[0][i], slopes[1][i]], settings) {
                 Towards::Nothing => {}
                 Towards::There(touch) => candidates.push(touch),
                 Towards::Next(next) => {
@@ -154,7 +176,7 @@ pub(super) enum Towards<const D: usize> {
 pub(super) fn towards<const D: usize>(
     p: Point<D>,
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
-    margin: f64,
+    settings: &ManifoldSettings,
 ) -> Towards<D> {
     let between = slope_a - slope_b;
     let squared = between.dot(between);
@@ -162,11 +184,11 @@ pub(super) fn towards<const D: usize>(
         return Towards::Nothing;
     }
     let apart = a - b;
-    if apart.abs() > ON * margin {
+    if apart.abs() > ON * settings.depth() {
         return Towards::Next(p - between * (apart / squared));
     }
     let gap = 2.0 * a.max(b);
-    if gap > margin {
+    if gap > settings.margin {
         return Towards::Nothing;
     }
     Towards::There(Touch { point: p, normal: between * (1.0 / squared.sqrt()), gap })

@@ -9,7 +9,7 @@ use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
 use super::cell::{larger, reach};
 use crate::error::QueryError;
-use crate::placed::Placed;
+use crate::placed::{Placed, check_pose};
 
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
@@ -54,9 +54,7 @@ impl<'a, const D: usize> Body<'a, D> {
 
     /// The shape in the frame of the world.
     pub(crate) fn in_world(placed: Placed<'a, D>) -> Result<Self, QueryError> {
-        if !placed.world_from_body.is_finite() {
-            return Err(QueryError::Pose);
-        }
+        check_pose(&placed.world_from_body)?;
         Ok(Self::new(placed.shape, placed.world_from_body.inverse()))
     }
 

@@ -11,6 +11,9 @@ use super::cell::Cell;
 use crate::error::QueryError;
 use crate::placed::{Placed, check_pose};
 
+/// Roundings of a pose from one body to another, relative to where they are in the world.
+const PLACE_ROUNDINGS: f64 = 8.0;
+
 /// Memory of questions to two bodies.
 #[derive(Debug)]
 pub(crate) struct Memory<const D: usize> {
@@ -53,6 +56,9 @@ pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) world_from_frame: Pose<D>,
     /// From the frame to the second shape's coordinates.
     pub(crate) second_from_frame: Pose<D>,
+    /// What the second body may be off by in the frame where both are far from the
+    /// world's origin [m].
+    placing: f64,
     /// A gradient counts twice.
     pub(crate) evaluations: u32,
 }
@@ -69,12 +75,14 @@ impl<'a, const D: usize> Couple<'a, D> {
             return Err(QueryError::Unbounded);
         }
         let world_from_frame = a.world_from_body;
-        Ok(Self { bodies, aabbs, world_from_frame, second_from_frame, evaluations: 0 })
+        let far = a.world_from_body.translation.norm() + b.world_from_body.translation.norm();
+        let placing = PLACE_ROUNDINGS * f64::EPSILON * far;
+        Ok(Self { bodies, aabbs, world_from_frame, second_from_frame, placing, evaluations: 0 })
     }
 
     /// What values may be off by within `reach` of the frame's origin [m].
     pub(crate) fn slack(&self, reach: f64) -> f64 {
-        self.bodies[0].slack(reach).max(self.bodies[1].slack(reach))
+        self.bodies[0].slack(reach).max(self.bodies[1].slack(reach)) + self.placing
     }
 
     /// `g` of both at a point of the frame, with gradients.

@@ -18,8 +18,16 @@ const AROUND: usize = 48;
 const WIDEST: f64 = 0.3;
 const NARROWEST: f64 = 0.01;
 
+/// Directions as far apart are tried once more only where they led to a way that is
+/// shorter than this share of the best; always would be for ever without a tolerance.
+const WORTH: f64 = 0.99;
+
 /// Steps along a direction at most.
 const STEPS: u32 = 60;
+
+/// After so many steps they double: what is small in what is large overlaps by little and
+/// has far to go.
+const PATIENCE: u32 = 30;
 
 /// Beyond so many sizes of what is bounded no way out is looked for.
 const FAR: f64 = 100.0;
@@ -44,9 +52,9 @@ pub struct Escape<const D: usize> {
 ///
 /// Tried are the normal, directions all around, and ever closer ones about the best,
 /// with the normals at its end; along each, the body moves on by as much as it
-/// overlaps, which never oversteps the first way out. The length is
-/// within `limits.tolerance` of the shortest along its direction, and the budget is for each
-/// separation on the way.
+/// overlaps, which never oversteps the first way out, unless that takes more than 30
+/// steps. The length is within `limits.tolerance` of the shortest along its direction
+/// otherwise, and the budget is for each separation on the way.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
@@ -66,7 +74,7 @@ pub struct Escape<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
+/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
 pub fn escape<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -123,7 +131,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let [a, mut b] = self.bodies;
         b.world_from_body.translation += direction * length;
         let answer = separation(a, b, &self.limits, self.workspace)?;
-        self.evaluations += answer.evaluations;
+        self.evaluations = self.evaluations.saturating_add(answer.evaluations);
         Ok(answer)
     }
 
@@ -142,7 +150,7 @@ impl<const D: usize> Search<'_, '_, D> {
                     self.attempt(other * (1.0 / other.norm()))?;
                 }
             }
-            let is_better = self.best.is_some_and(|(_, now)| now < length);
+            let is_better = self.best.is_some_and(|(_, now)| now < WORTH * length);
             spread *= if is_better { 1.0 } else { 0.5 };
         }
         Ok(())
@@ -172,10 +180,10 @@ impl<const D: usize> Search<'_, '_, D> {
         if self.best.is_some() && (end < 0.0 || self.at(direction, end)?.lower < 0.0) {
             return Ok(None);
         }
-        let mut start = 0.0;
+        let (mut inside, mut start) = (0.0, 0.0);
         let mut normal = None;
         let mut is_out = self.best.is_some();
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
             if is_out && end - start <= tolerance {
                 break;
             }
@@ -184,14 +192,31 @@ impl<const D: usize> Search<'_, '_, D> {
                 (end, normal, is_out) = (start, here.best.normal, true);
                 break;
             }
-            let next = start + (-here.upper).max(self.limits.tolerance);
+            let stride = (-here.upper).max(self.limits.tolerance);
+            let grown = f64::from(1_u32 << step.saturating_sub(PATIENCE));
+            let next = start + stride * grown;
             if next >= end {
                 break;
             }
-            start = next;
+            (inside, start) = (start, next);
         }
         if !is_out {
             return Ok(None);
+        }
+        if start == end && end - inside > tolerance {
+            // The last stride may have been longer than what overlaps.
+            for _ in 0..f64::MANTISSA_DIGITS {
+                let middle = 0.5 * (inside + end);
+                let here = self.at(direction, middle)?;
+                if here.lower >= 0.0 {
+                    (end, normal) = (middle, here.best.normal);
+                } else {
+                    inside = middle;
+                }
+                if end - inside <= tolerance {
+                    break;
+                }
+            }
         }
         self.best = Some((direction, end));
         match normal {

@@ -66,7 +66,7 @@ pub use track::Track;
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
+/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
 pub fn separation<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -74,7 +74,7 @@ pub fn separation<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::least(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
+    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }
 
 /// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
@@ -84,7 +84,7 @@ pub fn separation<'a, const D: usize>(
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
+/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
 pub fn overlap<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -92,5 +92,5 @@ pub fn overlap<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::sign(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits).run(workspace))
+    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }

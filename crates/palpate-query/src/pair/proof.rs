@@ -40,7 +40,7 @@ pub struct ProofBox<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose is not finite.
+/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
 pub fn proof<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -48,7 +48,7 @@ pub fn proof<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
     let couple = Couple::new(a.into(), b.into())?;
-    let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits);
+    let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_leaves = true;
     let (answer, _) = search.run_within(0.0, workspace);
     let mut cells = Vec::new();

@@ -14,6 +14,10 @@ use crate::placed::Placed;
 /// have in common, until their mean vanishes.
 const SPREADS: [f64; 5] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3];
 
+/// A field that is less than the larger by more than this share of that size is not what
+/// the separation is of: twice the last spread.
+const NEARLY: f64 = 2e-3;
+
 /// A mean of gradients that is shorter than this vanishes.
 const VANISHES: f64 = 1e-3;
 
@@ -108,7 +112,7 @@ pub fn rates<'a, const D: usize>(
     let mut best =
         Rates { point: nearest.point, of: [Vector::ZERO; 2], residual: f64::INFINITY };
     for spread in SPREADS.map(|share| share * size) {
-        let gradients = around(&mut couple, centre, spread);
+        let gradients = around(&mut couple, centre, spread, NEARLY * size);
         let weights = shortest_mean(&gradients);
         let mut of = [Vector::ZERO; 2];
         for ((body, gradient), weight) in gradients.iter().zip(weights) {
@@ -127,11 +131,12 @@ pub fn rates<'a, const D: usize>(
 }
 
 /// The gradients at a point and at points `spread` from it, and of which body they are:
-/// of fields that are the larger one there, or nearly.
+/// of fields that are the larger one there, to within `nearly`.
 fn around<const D: usize>(
     couple: &mut Couple<'_, D>,
     centre: Point<D>,
     spread: f64,
+    nearly: f64,
 ) -> Vec<(usize, Vector<f64, D>)> {
     let mut points = vec![centre];
     if spread > 0.0 {
@@ -142,11 +147,14 @@ fn around<const D: usize>(
     }
     let mut gradients = Vec::new();
     for (i, p) in points.into_iter().enumerate() {
-        for (body, (_, gradient)) in couple.slopes(p).into_iter().enumerate() {
+        let slopes = couple.slopes(p);
+        let larger = slopes[0].0.max(slopes[1].0);
+        for (body, (value, gradient)) in slopes.into_iter().enumerate() {
             let is_known = gradients.iter().any(|(other, known): &(usize, Vector<f64, D>)| {
                 *other == body && (*known - gradient).norm() < 1e-9
             });
-            if i == 0 || !is_known {
+            let is_less = value < larger - nearly;
+            if !is_less && (i == 0 || !is_known) {
                 gradients.push((body, gradient));
             }
         }

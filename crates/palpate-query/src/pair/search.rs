@@ -12,6 +12,7 @@ use super::couple::{Couple, Memory};
 use super::descent::descend;
 use super::frontier::Frontier;
 use crate::certified::{Certified, Limits, Stop};
+use crate::error::QueryError;
 use crate::goal::Goal;
 
 /// Boxes are bounded by models below this radius, as a share of the first box's: above,
@@ -22,7 +23,7 @@ const SMALL: f64 = 0.25;
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
 /// Boxes that a workspace holds.
-const ROOM: usize = 1 << 16;
+pub(crate) const ROOM: usize = 1 << 16;
 
 /// Memory of searches between bodies, to be kept between them.
 #[derive(Debug)]
@@ -87,8 +88,13 @@ pub(crate) struct Search<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Search<'a, D> {
-    pub(crate) fn new(couple: Couple<'a, D>, goal: Goal, limits: &Limits) -> Self {
-        Self {
+    pub(crate) fn new(
+        couple: Couple<'a, D>,
+        goal: Goal,
+        limits: &Limits,
+    ) -> Result<Self, QueryError> {
+        limits.check()?;
+        Ok(Self {
             couple,
             goal,
             budget: limits.budget,
@@ -97,7 +103,7 @@ impl<'a, const D: usize> Search<'a, D> {
             dropped: f64::INFINITY,
             slack: 0.0,
             keeps_leaves: false,
-        }
+        })
     }
 
     /// Searches everywhere, from the middle of what the boxes of both have in common.

@@ -89,7 +89,7 @@ impl<const D: usize> Track<D> {
     ///
     /// # Errors
     ///
-    /// If neither body is bounded, or a pose is not finite or beyond 1e15 m.
+    /// If neither body is bounded, or a pose or the tolerance is no number or out of range.
     pub fn separation(
         &mut self,
         poses: [Pose<D>; 2],
@@ -110,7 +110,7 @@ impl<const D: usize> Track<D> {
     ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
         let [a, b] = &self.shapes;
         let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let mut search = Search::new(couple, goal, limits);
+        let mut search = Search::new(couple, goal, limits)?;
         if let Some(answer) = search.told_by_boxes() {
             return Ok((answer, search.best));
         }

@@ -21,9 +21,13 @@ use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings};
 use crate::pair::Track;
+use crate::pair::cell::reach;
 use crate::placed::check_pose;
 use near::pairs_near;
 use pool::Pool;
+
+/// Roundings of a placed box, relative to its largest coordinate.
+const ROUNDINGS: f64 = 16.0;
 
 /// A body of a world, as [`World::add`] names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -169,9 +173,11 @@ impl<const D: usize> World<D> {
     ///
     /// # Errors
     ///
-    /// If a setting is not finite, the margin negative, or the spacing not positive.
+    /// If a setting is not finite or beyond 1e15 m, the margin or the tolerance negative,
+    /// or the spacing not positive.
     pub fn new(settings: WorldSettings) -> Result<Self, QueryError> {
         settings.manifold.check()?;
+        settings.limits.check()?;
         Ok(Self {
             settings,
             bodies: Vec::new(),
@@ -349,12 +355,8 @@ impl<const D: usize> Body<D> {
         let bounds = self.shape.promise().bounds;
         self.aabb = bounds.map(|bounds| {
             let placed = bounds.aabb.placed(&pose);
-            let size = placed.centre().norm() + placed.half_extents().norm();
-            placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * size)
+            placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * reach(&placed))
         });
         Ok(())
     }
 }
-
-/// Roundings of a placed box, relative to its largest coordinate.
-const ROUNDINGS: f64 = 16.0;
