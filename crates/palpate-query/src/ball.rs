@@ -51,7 +51,7 @@ impl<const D: usize> BallWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: Frontier::new(ROOM),
+            cells: Frontier::new(ROOM, ROOM),
             points: Block::zero(),
             boxes: Block::zero(),
             values: Column::zero(),

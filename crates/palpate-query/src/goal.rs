@@ -52,6 +52,7 @@ impl Goal {
         if self.is_hit(upper) || lower > self.apart {
             return Some(Stop::SignKnown);
         }
-        (upper - lower <= self.tolerance).then_some(Stop::Converged)
+        // The same rule as that by which cells are left alone, to the last bit.
+        (lower >= self.threshold(upper)).then_some(Stop::Converged)
     }
 }

@@ -10,13 +10,15 @@ use super::cell::Cell;
 
 /// Boxes in a heap. What moves in the heap is a bound and a place alone: boxes themselves
 /// are four times as large.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Frontier<const D: usize> {
     heap: BinaryHeap<Key>,
     cells: Vec<Cell<D>>,
     /// Places in `cells` that are free.
     free: Vec<u32>,
     room: usize,
+    /// By how much all bounds in the heap are too large.
+    drift: f64,
 }
 
 /// A box's lower bound and its place.
@@ -27,20 +29,27 @@ struct Key {
 }
 
 impl<const D: usize> Frontier<D> {
-    /// Room for so many boxes.
-    pub(crate) fn new(room: usize) -> Self {
+    /// Room for so many boxes, of which `now` are allocated.
+    pub(crate) fn new(room: usize, now: usize) -> Self {
         Self {
-            heap: BinaryHeap::with_capacity(room),
-            cells: Vec::with_capacity(room),
-            free: Vec::with_capacity(room),
+            heap: BinaryHeap::with_capacity(now),
+            cells: Vec::with_capacity(now),
+            free: Vec::with_capacity(now),
             room,
+            drift: 0.0,
         }
+    }
+
+    /// Lowers the bounds of all boxes.
+    pub(crate) fn lower_all(&mut self, by: f64) {
+        self.drift += by;
     }
 
     pub(crate) fn clear(&mut self) {
         self.heap.clear();
         self.cells.clear();
         self.free.clear();
+        self.drift = 0.0;
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -58,7 +67,7 @@ impl<const D: usize> Frontier<D> {
 
     /// The least of the lower bounds; infinite if there are no boxes.
     pub(crate) fn lowest(&self) -> f64 {
-        self.heap.peek().map_or(f64::INFINITY, |key| key.lower)
+        self.heap.peek().map_or(f64::INFINITY, |key| key.lower - self.drift)
     }
 
     #[inline]
@@ -73,20 +82,23 @@ impl<const D: usize> Frontier<D> {
                 self.cells.len() as u32 - 1
             }
         };
-        self.heap.push(Key { lower: cell.lower, place });
+        self.heap.push(Key { lower: cell.lower + self.drift, place });
     }
 
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<Cell<D>> {
-        let Key { place, .. } = self.heap.pop()?;
+        let Key { lower, place } = self.heap.pop()?;
         self.free.push(place);
-        Some(self.cells[place as usize])
+        Some(Cell { lower: lower - self.drift, ..self.cells[place as usize] })
     }
 
     /// Takes all boxes out, in no order.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = Cell<D>> {
-        let cells = &self.cells;
-        self.heap.drain().map(|key| cells[key.place as usize])
+        let (cells, drift) = (&self.cells, self.drift);
+        self.heap.drain().map(move |Key { lower, place }| Cell {
+            lower: lower - drift,
+            ..cells[place as usize]
+        })
     }
 }
 

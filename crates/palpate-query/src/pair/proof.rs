@@ -49,11 +49,10 @@ pub fn proof<'a, const D: usize>(
 ) -> Result<Proof<D>, QueryError> {
     let couple = Couple::new(a.into(), b.into())?;
     let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
-    search.keeps_leaves = true;
+    search.keeps_all = true;
     let (answer, _) = search.run_within(0.0, workspace);
-    let mut cells = Vec::new();
-    workspace.take_known(&mut cells);
-    let boxes = cells.iter().map(|cell| ProofBox {
+    let known = workspace.pending.drain(..).chain(workspace.cells.drain());
+    let boxes = known.map(|cell| ProofBox {
         aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
         lower: 2.0 * cell.lower,
     });

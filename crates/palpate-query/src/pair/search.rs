@@ -28,12 +28,10 @@ pub(crate) const ROOM: usize = 1 << 16;
 /// Memory of searches between bodies, to be kept between them.
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
-    /// Boxes that may hold less than the best, after those that only may no longer not.
-    cells: Frontier<D>,
+    /// Boxes that may hold less than the best; or all, if they are to be kept.
+    pub(super) cells: Frontier<D>,
     /// Boxes to be looked at as they are.
     pub(crate) pending: Vec<Cell<D>>,
-    /// Boxes that were dropped, if they are to be kept.
-    leaves: Vec<Cell<D>>,
     pub(crate) open: Vec<usize>,
     pub(crate) memory: Memory<D>,
 }
@@ -43,26 +41,11 @@ impl<const D: usize> PairWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: Frontier::new(ROOM),
+            cells: Frontier::new(ROOM, ROOM),
             pending: Vec::with_capacity(ROOM),
-            leaves: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
             memory: Memory::new(),
         }
-    }
-
-    /// How many boxes the last search left.
-    pub(super) fn known(&self) -> usize {
-        self.cells.len() + self.pending.len() + self.leaves.len()
-    }
-
-    /// Moves all boxes that the last search left into `known`.
-    pub(super) fn take_known(&mut self, known: &mut Vec<Cell<D>>) {
-        // Most of them are leaves, and there are many: they change places only.
-        std::mem::swap(known, &mut self.leaves);
-        self.leaves.clear();
-        known.extend(self.cells.drain());
-        known.append(&mut self.pending);
     }
 }
 
@@ -83,8 +66,8 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(super) dropped: f64,
     /// What values may be off by [m].
     pub(super) slack: f64,
-    /// Whether boxes that are dropped are kept.
-    pub(super) keeps_leaves: bool,
+    /// Whether boxes that need no more looking at are kept with the others.
+    pub(super) keeps_all: bool,
 }
 
 impl<'a, const D: usize> Search<'a, D> {
@@ -102,7 +85,7 @@ impl<'a, const D: usize> Search<'a, D> {
             best: Vector::ZERO,
             dropped: f64::INFINITY,
             slack: 0.0,
-            keeps_leaves: false,
+            keeps_all: false,
         })
     }
 
@@ -143,7 +126,7 @@ impl<'a, const D: usize> Search<'a, D> {
         self.descend(both.centre());
         let root = self.root(margin);
         self.slack = self.couple.slack(reach(&root));
-        workspace.leaves.clear();
+        workspace.cells.clear();
         if self.goal.is_hit(self.upper + self.slack) {
             return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
         }
@@ -151,23 +134,14 @@ impl<'a, const D: usize> Search<'a, D> {
         (self.refine(&root, workspace), root)
     }
 
-    /// Takes over boxes, parts of `root`, of which something is known.
-    pub(super) fn keep(
-        &mut self,
-        cells: impl Iterator<Item = Cell<D>>,
-        root: &Aabb<D>,
-        workspace: &mut PairWorkspace<D>,
-    ) {
+    /// Takes over the boxes of the workspace, parts of `root`, of which something is known:
+    /// those of which too little is are pending.
+    pub(super) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
         workspace.pending.clear();
-        workspace.leaves.clear();
         self.slack = self.couple.slack(reach(root));
         let threshold = self.threshold();
-        for cell in cells {
-            if cell.lower < threshold {
-                workspace.pending.push(cell);
-            } else {
-                self.drop_cell(&cell, workspace);
-            }
+        while workspace.cells.lowest() < threshold {
+            workspace.pending.extend(workspace.cells.pop());
         }
     }
 
@@ -178,7 +152,6 @@ impl<'a, const D: usize> Search<'a, D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Certified<Nearest<D>> {
         let largest = SMALL * root.half_extents().norm();
-        workspace.cells.clear();
         loop {
             let lowest = if workspace.pending.is_empty() {
                 workspace.cells.lowest()
@@ -189,8 +162,7 @@ impl<'a, const D: usize> Search<'a, D> {
             if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
                 return self.answer(stop, lower);
             }
-            let is_full =
-                !workspace.cells.has_room(BLOCK) || workspace.leaves.len() + BLOCK > ROOM;
+            let is_full = !workspace.cells.has_room(BLOCK);
             let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
             if is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
@@ -288,12 +260,8 @@ impl<'a, const D: usize> Search<'a, D> {
         let mut count = 0;
         if workspace.pending.is_empty() {
             let threshold = self.threshold();
-            while count + (1 << D) <= BLOCK {
+            while count + (1 << D) <= BLOCK && workspace.cells.lowest() < threshold {
                 let Some(parent) = workspace.cells.pop() else { break };
-                if parent.lower >= threshold {
-                    self.drop_cell(&parent, workspace);
-                    continue;
-                }
                 let end = parent.halve(parts, count);
                 // Parts of one box are of one size.
                 radii[count..end].fill(parts[count].radius());
@@ -351,8 +319,8 @@ impl<'a, const D: usize> Search<'a, D> {
 
     fn drop_cell(&mut self, cell: &Cell<D>, workspace: &mut PairWorkspace<D>) {
         self.dropped = self.dropped.min(cell.lower);
-        if self.keeps_leaves {
-            workspace.leaves.push(*cell);
+        if self.keeps_all {
+            workspace.cells.push(*cell);
         }
     }
 }

@@ -7,9 +7,10 @@ use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
 use super::Nearest;
 use super::body::Body;
-use super::cell::{Cell, reach};
+use super::cell::reach;
 use super::couple::Couple;
-use super::search::{PairWorkspace, Search};
+use super::frontier::Frontier;
+use super::search::{PairWorkspace, ROOM, Search};
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -58,7 +59,7 @@ pub struct Track<const D: usize> {
 /// may be found, and what was known of them when the bodies were at a pose.
 #[derive(Clone, Debug)]
 struct Cover<const D: usize> {
-    cells: Vec<Cell<D>>,
+    cells: Frontier<D>,
     root: Aabb<D>,
     best: Point<D>,
     second_from_frame: Pose<D>,
@@ -114,25 +115,28 @@ impl<const D: usize> Track<D> {
         if let Some(answer) = search.told_by_boxes() {
             return Ok((answer, search.best));
         }
-        search.keeps_leaves = true;
+        search.keeps_all = true;
         let mut cover = self.cover.take();
-        let answer = match &mut cover {
-            Some(cover) if cover.resume(&mut search, workspace) => {
-                search.refine(&cover.root, workspace)
-            }
+        let is_known = cover.as_mut().is_some_and(|cover| cover.resume(&mut search, workspace));
+        let answer = match &cover {
+            Some(cover) if is_known => search.refine(&cover.root, workspace),
             _ => {
                 let size = couple.root(0.0).half_extents().norm();
                 let (answer, root) = search.run_within(MARGIN * size, workspace);
-                let first = workspace.known();
+                let first = workspace.cells.len() + workspace.pending.len();
                 let (best, second_from_frame) = (search.best, couple.second_from_frame);
-                let cells = cover.map_or_else(Vec::new, |cover| cover.cells);
+                let cells =
+                    cover.take().map_or_else(|| Frontier::new(ROOM, first), |c| c.cells);
                 cover = Some(Cover { cells, root, best, second_from_frame, first });
                 answer
             }
         };
         if let Some(cover) = &mut cover {
             (cover.best, cover.second_from_frame) = (search.best, couple.second_from_frame);
-            workspace.take_known(&mut cover.cells);
+            for cell in workspace.pending.drain(..) {
+                workspace.cells.push(cell);
+            }
+            std::mem::swap(&mut cover.cells, &mut workspace.cells);
         }
         self.cover = cover;
         Ok((answer, search.best))
@@ -142,7 +146,7 @@ impl<const D: usize> Track<D> {
 impl<const D: usize> Cover<D> {
     /// Puts into `workspace` what is still known now that the bodies have moved; `false`
     /// if they moved too far.
-    fn resume(&self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
+    fn resume(&mut self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
         // What a body knows in a part of space alone moves with it.
         let is_known = search.couple.bodies.iter().all(Body::is_known_everywhere);
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
@@ -155,9 +159,9 @@ impl<const D: usize> Cover<D> {
         }
         let slack = search.couple.slack(reach(&self.root));
         let moved = self.displacement(&search.couple.second_from_frame) + slack;
-        let cells = self.cells.iter();
-        let cells = cells.map(|cell| Cell { lower: cell.lower - moved, ..*cell });
-        search.keep(cells, &self.root, workspace);
+        self.cells.lower_all(moved);
+        std::mem::swap(&mut self.cells, &mut workspace.cells);
+        search.resume(&self.root, workspace);
         true
     }
 
