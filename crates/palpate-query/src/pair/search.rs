@@ -25,6 +25,18 @@ const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper
 /// Boxes that a workspace holds.
 pub(crate) const ROOM: usize = 1 << 16;
 
+/// A block of boxes that is looked at.
+#[derive(Debug)]
+struct Round<const D: usize> {
+    parts: [Cell<D>; BLOCK],
+    count: usize,
+    radii: [f64; BLOCK],
+    /// `g` of both bodies at the centres.
+    values: [[f64; BLOCK]; 2],
+    /// Of the first body.
+    models: [Model; BLOCK],
+}
+
 /// Memory of searches between bodies, to be kept between them.
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
@@ -34,6 +46,7 @@ pub struct PairWorkspace<const D: usize> {
     pub(crate) pending: Vec<Cell<D>>,
     pub(crate) open: Vec<usize>,
     pub(crate) memory: Memory<D>,
+    round: Round<D>,
 }
 
 impl<const D: usize> PairWorkspace<D> {
@@ -45,6 +58,13 @@ impl<const D: usize> PairWorkspace<D> {
             pending: Vec::with_capacity(ROOM),
             open: Vec::with_capacity(BLOCK),
             memory: Memory::new(),
+            round: Round {
+                parts: [Cell::NOTHING; BLOCK],
+                count: 0,
+                radii: [0.0; BLOCK],
+                values: [[0.0; BLOCK]; 2],
+                models: [NOTHING; BLOCK],
+            },
         }
     }
 }
@@ -205,33 +225,34 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Looks at a block of boxes: pending ones, or the parts of those of which least is
     /// known.
     fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
-        let (mut parts, mut radii) = ([Cell::NOTHING; BLOCK], [0.0; BLOCK]);
-        let count = self.gather(workspace, &mut parts, &mut radii);
+        self.gather(workspace);
+        let PairWorkspace { cells, round, memory, .. } = workspace;
         // What the first body alone rules out, the second is not asked.
-        let mut values = [[0.0; BLOCK]; 2];
-        self.couple.values(0, &parts[..count], &mut workspace.memory, &mut values[0]);
+        self.couple.values(0, &round.parts[..round.count], memory, &mut round.values[0]);
         let threshold = self.threshold();
         let mut kept = 0;
-        for i in 0..count {
-            let (mut part, at) = (parts[i], (i, values[0][i]));
-            let floor = self.couple.floor(0, at, radii[i], &workspace.memory);
+        for i in 0..round.count {
+            let (mut part, radius, value) =
+                (round.parts[i], round.radii[i], round.values[0][i]);
+            let floor = self.couple.floor(0, (i, value), radius, memory);
             part.lower = larger(part.lower, floor - self.slack);
             if part.lower < threshold {
-                (parts[kept], radii[kept], values[0][kept]) = (part, radii[i], values[0][i]);
-                workspace.memory.keep(0, i, kept);
+                (round.parts[kept], round.radii[kept]) = (part, radius);
+                round.values[0][kept] = value;
+                memory.keep(0, i, kept);
                 kept += 1;
             } else {
-                self.drop_cell(&part, workspace);
+                self.drop_cell(&part, cells);
             }
         }
-        let parts = &mut parts[..kept];
-        self.couple.values(1, parts, &mut workspace.memory, &mut values[1]);
+        round.count = kept;
+        self.couple.values(1, &round.parts[..kept], memory, &mut round.values[1]);
         let mut least = (f64::INFINITY, self.best);
-        for (i, part) in parts.iter_mut().enumerate() {
-            let at = (i, values[1][i]);
-            let floor = self.couple.floor(1, at, radii[i], &workspace.memory);
+        for (i, part) in round.parts[..kept].iter_mut().enumerate() {
+            let at = (i, round.values[1][i]);
+            let floor = self.couple.floor(1, at, round.radii[i], memory);
             part.lower = larger(part.lower, floor - self.slack);
-            let value = larger(values[0][i], values[1][i]);
+            let value = larger(round.values[0][i], round.values[1][i]);
             if value < least.0 {
                 least = (value, part.centre);
             }
@@ -239,61 +260,56 @@ impl<'a, const D: usize> Search<'a, D> {
         if least.0 < self.upper - 0.25 * self.goal.tolerance {
             self.descend(least.1);
         }
-        self.model(parts, &radii, workspace, largest);
+        if !self.goal.is_hit(self.upper + self.slack) {
+            self.model(workspace, largest);
+        }
         let threshold = self.threshold();
-        for part in &*parts {
+        let PairWorkspace { cells, round, .. } = workspace;
+        for part in &round.parts[..kept] {
             if part.lower < threshold {
-                workspace.cells.push(*part);
+                cells.push(*part);
             } else {
-                self.drop_cell(part, workspace);
+                self.drop_cell(part, cells);
             }
         }
     }
 
-    /// Takes a block of boxes, with their radii; returns how many.
-    fn gather(
-        &mut self,
-        workspace: &mut PairWorkspace<D>,
-        parts: &mut [Cell<D>; BLOCK],
-        radii: &mut [f64; BLOCK],
-    ) -> usize {
+    /// Takes a block of boxes, with their radii.
+    fn gather(&mut self, workspace: &mut PairWorkspace<D>) {
+        let PairWorkspace { cells, pending, round, .. } = workspace;
+        let (parts, radii) = (&mut round.parts, &mut round.radii);
         let mut count = 0;
-        if workspace.pending.is_empty() {
+        if pending.is_empty() {
             let threshold = self.threshold();
-            while count + (1 << D) <= BLOCK && workspace.cells.lowest() < threshold {
-                let Some(parent) = workspace.cells.pop() else { break };
+            while count + (1 << D) <= BLOCK && cells.lowest() < threshold {
+                let Some(parent) = cells.pop() else { break };
                 let end = parent.halve(parts, count);
                 // Parts of one box are of one size.
                 radii[count..end].fill(parts[count].radius());
                 count = end;
             }
         } else {
-            let first = workspace.pending.len().saturating_sub(BLOCK);
-            for cell in workspace.pending.drain(first..) {
+            let first = pending.len().saturating_sub(BLOCK);
+            for cell in pending.drain(first..) {
                 (parts[count], radii[count]) = (cell, cell.radius());
                 count += 1;
             }
         }
-        count
+        round.count = count;
     }
 
     /// Bounds by models those boxes that are small and not yet done with, again by the
     /// first body alone before the second is asked.
-    fn model(
-        &mut self,
-        parts: &mut [Cell<D>],
-        radii: &[f64; BLOCK],
-        workspace: &mut PairWorkspace<D>,
-        largest: f64,
-    ) {
+    fn model(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
         let threshold = self.threshold();
-        let PairWorkspace { open, memory, .. } = workspace;
+        let PairWorkspace { open, memory, round, .. } = workspace;
+        let Round { parts, radii, models, count, .. } = round;
+        let parts = &mut parts[..*count];
         open.clear();
         let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
         open.extend((0..parts.len()).filter(is_open));
         self.couple.keep_known(parts, open, memory);
         self.couple.models(0, parts, open, memory);
-        let mut firsts = [NOTHING; BLOCK];
         let (mut lane, mut kept) = (0, 0);
         open.retain(|&i| {
             let model = self.couple.model(0, memory, lane);
@@ -302,14 +318,14 @@ impl<'a, const D: usize> Search<'a, D> {
             parts[i].lower = larger(parts[i].lower, least::<D>(&model) - self.slack);
             let is_open = parts[i].lower < threshold;
             if is_open {
-                firsts[kept] = model;
+                models[kept] = model;
                 kept += 1;
             }
             is_open
         });
         self.couple.models(1, parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
-            let (a, b) = (firsts[lane], self.couple.model(1, memory, lane));
+            let (a, b) = (models[lane], self.couple.model(1, memory, lane));
             let enough = threshold + self.slack;
             let lower = least_of_larger::<D>(&a, &b, enough) - self.slack;
             parts[i].lower = larger(parts[i].lower, lower);
@@ -317,10 +333,10 @@ impl<'a, const D: usize> Search<'a, D> {
         }
     }
 
-    fn drop_cell(&mut self, cell: &Cell<D>, workspace: &mut PairWorkspace<D>) {
+    fn drop_cell(&mut self, cell: &Cell<D>, cells: &mut Frontier<D>) {
         self.dropped = self.dropped.min(cell.lower);
         if self.keeps_all {
-            workspace.cells.push(*cell);
+            cells.push(*cell);
         }
     }
 }
