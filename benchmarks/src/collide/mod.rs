@@ -82,19 +82,24 @@ impl Turn<3> for Space {
 }
 
 /// How often each question is timed; the fastest counts.
-const REPEATS: usize = 15;
+const REPEATS: usize = 60;
 
-/// The time of the fastest of several batches of a few runs [ns a run].
+/// A batch of runs takes at least this long [ns], far more than reading the clock.
+const BATCH: f64 = 5e3;
+
+/// The time of the fastest of several batches of runs [ns a run].
 fn fastest(mut run: impl FnMut()) -> f64 {
-    const BATCH: usize = 16;
+    let start = Instant::now();
     run();
+    let one = start.elapsed().as_nanos() as f64;
+    let runs = (BATCH / one.max(1.0)).ceil().clamp(1.0, 64.0);
     let mut best = f64::INFINITY;
     for _ in 0..REPEATS {
         let start = Instant::now();
-        for _ in 0..BATCH {
+        for _ in 0..runs as usize {
             run();
         }
-        best = best.min(start.elapsed().as_nanos() as f64 / BATCH as f64);
+        best = best.min(start.elapsed().as_nanos() as f64 / runs);
     }
     best
 }
