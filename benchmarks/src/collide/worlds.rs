@@ -7,15 +7,21 @@ use std::error::Error;
 use std::time::Instant;
 
 use palpate::field::kernel::{Ball, Cuboid, Cylinder, Ring, RoundedCuboid, Torus};
-use palpate::field::{Pose, Shape, ShapeError, Vector};
-use palpate::query::{BodyId, Verdict, World, WorldSettings};
+use palpate::field::{Pose, Rotation, Shape, ShapeError, Vector};
+use palpate::query::{
+    BodyId, Limits, PairWorkspace, Placed, QueryError, Verdict, World, WorldSettings, overlap,
+};
 
 use super::{Space, Turn};
 use crate::fields::Rows;
 use crate::random::Random;
 
-/// Bodies, 1 m apart.
-const BODIES: usize = 1000;
+/// Bodies in a row, each touching the one before, and rows.
+const IN_A_ROW: usize = 10;
+const ROWS: usize = 100;
+
+/// How far rows are apart [m]: boxes of bodies of neighbouring rows meet.
+const APART: f64 = 1.1;
 
 /// One body of so many moves in each step, by 1 mm and 1 mrad.
 const MOVING: usize = 20;
@@ -28,13 +34,12 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let asked = one_thread.install(|| {
         steps("world.1000_bodies", &in_space()?, 10, rows)?;
-        steps("world.1000_planar_bodies", &in_the_plane()?, 32, rows)
+        steps("world.1000_planar_bodies", &in_the_plane()?, ROWS, rows)
     });
     asked.map_err(|error| -> Box<dyn Error> { error })
 }
 
-/// Bodies as large as the distance between them, on a lattice with `side` of them in each
-/// direction but the last.
+/// Rows along x, `side` of them in each other direction.
 fn steps<const D: usize>(
     key: &str,
     shapes: &[Shape<D>],
@@ -47,10 +52,22 @@ where
     let mut random = Random::new(7);
     let mut world = World::new(WorldSettings::of_size(1.0))?;
     let mut bodies: Vec<(BodyId, Pose<D>)> = Vec::new();
-    for i in 0..BODIES {
-        let place = std::array::from_fn(|k| (i / side.pow(k as u32) % side) as f64);
-        let pose = Pose::new(<Space as Turn<D>>::any(&mut random)?, Vector(place));
-        bodies.push((world.add(shapes[i % shapes.len()].clone(), pose)?, pose));
+    for row in 0..ROWS {
+        let mut place = Vector::ZERO;
+        for k in 1..D {
+            place[k] = (row / side.pow(k as u32 - 1) % side) as f64 * APART;
+        }
+        let mut before: Option<(&Shape<D>, Pose<D>)> = None;
+        for i in 0..IN_A_ROW {
+            let shape = &shapes[(row + i) % shapes.len()];
+            let turn = <Space as Turn<D>>::any(&mut random)?;
+            if let Some((other, there)) = before {
+                place[0] += touching(Placed::new(other, there), shape, turn, place)?;
+            }
+            let pose = Pose::new(turn, place);
+            bodies.push((world.add(shape.clone(), pose)?, pose));
+            before = Some((shape, pose));
+        }
     }
     world.step();
     let (mut times, mut pairs, mut undecided) = (Vec::new(), 0, 0);
@@ -78,6 +95,25 @@ where
     rows.insert(format!("{key}.pairs"), pairs as f64);
     rows.insert(format!("{key}.undecided"), undecided as f64);
     Ok(())
+}
+
+/// How far along x from `place` a turned shape touches another, coming from afar.
+fn touching<const D: usize>(
+    other: Placed<'_, D>,
+    shape: &Shape<D>,
+    turn: Rotation<D>,
+    place: Vector<f64, D>,
+) -> Result<f64, QueryError> {
+    let limits = Limits { tolerance: 1e-5, ..Limits::default() };
+    let mut workspace = PairWorkspace::new();
+    let (mut near, mut far) = (0.0, 2.0);
+    while far - near > 1e-5 {
+        let middle = 0.5 * (near + far);
+        let pose = Pose::new(turn, place + Vector::unit(0) * middle);
+        let found = overlap(other, Placed::new(shape, pose), &limits, &mut workspace)?;
+        if found.is_hit() == Some(false) { far = middle } else { near = middle }
+    }
+    Ok(far)
 }
 
 fn in_space() -> Result<[Shape<3>; 4], ShapeError> {

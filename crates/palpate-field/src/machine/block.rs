@@ -128,14 +128,23 @@ impl<S: Lane, const W: usize> Column<S, W> {
     }
 }
 
-impl<const W: usize> Column<f32, W> {
-    /// The numbers written.
-    #[inline(always)]
-    pub(crate) fn as_slice(&self) -> &[f32] {
-        // SAFETY: the first `written` lanes are.
-        unsafe { self.lanes.as_slice(self.written) }
-    }
+macro_rules! float_column {
+    ($t:ident) => {
+        impl<const W: usize> Column<$t, W> {
+            /// The numbers that are written: those of the points that were asked for, and
+            /// perhaps some more.
+            #[inline(always)]
+            #[must_use]
+            pub fn as_slice(&self) -> &[$t] {
+                // SAFETY: the first `written` lanes are.
+                unsafe { self.lanes.as_slice(self.written) }
+            }
+        }
+    };
 }
+
+float_column!(f32);
+float_column!(f64);
 
 impl<S: Lane, const W: usize> Rows for Column<S, W> {
     type Item = S;
@@ -207,6 +216,27 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     #[must_use]
     pub fn get(&self, i: usize) -> Vector<S, D> {
         Vector(array!(k < D => self.0[k].get(i)))
+    }
+
+    /// Puts points into the first `count` lanes, and more of the last where evaluations
+    /// work through whole lines; other lanes may not be read after that.
+    ///
+    /// # Panics
+    ///
+    /// If there are not so many lanes.
+    #[inline(always)]
+    pub fn fill(&mut self, count: usize, mut point: impl FnMut(usize) -> Vector<S, D>) {
+        assert!(count <= W, "{count} points in {W} lanes");
+        let lanes = filled::<Column<S, W>>(count);
+        for i in 0..lanes {
+            let point = point(i.min(count.max(1) - 1));
+            for k in 0..D {
+                self.0[k].lanes.write(i, point.0[k]);
+            }
+        }
+        for column in &mut self.0 {
+            column.written = lanes;
+        }
     }
 
     /// Puts a point into lane `i`.

@@ -85,16 +85,16 @@ impl<T: Float, const W: usize> LaneArray<T> for Lanes<T, W> {
     }
 }
 
-impl<const W: usize> Lanes<f32, W> {
+impl<T: Float, const W: usize> Lanes<T, W> {
     /// The first `written` lanes.
     ///
     /// # Safety
     ///
     /// Numbers must have been written to all of them.
     #[inline(always)]
-    pub(super) unsafe fn as_slice(&self, written: usize) -> &[f32] {
+    pub(super) unsafe fn as_slice(&self, written: usize) -> &[T] {
         // SAFETY: the caller promises that they are written, and a written
-        // `MaybeUninit<f32>` has the layout of an `f32`.
+        // `MaybeUninit<T>` has the layout of a `T`.
         unsafe { self.0[..written].assume_init_ref() }
     }
 }

@@ -117,13 +117,14 @@ impl<'a, const D: usize> Couple<'a, D> {
     ) {
         self.evaluations += cells.len() as u32;
         let (body, locals) = (&self.bodies[body], &mut memory.locals[body]);
-        for (i, (cell, local)) in cells.iter().zip(&mut *locals).enumerate() {
+        for (cell, local) in cells.iter().zip(&mut *locals) {
             *local = body.local(cell.centre);
-            memory.points.set(i, *local);
         }
+        memory.points.fill(cells.len(), |i| locals[i]);
         body.shape.block_distances(&memory.points, cells.len(), &mut memory.values);
-        for (i, (local, value)) in locals[..cells.len()].iter().zip(values).enumerate() {
-            *value = body.value(*local, memory.values.get(i));
+        let found = locals[..cells.len()].iter().zip(memory.values.as_slice());
+        for ((local, f), value) in found.zip(values) {
+            *value = body.value(*local, *f);
         }
     }
 
@@ -136,9 +137,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     ) {
         self.evaluations += 4 * points.len() as u32;
         for (body, slopes) in self.bodies.iter().zip(slopes) {
-            for (i, p) in points.iter().enumerate() {
-                memory.points.set(i, body.local(*p));
-            }
+            memory.points.fill(points.len(), |i| body.local(points[i]));
             body.shape.block_gradients(&memory.points, points.len(), &mut memory.slopes);
             for (i, slope) in slopes[..points.len()].iter_mut().enumerate() {
                 let local = memory.points.get(i);
@@ -192,9 +191,10 @@ impl<'a, const D: usize> Couple<'a, D> {
         self.evaluations += open.len() as u32;
         let (locals, models) = (&memory.locals[body], &mut memory.models[body]);
         let body = &self.bodies[body];
-        for (lane, &i) in open.iter().enumerate() {
-            memory.boxes.set(lane, body.cell(locals[i], cells[i].half));
-        }
+        memory.boxes.fill(open.len(), |lane| {
+            let i = open[lane];
+            body.cell(locals[i], cells[i].half)
+        });
         body.shape.block_distances(&memory.boxes, open.len(), models);
     }
 
