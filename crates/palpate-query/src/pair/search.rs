@@ -127,9 +127,9 @@ impl<'a, const D: usize> Search<'a, D> {
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
-    /// Improves the best point, from `start`.
-    pub(super) fn descend(&mut self, start: Point<D>) {
-        let (value, p) = descend(&mut self.couple, start, self.goal, self.slack);
+    /// Improves the best point, from `start`, by steps of at most `first` to begin with.
+    pub(super) fn descend(&mut self, start: Point<D>, first: f64) {
+        let (value, p) = descend(&mut self.couple, (start, first), self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
@@ -143,7 +143,7 @@ impl<'a, const D: usize> Search<'a, D> {
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
         let both = self.couple.root(0.0);
         self.slack = self.couple.slack(reach(&both));
-        self.descend(both.centre());
+        self.descend(both.centre(), f64::INFINITY);
         let root = self.root(margin);
         self.slack = self.couple.slack(reach(&root));
         workspace.cells.clear();
@@ -258,7 +258,7 @@ impl<'a, const D: usize> Search<'a, D> {
             }
         }
         if least.0 < self.upper - 0.25 * self.goal.tolerance {
-            self.descend(least.1);
+            self.descend(least.1, f64::INFINITY);
         }
         if !self.goal.is_hit(self.upper + self.slack) {
             self.model(workspace, largest);

@@ -152,7 +152,8 @@ impl<const D: usize> Cover<D> {
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
-        search.descend(self.best);
+        // The best point has moved as little as the bodies have.
+        search.descend(self.best, search.goal.tolerance);
         let root = search.root(0.0);
         if !(self.root.contains(root.min) && self.root.contains(root.max)) {
             return false;
