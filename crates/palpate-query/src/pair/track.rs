@@ -177,6 +177,9 @@ impl<const D: usize> Cover<D> {
             .zip(now.rotation.matrix())
             .map(|(before, now)| (Vector(*now) - Vector(*before)).norm().powi(2));
         let moved = now.transform_point(centre) - before.transform_point(centre);
-        (moved.norm() + turned.sum::<f64>().sqrt() * radius) * (1.0 + 1e-12)
+        // A difference of two rotations stretches two directions alike, and in space no
+        // third: each by the sum of its squares, halved.
+        let stretch = (0.5 * turned.sum::<f64>()).sqrt();
+        (moved.norm() + stretch * radius) * (1.0 + 1e-12)
     }
 }
