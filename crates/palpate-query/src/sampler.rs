@@ -104,13 +104,11 @@ impl<'a, const D: usize> Sampler<'a, D> {
     pub(crate) fn values(&mut self, points: &[Point<D>; SHORT]) -> [f64; SHORT] {
         self.evaluations += SHORT as u32;
         let samples = &mut *self.samples;
-        for (i, p) in points.iter().enumerate() {
-            samples.block.set(i, *p);
-        }
+        samples.block.fill(SHORT, |i| points[i]);
         self.shape.block_distances(&samples.block, SHORT, &mut samples.values);
         let mut values = [0.0; SHORT];
-        for (i, value) in values.iter_mut().enumerate() {
-            *value = samples.values.get(i) - self.level;
+        for (value, found) in values.iter_mut().zip(samples.values.as_slice()) {
+            *value = found - self.level;
         }
         values
     }
@@ -123,9 +121,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     ) -> ([f64; SHORT], [Vector<f64, D>; SHORT]) {
         self.evaluations += 2 * SHORT as u32;
         let samples = &mut *self.samples;
-        for (i, p) in points.iter().enumerate() {
-            samples.block.set(i, *p);
-        }
+        samples.block.fill(SHORT, |i| points[i]);
         self.shape.block_gradients(&samples.block, SHORT, &mut samples.slopes);
         let (mut values, mut directions) = ([0.0; SHORT], [Vector::ZERO; SHORT]);
         for i in 0..SHORT {

@@ -194,7 +194,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let centre = element.at(&weights);
         let radius = element.farthest(centre);
         let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
-        let reach = larger(terms.reach, centre.norm() + (1.0 + highest) * radius);
+        // No less than the norm, and without a root.
+        let away = centre.0.iter().fold(0.0, |sum, x| sum + x.abs());
+        let reach = larger(terms.reach, away + (1.0 + highest) * radius);
         Self {
             sampler: Sampler::new(shape, samples, reach, terms.level),
             goal: terms.goal,
@@ -289,7 +291,8 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     #[inline]
     pub(crate) fn finish(&mut self, cells: &mut Vec<Cell<N, D>>) -> Certified<Point<D>> {
         loop {
-            let lowest = cells.iter().fold(self.dropped, |low, cell| low.min(cell.lower));
+            let lowest =
+                cells.iter().fold(self.dropped, |low, cell| -larger(-low, -cell.lower));
             if let Some(stop) = self.goal.reached(lowest, self.upper) {
                 return self.answer(lowest, stop);
             }
