@@ -7,7 +7,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 /// Sides that are halved, as a share of the longest.
-const LONG_SIDE: f64 = 0.6;
+const LONG_SIDE: f64 = 0.66;
 
 /// Sides along which fields change by less than this share of the most are level.
 const LEVEL: f64 = 0.01;
@@ -147,9 +147,10 @@ pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64)
         if best >= enough {
             break;
         }
-        let share = b.gradient[k] / (b.gradient[k] - a.gradient[k]);
-        if share > 0.0 && share < 1.0 {
-            best = larger(best, least_of_mean::<D>(a, b, share));
+        let (of_a, of_b) = (a.gradient[k], b.gradient[k]);
+        // Of like signs the mean's has the same.
+        if of_a * of_b < 0.0 {
+            best = larger(best, least_of_mean::<D>(a, b, of_b / (of_b - of_a)));
         }
     }
     best

@@ -257,7 +257,7 @@ impl<'a, const D: usize> Search<'a, D> {
                 least = (value, part.centre);
             }
         }
-        if least.0 < self.upper - 0.25 * self.goal.tolerance {
+        if least.0 < self.upper - self.goal.tolerance {
             self.descend(least.1, f64::INFINITY);
         }
         if !self.goal.is_hit(self.upper + self.slack) {
