@@ -18,8 +18,9 @@ const THIN: f64 = 8.0;
 /// The last bits of a sum of models.
 pub(crate) const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// A box, and what is known of it.
+/// A box, and what is known of it, in a cache line of its own.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(crate) struct Cell<const D: usize> {
     /// Nothing in it is less [m].
     pub(crate) lower: f64,
