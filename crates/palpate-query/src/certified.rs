@@ -63,8 +63,8 @@ impl Limits {
 }
 
 impl Default for Limits {
-    /// A tolerance of 0.1 mm, and 100 000 evaluations.
+    /// A tolerance of 0.1 mm, and 200 000 evaluations.
     fn default() -> Self {
-        Self { tolerance: 1e-4, budget: 100_000 }
+        Self { tolerance: 1e-4, budget: 200_000 }
     }
 }

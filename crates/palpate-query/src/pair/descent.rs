@@ -37,18 +37,18 @@ pub(crate) fn way<const D: usize>(
 }
 
 /// A point from `start` on at which the larger of both is less, and its value there;
-/// values may be off by `slack`. The first step is no longer than `first` [m], and else as
-/// long as the value there.
+/// values may be off by `slack`. The first step is `first` [m], or else as long as
+/// the value there.
 pub(crate) fn descend<const D: usize>(
     couple: &mut Couple<'_, D>,
-    (start, first): (Point<D>, f64),
+    (start, first): (Point<D>, Option<f64>),
     goal: Goal,
     slack: f64,
 ) -> (f64, Point<D>) {
     let mut p = start;
     let mut here = couple.slopes(p);
     let mut value = here[0].0.max(here[1].0);
-    let mut step = value.abs().max(goal.tolerance).min(first);
+    let mut step = first.unwrap_or(value.abs().max(goal.tolerance));
     let mut small_gains = 0;
     for _ in 0..STEPS {
         let next = p - way(here, step);

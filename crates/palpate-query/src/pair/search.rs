@@ -127,8 +127,8 @@ impl<'a, const D: usize> Search<'a, D> {
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
-    /// Improves the best point, from `start`, by steps of at most `first` to begin with.
-    pub(super) fn descend(&mut self, start: Point<D>, first: f64) {
+    /// Improves the best point, from `start`, with `first` as in [`descend`].
+    pub(super) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
         let (value, p) = descend(&mut self.couple, (start, first), self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
@@ -143,7 +143,7 @@ impl<'a, const D: usize> Search<'a, D> {
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
         let both = self.couple.root(0.0);
         self.slack = self.couple.slack(reach(&both));
-        self.descend(both.centre(), f64::INFINITY);
+        self.descend(both.centre(), None);
         let root = self.root(margin);
         self.slack = self.couple.slack(reach(&root));
         workspace.cells.clear();
@@ -258,7 +258,7 @@ impl<'a, const D: usize> Search<'a, D> {
             }
         }
         if least.0 < self.upper - self.goal.tolerance {
-            self.descend(least.1, f64::INFINITY);
+            self.descend(least.1, None);
         }
         if !self.goal.is_hit(self.upper + self.slack) {
             self.model(workspace, largest);

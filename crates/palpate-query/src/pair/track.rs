@@ -153,7 +153,7 @@ impl<const D: usize> Cover<D> {
             return false;
         }
         // The best point has moved as little as the bodies have.
-        search.descend(self.best, search.goal.tolerance);
+        search.descend(self.best, Some(search.goal.tolerance));
         let root = search.root(0.0);
         if !(self.root.contains(root.min) && self.root.contains(root.max)) {
             return false;
