@@ -46,6 +46,7 @@ mod cut_box;
 mod element;
 mod error;
 mod goal;
+mod larger;
 pub mod local;
 mod manifold;
 mod mesh;

@@ -25,6 +25,7 @@ use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::element::{Element, parts_of_one};
 use crate::goal::Goal;
+use crate::larger::larger;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{Sampler, Samples, unit};
 
@@ -436,9 +437,4 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             }
         }
     }
-}
-
-#[inline]
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
 }

@@ -18,20 +18,6 @@ use palpate_testkit::tree::{Solid, Tree};
 /// Samples along an edge.
 const SAMPLES: u32 = 24;
 
-/// Points all over an element, its ends included.
-fn samples<const N: usize, const D: usize>(element: &Element<N, D>) -> Vec<Point<D>> {
-    let v = element.vertices();
-    let mut points = Vec::new();
-    for i in 0..=SAMPLES {
-        for k in 0..=(if N == 3 { SAMPLES - i } else { 0 }) {
-            let (s, t) = (f64::from(i), f64::from(k));
-            let rest = f64::from(SAMPLES) - s - t;
-            points.push((v[0] * rest + v[1] * s + v[N - 1] * t) * (1.0 / f64::from(SAMPLES)));
-        }
-    }
-    points
-}
-
 /// An element near the surface of a shape, small, large or without an extent.
 fn element<const N: usize, const D: usize>(
     u: &mut Unstructured<'_>,
@@ -56,7 +42,7 @@ fn wrong<const N: usize, const D: usize>(
 ) -> Option<String> {
     // What is sampled is off by rounding too, as `upper` is.
     let rounding = |p: Point<D>| shape.promise().rounding.within(p.norm());
-    for p in samples(element) {
+    for p in draw::all_over(element.vertices(), SAMPLES) {
         let value = shape.distance(p);
         if value + rounding(p) < answer.lower {
             return Some(format!("{value} at {p:?} is below {answer:?} of {element:?}"));

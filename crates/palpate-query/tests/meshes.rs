@@ -22,19 +22,6 @@ use palpate_testkit::tree::{Solid, Tree};
 /// Samples along an edge.
 const SAMPLES: u32 = 8;
 
-/// Points all over an element, its ends included.
-fn samples<const N: usize, const D: usize>(v: &[Point<D>; N]) -> Vec<Point<D>> {
-    let mut points = Vec::new();
-    for i in 0..=SAMPLES {
-        for k in 0..=(if N == 3 { SAMPLES - i } else { 0 }) {
-            let (s, t) = (f64::from(i), f64::from(k));
-            let rest = f64::from(SAMPLES) - s - t;
-            points.push((v[0] * rest + v[1] * s + v[N - 1] * t) * (1.0 / f64::from(SAMPLES)));
-        }
-    }
-    points
-}
-
 /// A mesh of up to 300 elements in a ball near the surface of a shape: a walk of small
 /// steps, with a few elements that are large, flat, doubled or without an extent.
 fn mesh<const N: usize, const D: usize>(
@@ -92,7 +79,7 @@ where
             let is_open = undecided.iter().find(|open| open.element as usize == name);
             let corners = mesh.corners(name).map(|corner| pose.transform_point(corner));
             let rounding = |p: Point<D>| shape.promise().rounding.within(p.norm());
-            for p in samples(&corners) {
+            for p in draw::all_over(&corners, SAMPLES) {
                 let value = shape.distance(p) + rounding(p);
                 if !is_hit && is_open.is_none_or(|open| value < open.lower) && value < level {
                     return Ok(Err(format!("missed {name} at {p:?}: {value}\n  {tree:?}")));

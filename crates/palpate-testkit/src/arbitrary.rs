@@ -10,7 +10,7 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
 use palpate_field::operator::{Copies, Smooth};
-use palpate_field::{Pose, Rotation, Shape, Vector};
+use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
 use crate::tree::{Boolean, Solid, Sweep, Tree};
@@ -416,4 +416,20 @@ pub fn point<const D: usize>(
         }
     }
     Ok(if p.is_finite() { p } else { centre })
+}
+
+/// Points all over a segment or a triangle, `along` on an edge, its ends included.
+pub fn all_over<const N: usize, const D: usize>(
+    vertices: &[Point<D>; N],
+    along: u32,
+) -> Vec<Point<D>> {
+    let mut points = Vec::new();
+    for i in 0..=along {
+        for k in 0..=(if N == 3 { along - i } else { 0 }) {
+            let (s, t) = (f64::from(i), f64::from(k));
+            let sum = vertices[0] * (f64::from(along) - s - t) + vertices[1] * s;
+            points.push((sum + vertices[N - 1] * t) * (1.0 / f64::from(along)));
+        }
+    }
+    points
 }

@@ -7,8 +7,9 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
 
-use super::cell::{larger, reach};
+use super::cell::reach;
 use crate::error::QueryError;
+use crate::larger::larger;
 use crate::placed::{Placed, check_pose};
 
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.

@@ -6,6 +6,8 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
+use crate::larger::larger;
+
 /// Sides that are halved, as a share of the longest.
 const LONG_SIDE: f64 = 0.66;
 
@@ -170,10 +172,4 @@ fn least_of_mean<const D: usize>(a: &Model, b: &Model, share: f64) -> f64 {
     }
     let remainder = share * a.lower + rest * b.lower;
     value - slope - remainder * (1.0 + ROUNDINGS) - ROUNDINGS * size
-}
-
-/// The larger of two numbers that are numbers.
-#[inline]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
 }

@@ -8,9 +8,7 @@ use palpate_field::{Point, Vector};
 use super::couple::Couple;
 use crate::contact::Contact;
 use crate::placed::Placed;
-
-/// Gradients that differ by less than this say nothing of a normal.
-const FLAT: f64 = 1e-6;
+use crate::sampler::normal;
 
 /// Where two bodies are nearest, or overlap most, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,11 +25,9 @@ impl<const D: usize> Nearest<D> {
     pub(super) fn at(couple: &mut Couple<'_, D>, p: Point<D>) -> Self {
         let [(_, a), (_, b)] = couple.slopes(p);
         let pose = &couple.world_from_frame;
-        let between = a - b;
-        let length = between.norm();
         Self {
             point: pose.transform_point(p),
-            normal: (length > FLAT).then(|| pose.transform_vector(between * (1.0 / length))),
+            normal: normal(a - b).map(|normal| pose.transform_vector(normal)),
         }
     }
 

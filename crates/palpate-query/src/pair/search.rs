@@ -7,13 +7,14 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, larger, least, least_of_larger, reach};
+use super::cell::{Cell, least, least_of_larger, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
 use super::frontier::Frontier;
 use crate::certified::{Certified, Limits, Stop};
 use crate::error::QueryError;
 use crate::goal::Goal;
+use crate::larger::larger;
 
 /// Boxes are bounded by models below this radius, as a share of the first box's: above,
 /// remainders are larger than radii.
