@@ -5,9 +5,6 @@
 
 use palpate_field::{Aabb, Point};
 
-/// So many places a point at most: empty ones take time too.
-const MOST_PLACES: usize = 1;
-
 /// Points sorted into cubes, so that those near a point are found in the cubes around.
 #[derive(Debug)]
 pub(super) struct Grid<const D: usize> {
@@ -42,7 +39,8 @@ impl<const D: usize> Grid<D> {
                 grid.counts[k] = ((extent[k] / grid.side) as usize).saturating_add(1);
             }
             let places = grid.counts.iter().fold(1_usize, |n, count| n.saturating_mul(*count));
-            if places <= MOST_PLACES * (number + 1) {
+            // Empty places take time too: there are no more than points.
+            if places <= number + 1 {
                 grid.starts = vec![0; places + 1];
                 break;
             }
