@@ -158,28 +158,29 @@ fn spanning<const D: usize>(
     let mut touches = patches.contacts();
     patches.fill(&mut middles, &mut touches);
     drop_copies(&mut touches, settings.spacing);
-    // Where a field says less than the distance, surfaces are farther apart than it says.
-    let is_close = |member: &Member<D>| {
-        member.touch.contact(&couple, settings.spacing, 0).gap <= settings.margin
-    };
-    let mut is_deepest = true;
-    touches.retain(|member| std::mem::take(&mut is_deepest) || is_close(member));
     if let Some(deepest) = touches.first().map(|member| member.touch) {
         found.deepen(&deepest, &patches.couple);
     }
-    found.dropped = touches.len().saturating_sub(settings.most.max(1));
-    keep_spread(&mut touches, settings.most.max(1));
-    touches.sort_by(|one, other| {
+    let contacts = touches.iter().map(|member| member.touch.contact(&couple, settings.spacing));
+    let mut spanning: Vec<_> = touches.iter().copied().zip(contacts).collect();
+    // Where a field says less than the distance, surfaces are farther apart than it says.
+    let mut is_deepest = true;
+    spanning.retain(|(_, contact)| {
+        std::mem::take(&mut is_deepest) || contact.gap <= settings.margin
+    });
+    found.dropped = spanning.len().saturating_sub(settings.most.max(1));
+    keep_spread(&mut spanning, settings.most.max(1));
+    spanning.sort_by(|(one, _), (other, _)| {
         one.group.cmp(&other.group).then(one.touch.gap.total_cmp(&other.touch.gap))
     });
-    for (i, member) in touches.iter().enumerate() {
-        if i == 0 || touches[i - 1].group != member.group {
+    for (i, (member, contact)) in spanning.iter().enumerate() {
+        if i == 0 || spanning[i - 1].0.group != member.group {
             found.groups.push(0);
         }
         if let Some(count) = found.groups.last_mut() {
             *count += 1;
         }
-        found.contacts.push(member.touch.contact(&couple, settings.spacing, i as u64));
+        found.contacts.push(Contact { id: i as u64, ..*contact });
     }
     found.separation.evaluations += patches.couple.evaluations;
     found
@@ -250,7 +251,7 @@ impl<const D: usize> Touch<D> {
 
     /// The contact in world coordinates, with the surfaces' points within `near` and 45° of
     /// the normal: in the middle of a body the gradient may lead to any side.
-    fn contact(&self, couple: &Couple<'_, D>, near: f64, id: u64) -> Contact<D> {
+    fn contact(&self, couple: &Couple<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {
             let found = couple.surface_point(body, self.point);
@@ -268,7 +269,7 @@ impl<const D: usize> Touch<D> {
             point_b: pose.transform_point(point_b),
             normal: pose.transform_vector(self.normal),
             gap: (point_b - point_a).dot(self.normal),
-            id,
+            id: 0,
         }
     }
 }
@@ -294,15 +295,15 @@ fn drop_copies<const D: usize>(touches: &mut Vec<Member<D>>, spacing: f64) {
 
 /// Keeps the first `most` contacts in this order: the first, and then always the one
 /// that is farthest from those kept.
-fn keep_spread<const D: usize>(touches: &mut Vec<Member<D>>, most: usize) {
+fn keep_spread<const D: usize>(touches: &mut Vec<(Member<D>, Contact<D>)>, most: usize) {
     if touches.len() <= most {
         return;
     }
     // How far each is from those kept.
     let mut apart = vec![f64::INFINITY; touches.len()];
     for kept in 1..most {
-        let last = touches[kept - 1].touch.point;
-        for (apart, member) in apart.iter_mut().zip(&*touches).skip(kept) {
+        let last = touches[kept - 1].0.touch.point;
+        for (apart, (member, _)) in apart.iter_mut().zip(&*touches).skip(kept) {
             *apart = apart.min(distance(last, member.touch.point));
         }
         let farthest = (kept..touches.len())
