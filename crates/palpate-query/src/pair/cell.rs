@@ -9,7 +9,7 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 use crate::larger::larger;
 
 /// Sides that are halved, as a share of the longest.
-const LONG_SIDE: f64 = 0.66;
+const LONG_SIDE: f64 = 0.63;
 
 /// Sides along which fields change by less than this share of the most are level.
 const LEVEL: f64 = 0.01;

@@ -23,6 +23,9 @@ const SMALL: f64 = 0.25;
 /// A model that says nothing.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
+/// Models are worked through in lines of so many lanes.
+const LINE: usize = 8;
+
 /// Boxes that a workspace holds.
 pub(crate) const ROOM: usize = 1 << 16;
 
@@ -174,24 +177,17 @@ impl<'a, const D: usize> Search<'a, D> {
     ) -> Certified<Nearest<D>> {
         let largest = SMALL * root.half_extents().norm();
         loop {
-            let lowest = if workspace.pending.is_empty() {
-                workspace.cells.lowest()
-            } else {
-                f64::NEG_INFINITY
-            };
-            let lower = lowest.min(self.dropped);
-            if let Some(stop) = self.goal.reached(lower, self.upper + self.slack) {
-                return self.answer(stop, lower);
-            }
+            let has_pending = !workspace.pending.is_empty();
+            let decided =
+                if has_pending { f64::NEG_INFINITY } else { workspace.cells.lowest() };
+            let stop = self.goal.reached(decided.min(self.dropped), self.upper + self.slack);
             let is_full = !workspace.cells.has_room(BLOCK);
-            let is_empty = workspace.pending.is_empty() && workspace.cells.is_empty();
-            if is_empty || is_full || self.couple.evaluations >= self.budget {
+            let is_empty = !has_pending && workspace.cells.is_empty();
+            if stop.is_some() || is_empty || is_full || self.couple.evaluations >= self.budget {
                 let pending = workspace.pending.iter().map(|cell| cell.lower);
-                let lowest = workspace.cells.lowest();
-                return self.answer(
-                    Stop::BudgetSpent,
-                    pending.fold(lowest.min(self.dropped), f64::min),
-                );
+                let lowest = workspace.cells.lowest().min(self.dropped);
+                let stop = stop.unwrap_or(Stop::BudgetSpent);
+                return self.answer(stop, pending.fold(lowest, f64::min));
             }
             self.round(workspace, largest);
         }
@@ -266,7 +262,7 @@ impl<'a, const D: usize> Search<'a, D> {
         }
         let threshold = self.threshold();
         let PairWorkspace { cells, round, .. } = workspace;
-        for part in &round.parts[..kept] {
+        for part in &round.parts[..round.count] {
             if part.lower < threshold {
                 cells.push(*part);
             } else {
@@ -275,26 +271,23 @@ impl<'a, const D: usize> Search<'a, D> {
         }
     }
 
-    /// Takes a block of boxes, with their radii.
+    /// Takes a block of boxes, with their radii: pending ones, then parts of others.
     fn gather(&mut self, workspace: &mut PairWorkspace<D>) {
         let PairWorkspace { cells, pending, round, .. } = workspace;
         let (parts, radii) = (&mut round.parts, &mut round.radii);
+        let first = pending.len().saturating_sub(BLOCK);
         let mut count = 0;
-        if pending.is_empty() {
-            let threshold = self.threshold();
-            while count + (1 << D) <= BLOCK && cells.lowest() < threshold {
-                let Some(parent) = cells.pop() else { break };
-                let end = parent.halve(parts, count);
-                // Parts of one box are of one size.
-                radii[count..end].fill(parts[count].radius());
-                count = end;
-            }
-        } else {
-            let first = pending.len().saturating_sub(BLOCK);
-            for cell in pending.drain(first..) {
-                (parts[count], radii[count]) = (cell, cell.radius());
-                count += 1;
-            }
+        for cell in pending.drain(first..) {
+            (parts[count], radii[count]) = (cell, cell.radius());
+            count += 1;
+        }
+        let threshold = self.threshold();
+        while count + (1 << D) <= BLOCK && cells.lowest() < threshold {
+            let Some(parent) = cells.pop() else { break };
+            let end = parent.halve(parts, count);
+            // Parts of one box are of one size.
+            radii[count..end].fill(parts[count].radius());
+            count = end;
         }
         round.count = count;
     }
@@ -303,13 +296,21 @@ impl<'a, const D: usize> Search<'a, D> {
     /// first body alone before the second is asked.
     fn model(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
         let threshold = self.threshold();
-        let PairWorkspace { open, memory, round, .. } = workspace;
+        let PairWorkspace { cells, pending, open, memory, round, .. } = workspace;
         let Round { parts, radii, models, count, .. } = round;
         let parts = &mut parts[..*count];
         open.clear();
         let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
         open.extend((0..parts.len()).filter(is_open));
         self.couple.keep_known(parts, open, memory);
+        if !self.keeps_all && cells.lowest() < threshold {
+            // The rest of a line waits for the boxes of the next round.
+            for i in open.drain(open.len() / LINE * LINE..).rev() {
+                *count -= 1;
+                pending.push(parts[i]);
+                parts[i] = parts[*count];
+            }
+        }
         self.couple.models(0, parts, open, memory);
         let (mut lane, mut kept) = (0, 0);
         open.retain(|&i| {
