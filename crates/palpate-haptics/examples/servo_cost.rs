@@ -10,7 +10,7 @@ use std::error::Error;
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
-    Pace, Probe, RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run,
+    Pace, Probe, RecordedDevice, RunOptions, Servo, ServoOptions, Tour, run,
 };
 
 const DURATION: f64 = 60.0;
@@ -38,7 +38,7 @@ fn measure(
     let path = Tour::new(bounds.aabb, DURATION)?.with_probe_radius(radius)?.over(shape)?;
     let options = ServoOptions { probe: Probe::new(radius)?, ..ServoOptions::default() };
     let mut servo = Servo::new(shape.clone(), points, options)?;
-    let mut device = SimulatedDevice::new(vec![path; points])?;
+    let mut device = RecordedDevice::new(vec![path; points])?;
     let pace = Pace::AsFastAsPossible;
     let report =
         run(&mut servo, &mut device, RunOptions { pace, ..RunOptions::new(DURATION) })?;

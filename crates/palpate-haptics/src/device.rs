@@ -3,6 +3,8 @@
 
 //! What a haptic device is to the servo.
 
+use std::borrow::Cow;
+
 use palpate_field::{Point, Vector};
 
 /// One contact point of a device, as read in a tick. World coordinates.
@@ -28,53 +30,65 @@ impl<const D: usize> PointState<D> {
     }
 }
 
-/// What a device can do: data, from its maker.
+/// What a device can do: data, from its maker or, where there is none, assumed.
 ///
-/// # Examples
-///
-/// ```
-/// use palpate_haptics::DeviceLimits;
-///
-/// let touch = DeviceLimits::KNOWN.iter().find(|d| d.name == "Phantom Touch");
-/// assert_eq!(touch.map(|d| d.max_force), Some(3.3));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct DeviceLimits {
+/// Of a device that is not known, everything is [unlimited](Self::unlimited) until told
+/// otherwise: its maker has to say what is safe.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct DeviceProfile {
     /// The device's name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Largest force [N].
     pub max_force: f64,
+    /// Largest force that it gives for as long as one likes [N].
+    pub continuous_force: f64,
+    /// Fastest change of force [N/s].
+    pub max_force_rate: f64,
     /// Largest stiffness it renders at 1 kHz [N/m].
     pub max_stiffness: f64,
     /// Largest damping it renders at 1 kHz [N·s/m].
     pub max_damping: f64,
     /// Radius of the ball it reaches [m].
     pub workspace_radius: f64,
+    /// What it weighs in the hand [kg].
+    pub mass: f64,
+    /// The least damping of its own that can be relied on, b of Colgate and Schenkel (1997)
+    /// [N·s/m].
+    pub least_damping: f64,
+    /// Its Coulomb friction, f_c of Abbott and Okamura (2005) [N].
+    pub friction: f64,
+    /// The step of its encoders at the handle [m].
+    pub encoder_step: f64,
+    /// Where the numbers are from.
+    pub source: Cow<'static, str>,
+    /// Which numbers are not from there, but assumed: names of fields.
+    pub assumed: Cow<'static, [&'static str]>,
 }
 
-impl DeviceLimits {
-    /// The limits of common devices, as CHAI3D 3.3 lists them.
-    pub const KNOWN: &[Self] = &[
-        Self::of("Phantom Touch", 3.3, 400.0, 4.0, 0.075),
-        Self::of("Phantom Omni", 3.3, 700.0, 5.0, 0.1),
-        Self::of("Phantom Desktop", 7.9, 1000.0, 5.0, 0.1),
-        Self::of("Phantom Premium 1.5 6DOF", 8.5, 800.0, 5.0, 0.12),
-        Self::of("Phantom Premium 3.0 6DOF", 22.0, 1000.0, 5.0, 0.25),
-        Self::of("Novint Falcon", 8.0, 3000.0, 20.0, 0.04),
-        Self::of("omega.x", 12.0, 5000.0, 30.0, 0.075),
-        Self::of("sigma.x", 12.0, 4000.0, 30.0, 0.075),
-        Self::of("lambda.x", 12.0, 8000.0, 30.0, 0.1125),
-        Self::of("delta.3", 20.0, 5000.0, 30.0, 0.15),
-    ];
-
-    const fn of(
-        name: &'static str,
-        max_force: f64,
-        max_stiffness: f64,
-        max_damping: f64,
-        workspace_radius: f64,
-    ) -> Self {
-        Self { name, max_force, max_stiffness, max_damping, workspace_radius }
+impl DeviceProfile {
+    /// A device that does all it is told to, without mass, friction or steps.
+    ///
+    /// ```
+    /// let ideal = palpate_haptics::DeviceProfile::unlimited("ideal");
+    /// assert_eq!((ideal.max_force, ideal.mass), (f64::INFINITY, 0.0));
+    /// ```
+    #[must_use]
+    pub fn unlimited(name: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            name: name.into(),
+            max_force: f64::INFINITY,
+            continuous_force: f64::INFINITY,
+            max_force_rate: f64::INFINITY,
+            max_stiffness: f64::INFINITY,
+            max_damping: f64::INFINITY,
+            workspace_radius: f64::INFINITY,
+            mass: 0.0,
+            least_damping: f64::INFINITY,
+            friction: f64::INFINITY,
+            encoder_step: 0.0,
+            source: Cow::Borrowed(""),
+            assumed: Cow::Borrowed(&[]),
+        }
     }
 }
 
@@ -95,7 +109,7 @@ pub trait Device<const D: usize> {
     fn points(&self) -> usize;
 
     /// What it can do.
-    fn limits(&self) -> &DeviceLimits;
+    fn profile(&self) -> &DeviceProfile;
 
     /// Reads every contact point into `points`, which has one place for each, at `time` [s]
     /// since the servo started.

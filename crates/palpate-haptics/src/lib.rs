@@ -8,7 +8,7 @@
 //! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
 //! counts, records and reports.
 //!
-//! Without hardware, a [`SimulatedDevice`] follows a [`HandPath`], recorded or made up by a
+//! Without hardware, a [`RecordedDevice`] follows a [`HandPath`], recorded or made up by a
 //! [`Tour`] of the shape.
 //!
 //! # What is promised
@@ -27,14 +27,14 @@
 //! ```
 //! use palpate_field::{Shape, kernel::Ball};
 //! use palpate_haptics::{
-//!     Pace, RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run,
+//!     Pace, RunOptions, Servo, ServoOptions, RecordedDevice, Tour, run,
 //! };
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
 //! let bounds = ball.promise().bounds.ok_or("a ball has bounds")?;
 //! let hand = Tour::new(bounds.aabb, 5.0)?.over(&ball)?;
-//! let mut device = SimulatedDevice::new(vec![hand])?;
+//! let mut device = RecordedDevice::new(vec![hand])?;
 //! let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 //!
 //! let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
@@ -59,26 +59,26 @@ mod live;
 mod material;
 mod planes;
 mod proxy;
+mod recorded;
 mod recorder;
 mod report;
 mod run;
 mod sampler;
 mod servo;
-mod simulated;
 mod statistics;
 mod tour;
 
 pub use clock::{Clock, WallClock};
-pub use device::{Device, DeviceLimits, DeviceLost, PointState};
+pub use device::{Device, DeviceLost, DeviceProfile, PointState};
 pub use error::HapticsError;
 pub use hand_path::{HandPath, Interpolation};
 pub use live::Progress;
 pub use material::Material;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
+pub use recorded::RecordedDevice;
 pub use recorder::{Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use servo::{Servo, ServoOptions, Touch};
-pub use simulated::SimulatedDevice;
 pub use statistics::{Bucket, Distribution};
 pub use tour::Tour;

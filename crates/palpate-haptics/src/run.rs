@@ -79,13 +79,13 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
 /// use palpate_haptics::{
-///     HandPath, Interpolation, Pace, RunOptions, Servo, ServoOptions, SimulatedDevice, run,
+///     HandPath, Interpolation, Pace, RunOptions, Servo, ServoOptions, RecordedDevice, run,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ends = vec![Vector([0.0, 0.08, 0.0]), Vector([0.0, 0.05, 0.0])];
 /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
-/// let mut device = SimulatedDevice::new(vec![press])?;
+/// let mut device = RecordedDevice::new(vec![press])?;
 /// let ball = Shape::from_kernel(Ball::new(0.05)?);
 /// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
 ///
@@ -121,7 +121,7 @@ pub fn run_on<const D: usize>(
         let (servo, device) = (points, device.points());
         return Err(HapticsError::ContactPoints { servo, device });
     }
-    servo.limit_force(device.limits().max_force);
+    servo.limit_force(device.profile().max_force);
     let rate = servo.options().rate;
     let schedule = Schedule {
         rate,

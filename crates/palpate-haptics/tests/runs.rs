@@ -11,8 +11,8 @@ use std::time::Duration;
 use common::{ball, cuboid, half_space};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};
 use palpate_haptics::{
-    Clock, Device, DeviceLimits, DeviceLost, Ending, HandPath, HapticsError, Interpolation,
-    Pace, PointState, Probe, Recorder, RunOptions, Servo, ServoOptions, SimulatedDevice, Tour,
+    Clock, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError, Interpolation,
+    Pace, PointState, Probe, RecordedDevice, Recorder, RunOptions, Servo, ServoOptions, Tour,
     run, run_on,
 };
 
@@ -63,7 +63,7 @@ fn a_report_counts_what_happened() {
     let max_force = f64::INFINITY;
     let mut servo =
         wall_servo(ServoOptions { rate: 128.0, max_force, ..ServoOptions::default() });
-    let mut device = SimulatedDevice::new(vec![press()]).unwrap();
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(4 * 128);
     let options = RunOptions { recorder: Some(&mut recorder), ..fast(4.0) };
     let report = run_on(&mut TestClock::default(), &mut servo, &mut device, options).unwrap();
@@ -91,7 +91,7 @@ fn a_report_counts_what_happened() {
 #[test]
 fn a_full_recorder_drops_rows_and_says_so() {
     let mut servo = wall_servo(ServoOptions::default());
-    let mut device = SimulatedDevice::new(vec![press()]).unwrap();
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(100);
     let options = RunOptions { recorder: Some(&mut recorder), ..fast(1.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
@@ -104,7 +104,7 @@ fn a_full_recorder_drops_rows_and_says_so() {
 #[test]
 fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
     let mut servo = wall_servo(ServoOptions { rate: 1000.0, ..ServoOptions::default() });
-    let mut device = SimulatedDevice::new(vec![press()]).unwrap();
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
     // Three looks a tick; a tenth of a second is lost before tick 10.
     let busy = vec![(1 + 3 * 10 + 1, Duration::from_millis(100))];
     let mut clock = TestClock { busy, ..TestClock::default() };
@@ -126,7 +126,7 @@ fn the_same_run_gives_the_same_bits() {
         let bounds = shape.promise().bounds.unwrap().aabb;
         let path = Tour::new(bounds, 4.0).unwrap().over(&shape).unwrap();
         let mut servo = Servo::new(shape, 1, ServoOptions::default()).unwrap();
-        let mut device = SimulatedDevice::new(vec![path]).unwrap();
+        let mut device = RecordedDevice::new(vec![path]).unwrap();
         let mut recorder = Recorder::new(4000);
         let options = RunOptions { recorder: Some(&mut recorder), ..fast(4.0) };
         run(&mut servo, &mut device, options).unwrap();
@@ -143,7 +143,7 @@ fn the_same_run_gives_the_same_bits() {
 #[test]
 fn a_watch_sees_the_end() {
     let mut servo = wall_servo(ServoOptions::default());
-    let mut device = SimulatedDevice::new(vec![press()]).unwrap();
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut seen = Vec::new();
     let mut watch = |progress: &palpate_haptics::Progress| seen.push(*progress);
     let every = Duration::from_millis(1);
@@ -175,7 +175,7 @@ impl CustomField<2> for Trap {
 fn a_panic_stops_the_run_with_no_force() {
     let trap = Shape::custom(Trap(Promise::lipschitz(None, 1.0)));
     let mut servo = Servo::new(trap, 1, ServoOptions::default()).unwrap();
-    let mut device = Watched::default();
+    let mut device = Watched::new();
     let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
     assert_eq!(report.ending, Ending::Panicked { message: "the trap snapped".to_owned() });
     assert!(report.ticks > 0 && report.ticks < 4000);
@@ -183,17 +183,24 @@ fn a_panic_stops_the_run_with_no_force() {
 }
 
 /// A device that falls for two seconds and is unplugged then.
-#[derive(Default)]
 struct Watched {
+    profile: DeviceProfile,
     written: Option<Vector<f64, 2>>,
+}
+
+impl Watched {
+    fn new() -> Self {
+        let profile = DeviceProfile { max_force: 3.3, ..DeviceProfile::unlimited("watched") };
+        Self { profile, written: None }
+    }
 }
 
 impl Device<2> for Watched {
     fn points(&self) -> usize {
         1
     }
-    fn limits(&self) -> &DeviceLimits {
-        &DeviceLimits::KNOWN[0]
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
     }
     fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
         if time >= 2.0 {
@@ -212,7 +219,7 @@ impl Device<2> for Watched {
 fn a_lost_device_ends_the_run_with_its_reason() {
     let mut servo =
         wall_servo(ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() });
-    let mut device = Watched::default();
+    let mut device = Watched::new();
     let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
     assert_eq!(report.ending, Ending::DeviceLost { reason: "unplugged".to_owned() });
     assert_eq!((report.ticks, device.written), (2000, Some(Vector::ZERO)));
@@ -223,9 +230,9 @@ fn a_lost_device_ends_the_run_with_its_reason() {
 #[test]
 fn what_cannot_run_is_refused() {
     let mut servo = wall_servo(ServoOptions::default());
-    let mut two = SimulatedDevice::new(vec![press(), press()]).unwrap();
+    let mut two = RecordedDevice::new(vec![press(), press()]).unwrap();
     let error = run(&mut servo, &mut two, fast(1.0)).unwrap_err();
     assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
-    assert!(run(&mut servo, &mut Watched::default(), fast(f64::NAN)).is_err());
-    assert!(SimulatedDevice::<2>::new(vec![]).is_err());
+    assert!(run(&mut servo, &mut Watched::new(), fast(f64::NAN)).is_err());
+    assert!(RecordedDevice::<2>::new(vec![]).is_err());
 }

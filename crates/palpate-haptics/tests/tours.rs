@@ -11,7 +11,7 @@ use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Smooth;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
 use palpate_haptics::{
-    HandPath, HapticsError, Pace, RunOptions, RunReport, Servo, ServoOptions, SimulatedDevice,
+    HandPath, HapticsError, Pace, RecordedDevice, RunOptions, RunReport, Servo, ServoOptions,
     Tour, run,
 };
 
@@ -23,7 +23,7 @@ fn tour<const D: usize>(shape: &Shape<D>) -> HandPath<D> {
 }
 
 fn toured<const D: usize>(shape: &Shape<D>) -> RunReport {
-    let mut device = SimulatedDevice::new(vec![tour(shape)]).unwrap();
+    let mut device = RecordedDevice::new(vec![tour(shape)]).unwrap();
     let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
     let mut servo = Servo::new(shape.clone(), 1, options).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(DURATION) };

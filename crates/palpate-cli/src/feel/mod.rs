@@ -12,8 +12,8 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use palpate::haptics::{
-    Ending, HandPath, HapticsError, Interpolation, Material, Pace, Probe, Progress, Recorder,
-    RunOptions, Servo, ServoOptions, SimulatedDevice, Tour, run as run_servo,
+    Ending, HandPath, HapticsError, Interpolation, Material, Pace, Probe, Progress,
+    RecordedDevice, Recorder, RunOptions, Servo, ServoOptions, Tour, run as run_servo,
 };
 use palpate::scene::{BuiltScene, Tool, World};
 
@@ -67,7 +67,7 @@ where
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
     let contacts = paths.len();
-    let mut device = SimulatedDevice::new(paths).map_err(Failure::input)?;
+    let mut device = RecordedDevice::new(paths).map_err(Failure::input)?;
     let mut servo =
         Servo::new(scene.whole.clone(), contacts, servo_options).map_err(Failure::input)?;
 

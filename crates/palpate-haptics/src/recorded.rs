@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A device without hardware: a hand that follows a path, whatever the force.
+//! A device without hardware, held by a hand that follows a path whatever the force.
 
 use palpate_field::Vector;
 
-use crate::device::{Device, DeviceLimits, DeviceLost, PointState};
+use crate::device::{Device, DeviceLost, DeviceProfile, PointState};
 use crate::error::HapticsError;
 use crate::hand_path::HandPath;
 
@@ -17,12 +17,12 @@ use crate::hand_path::HandPath;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::{Device, HandPath, Interpolation, PointState, SimulatedDevice};
+/// use palpate_haptics::{Device, HandPath, Interpolation, PointState, RecordedDevice};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ends = vec![Vector([0.0, 0.5, 0.0]), Vector([0.0, 0.0, 0.0])];
 /// let path = HandPath::new(vec![0.0, 2.0], ends, Interpolation::Linear)?;
-/// let mut device = SimulatedDevice::new(vec![path])?;
+/// let mut device = RecordedDevice::new(vec![path])?;
 /// let mut points = [PointState::at_rest(Vector::ZERO)];
 /// device.read(1.0, &mut points)?;
 /// assert_eq!(points[0].position, Vector([0.0, 0.25, 0.0]));
@@ -31,13 +31,13 @@ use crate::hand_path::HandPath;
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct SimulatedDevice<const D: usize> {
+pub struct RecordedDevice<const D: usize> {
     paths: Vec<HandPath<D>>,
     forces: Vec<Vector<f64, D>>,
-    limits: DeviceLimits,
+    profile: DeviceProfile,
 }
 
-impl<const D: usize> SimulatedDevice<D> {
+impl<const D: usize> RecordedDevice<D> {
     /// A device with one contact point for each path.
     ///
     /// # Errors
@@ -48,13 +48,13 @@ impl<const D: usize> SimulatedDevice<D> {
             return Err(HapticsError::NoContactPoint);
         }
         let forces = vec![Vector::ZERO; paths.len()];
-        Ok(Self { paths, forces, limits: UNLIMITED })
+        Ok(Self { paths, forces, profile: DeviceProfile::unlimited("recorded") })
     }
 
-    /// The same with the limits of a real device.
+    /// The same with what a real device can do.
     #[must_use]
-    pub fn with_limits(self, limits: DeviceLimits) -> Self {
-        Self { limits, ..self }
+    pub fn with_profile(self, profile: DeviceProfile) -> Self {
+        Self { profile, ..self }
     }
 
     /// The forces written last [N].
@@ -70,22 +70,13 @@ impl<const D: usize> SimulatedDevice<D> {
     }
 }
 
-/// A hand that follows its path feels no force, so none needs a limit.
-const UNLIMITED: DeviceLimits = DeviceLimits {
-    name: "simulated",
-    max_force: f64::INFINITY,
-    max_stiffness: f64::INFINITY,
-    max_damping: f64::INFINITY,
-    workspace_radius: f64::INFINITY,
-};
-
-impl<const D: usize> Device<D> for SimulatedDevice<D> {
+impl<const D: usize> Device<D> for RecordedDevice<D> {
     fn points(&self) -> usize {
         self.paths.len()
     }
 
-    fn limits(&self) -> &DeviceLimits {
-        &self.limits
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
     }
 
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
