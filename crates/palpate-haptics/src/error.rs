@@ -64,6 +64,15 @@ pub enum HapticsError {
         /// Contact points of the device.
         device: usize,
     },
+    /// There is nothing to touch.
+    #[error("there must be at least one body to touch")]
+    NoBody,
+    /// A pose has numbers that are not finite or beyond any scene.
+    #[error("the numbers of a pose must be finite and at most 1e15")]
+    Pose,
+    /// A shape cannot be what a surface asks for.
+    #[error(transparent)]
+    Shape(#[from] palpate_field::ShapeError),
     /// A tour finds nothing to touch in its box.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,

@@ -46,6 +46,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod bodies;
 #[cfg(test)]
 #[path = "../tests/common/cases.rs"]
 mod cases;
@@ -53,10 +54,13 @@ mod clock;
 mod contact;
 mod device;
 mod error;
+mod event;
+mod friction;
 mod half_spaces;
 mod hand_path;
+mod limit;
 mod live;
-mod material;
+mod nearby;
 mod planes;
 mod proxy;
 mod recorded;
@@ -66,14 +70,18 @@ mod run;
 mod sampler;
 mod servo;
 mod statistics;
+mod surface;
 mod tour;
 
+pub use bodies::{Bodies, Body};
 pub use clock::{Clock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
 pub use error::HapticsError;
+pub use event::{Event, EventKind, Reaction};
 pub use hand_path::{HandPath, Interpolation};
 pub use live::Progress;
-pub use material::Material;
+pub use nearby::Nearby;
+pub use palpate_scene::Material;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use recorded::RecordedDevice;
 pub use recorder::{Recorder, TraceRow};
@@ -81,4 +89,5 @@ pub use report::{Ending, Evaluations, RunReport};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use servo::{Servo, ServoOptions, Touch};
 pub use statistics::{Bucket, Distribution};
+pub use surface::Surface;
 pub use tour::Tour;

@@ -1,20 +1,28 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The frictionless proxy: a ball that follows the device point but cannot enter the shape.
+//! The proxy: a ball that follows the device point but cannot enter the bodies.
 //!
 //! Zilles and Salisbury, "A constraint-based god-object method for haptic display" (1995);
 //! Ruspini, Kolarov and Khatib, "The haptic display of complex graphical environments" (1997),
 //! who gave it a radius; Salisbury and Tarr, "Haptic rendering of surfaces defined by implicit
 //! functions" (1997), who slid it over `f = 0`. The sweep and the certified slide are ours.
+//!
+//! A body that moves carries the proxy that touches it, and pushes one that it meets: the way
+//! of the proxy as the body sees it is swept like any other.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{LARGEST_LENGTH, Point, Shape, Vector};
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
+
+use crate::bodies::Body;
 
 use crate::contact::{Rest, slide};
 use crate::error::{HapticsError, not_negative};
+use crate::friction::{Hold, drag};
+use crate::nearby::{Nearby, Pierced};
 use crate::sampler::{Sample, Sampler};
+use crate::surface::Friction;
 
 /// The evaluations a tick may cost, unless asked otherwise. Sliding takes one to three, a corner
 /// up to eight, a strike about ten; the rest is for grazing flights, slots and fast hands.
@@ -26,6 +34,9 @@ const LEAST_BUDGET: u32 = 4;
 /// A flight whose next safe step is below this part of the way left goes on along the surface it
 /// meets: steps along a line that grazes or hits it would shrink without end.
 const WORTH_FLYING: f64 = 0.1;
+
+/// A body is met where its next safe step is below this part of a skin.
+const WORTH_ADVANCING: f64 = 0.01;
 
 /// The ball that touches: the proxy's radius, and what a tick may cost.
 ///
@@ -98,10 +109,15 @@ pub struct Following<const D: usize> {
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// `true` if the proxy was placed anew because the shape covered it, so that the force
-    /// should rise gently: in the first tick, or after the shape changed.
+    /// Whose surface was last seen: the number of the body.
+    pub body: u32,
+    /// `true` if friction lets the proxy move along the surface; `false` if it holds it, or
+    /// there is none.
+    pub is_slipping: bool,
+    /// `true` if the force should rise gently: the proxy was placed anew because a body
+    /// covered it, in the first tick or after a change, or a body moved onto it.
     pub placed: bool,
-    /// Evaluations of the shape in this tick.
+    /// Evaluations of the field in this tick.
     pub evaluations: u32,
 }
 
@@ -113,13 +129,14 @@ pub struct Following<const D: usize> {
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{Probe, Proxy};
+/// use palpate_haptics::{Bodies, Probe, Proxy};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let ball = Bodies::from(Shape::from_kernel(Ball::new(0.05)?));
 /// let mut proxy = Proxy::new(Probe::new(0.0)?);
-/// proxy.follow(&ball, Vector([0.0, 0.06, 0.0]));
-/// let following = proxy.follow(&ball, Vector([0.048 * 0.6, 0.048 * 0.8, 0.0]));
+/// proxy.follow(ball.everything(), Vector([0.0, 0.06, 0.0]));
+/// let device = Vector([0.048 * 0.6, 0.048 * 0.8, 0.0]);
+/// let following = proxy.follow(ball.everything(), device);
 ///
 /// assert!(following.contact);
 /// assert!((following.proxy - Vector([0.03, 0.04, 0.0])).norm() < 1e-7);
@@ -131,10 +148,14 @@ pub struct Proxy<const D: usize> {
     probe: Probe,
     /// The last point found on or outside the offset surface; none before the first tick.
     at: Option<Sample<D>>,
+    /// Whether what is known of that point is of another field.
+    is_stale: bool,
     /// The device point of the last tick [m].
     device: Point<D>,
     normal: Vector<f64, D>,
     contact: bool,
+    hold: Hold,
+    pierced: Pierced,
 }
 
 impl<const D: usize> Proxy<D> {
@@ -143,7 +164,16 @@ impl<const D: usize> Proxy<D> {
     pub fn new(probe: Probe) -> Self {
         // Up: y in the plane and in space.
         let normal = Vector(std::array::from_fn(|axis| f64::from(u8::from(axis == 1))));
-        Self { probe, at: None, device: Vector::ZERO, normal, contact: false }
+        Self {
+            probe,
+            at: None,
+            is_stale: false,
+            device: Vector::ZERO,
+            normal,
+            contact: false,
+            hold: Hold::None,
+            pierced: Pierced::default(),
+        }
     }
 
     /// The ball that touches.
@@ -152,22 +182,35 @@ impl<const D: usize> Proxy<D> {
         self.probe
     }
 
-    /// Forgets what is known of the shape: it changed, or another one is followed.
+    /// Forgets what is known of the bodies: they changed.
     ///
     /// The next tick looks again where the proxy is, and places it anew if it is covered.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn forget_shape(&mut self) {
-        if let Some(at) = &mut self.at {
-            at.gap = f64::NEG_INFINITY;
-        }
+    pub fn forget_bodies(&mut self) {
+        self.is_stale = true;
+        self.pierced = Pierced::default();
     }
 
-    /// Follows the device point to `device` [m] as far as `shape` lets it.
+    /// Goes through the layer of a body that holds the proxy; `false` if it is through as many
+    /// bodies as there is room for.
     ///
-    /// One evaluation in free space. The proxy moves only along ways that are proven free of the
-    /// shape, so it crosses no wall at any speed; it rests at points with `f ≥ r − 1e-9` of the
-    /// size of the shape's bounding ball, with the field's value `f` and the probe's radius `r`.
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn pierce(&mut self, body: u32) -> bool {
+        self.is_stale = true;
+        self.pierced.pierce(body)
+    }
+
+    /// How many layers of a body it went through.
+    pub(crate) fn level(&self, body: u32) -> usize {
+        self.pierced.level(body)
+    }
+
+    /// Follows the device point to `device` [m] as far as the bodies let it.
+    ///
+    /// One evaluation in free space. The proxy moves only along ways that are proven free, so
+    /// it crosses no wall at any speed; it rests at points with `f ≥ r − 1e-9` of the size of
+    /// the ball around all bodies, with the field's value `f` and the probe's radius `r`.
     ///
     /// Of a field that outside its surface promises a Lipschitz constant in a region only
     /// ([`Promise::region`](palpate_field::Promise::region)), nothing is known beyond: the proxy
@@ -176,42 +219,117 @@ impl<const D: usize> Proxy<D> {
     ///
     /// A device point that is not finite, or beyond 1e15 m, moves nothing and touches nothing.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the shape at most
+    /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
-    pub fn follow(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D> {
+    pub fn follow(&mut self, nearby: Nearby<'_, D>, device: Point<D>) -> Following<D> {
         let last = self.at.map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
             return Following { contact: false, ..self.following(last, false, 0) };
         }
-        let extent = last.norm().max(device.norm()) + 2.0 * self.probe.radius;
+        let carried = if nearby.has_moved() { self.carried(&nearby, last) } else { last };
+        let extent = carried.norm().max(device.norm()) + 2.0 * self.probe.radius;
         let moved = if self.at.is_some() { (device - self.device).norm() } else { 0.0 };
         self.device = device;
-        let motion = (device - last).norm().max(moved);
+        let moved = moved.max((carried - last).norm());
+        let motion = (device - carried).norm().max(moved);
         let Probe { radius, budget } = self.probe;
-        let mut sampler = Sampler::new(shape, radius, budget, (extent, motion));
+        let mut sampler =
+            Sampler::new((nearby, self.pierced), radius, budget, (extent, motion));
 
+        self.heal(&mut sampler);
+        let mut is_pushed = false;
+        if nearby.has_moved() && self.at.is_some() {
+            let pushed = self.pushed(&mut sampler, carried);
+            is_pushed = pushed.is_some();
+            let at = pushed.unwrap_or(carried);
+            self.at = self.look_again(&mut sampler, at);
+        } else if self.is_stale && self.at.is_some() {
+            self.at = self.look_again(&mut sampler, last);
+        }
+        self.is_stale = false;
         let known = self.at.filter(|at| at.gap >= -sampler.tolerance());
         let (start, placed) = match known {
             Some(start) => (Some(start), false),
-            None => self.place(&mut sampler, last),
+            None => self.place(&mut sampler, self.at.map_or(device, |at| at.point)),
         };
+        let placed = placed || is_pushed;
         self.at = start;
         let Some(start) = start else {
-            self.contact = false;
+            (self.contact, self.hold) = (false, Hold::None);
             return self.following(device, false, sampler.evaluations());
         };
         let goal = sampler.within_region(device);
-        let rest = self.pursue(&mut sampler, start, (goal, moved));
+        let (rest, hold) = self.pursue(&mut sampler, start, (goal, moved));
         self.at = Some(rest.sample);
         self.normal = rest.normal;
         self.contact = rest.contact;
+        self.hold = if rest.contact { hold } else { Hold::None };
         self.following(rest.sample.point, placed, sampler.evaluations())
     }
 
     fn following(&self, proxy: Point<D>, placed: bool, evaluations: u32) -> Following<D> {
-        let contact = self.contact;
-        Following { proxy, normal: self.normal, contact, placed, evaluations }
+        Following {
+            proxy,
+            normal: self.normal,
+            contact: self.contact,
+            body: self.at.map_or(0, |at| at.body),
+            is_slipping: self.hold == Hold::Slip,
+            placed,
+            evaluations,
+        }
+    }
+
+    /// Where the body that is touched carries the proxy.
+    fn carried(&mut self, nearby: &Nearby<'_, D>, last: Point<D>) -> Point<D> {
+        let touched = self.at.filter(|_| self.contact).and_then(|at| nearby.body(at.body));
+        let Some(body) = touched.filter(|body| body.has_moved()) else { return last };
+        let carried = body.carried(last);
+        self.normal = body.carried(last + self.normal) - carried;
+        carried
+    }
+
+    /// What is there at the proxy, of which nothing is known any more.
+    fn look_again(&self, sampler: &mut Sampler<'_, D>, at: Point<D>) -> Option<Sample<D>> {
+        let body = self.at.map_or(0, |at| at.body);
+        let unknown = Sample { point: at, gap: f64::NEG_INFINITY, gradient: None, body };
+        Some(sampler.gradient(at).unwrap_or(unknown))
+    }
+
+    /// Lets layers hold again that the hand is away from.
+    fn heal(&mut self, sampler: &mut Sampler<'_, D>) {
+        if self.pierced == Pierced::default() {
+            return;
+        }
+        let (device, radius) = (self.device, self.probe.radius);
+        let before = self.pierced;
+        self.pierced.heal(|index, level| {
+            let Some(body) = sampler.nearby().body(index) else { return true };
+            let pop = level.checked_sub(1).and_then(|top| body.surface().strata.top(top));
+            let away = pop.and_then(|top| top.pop_through).map_or(0.0, |pop| pop.distance);
+            sampler.spend(device).is_some() && body.distance(device) - radius > away
+        });
+        if self.pierced != before {
+            self.is_stale = true;
+            sampler.pierce(self.pierced);
+        }
+    }
+
+    /// Where bodies that moved push a proxy at `point` to; none if none does.
+    fn pushed(&self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Option<Point<D>> {
+        let nearby = *sampler.nearby();
+        let touched = self.at.filter(|_| self.contact).map(|at| at.body);
+        let mut pushed = None;
+        for (index, body) in nearby.all() {
+            if !body.has_moved() || touched == Some(index) || self.level(index) > 0 {
+                continue;
+            }
+            let at = pushed.unwrap_or(point);
+            if let Some(met) = met(sampler, body, at) {
+                pushed = Some(met);
+            }
+        }
+        pushed
     }
 
     /// A point on or outside the offset surface near `from`, and whether it had to be moved
@@ -241,8 +359,11 @@ impl<const D: usize> Proxy<D> {
         sampler: &mut Sampler<'_, D>,
         start: Sample<D>,
         (device, moved): (Point<D>, f64),
-    ) -> Rest<D> {
+    ) -> (Rest<D>, Hold) {
+        let at_rest =
+            |sample| (Rest { sample, normal: self.normal, contact: false }, Hold::None);
         let mut here = start;
+        let mut was_held = self.contact;
         loop {
             let way = device - here.point;
             let length = way.norm();
@@ -253,15 +374,66 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / length)
             } else {
-                return slide(sampler, here, self.normal, (device, moved));
+                let from = (here, self.normal);
+                let friction = self.friction(sampler, &here, device).filter(|_| was_held);
+                return match friction {
+                    Some(friction) => drag(sampler, from, (device, moved), friction),
+                    None => (slide(sampler, from.0, from.1, (device, moved)), Hold::None),
+                };
             };
+            was_held = false;
             match sampler.distance(next) {
                 Some(sample) if sample.gap >= -sampler.tolerance() => here = sample,
-                _ => return Rest { sample: here, normal: self.normal, contact: false },
+                _ => return at_rest(here),
             }
             if free > length {
-                return Rest { sample: here, normal: self.normal, contact: false };
+                return at_rest(here);
             }
         }
     }
+
+    /// The friction of the surface that held the proxy, and how it held it.
+    fn friction(
+        &self,
+        sampler: &Sampler<'_, D>,
+        at: &Sample<D>,
+        device: Point<D>,
+    ) -> Option<(Friction, Hold)> {
+        let strata = &sampler.nearby().body(at.body)?.surface().strata;
+        let depth = (at.point - device).norm();
+        Some((strata.at(self.level(at.body), depth).friction, self.hold))
+    }
+}
+
+/// Where a body that moved meets a proxy at `point` on its way and takes it to; none if it
+/// does not meet it.
+///
+/// As the body sees it, the proxy moves: along the straight line between where it was and
+/// where it is. Conservative advancement along it (Mirtich 1996) misses nothing; it ends, and
+/// the body takes the proxy along, where it is nearly there.
+fn met<const D: usize>(
+    sampler: &mut Sampler<'_, D>,
+    body: &Body<D>,
+    point: Point<D>,
+) -> Option<Point<D>> {
+    let [from, to] = body.way_in_body(point);
+    let way = to - from;
+    let length = way.norm();
+    let lipschitz = body.shape().promise().lipschitz.max(1.0);
+    let mut gone = 0.0;
+    while gone < length {
+        let at = from + way * (gone / length);
+        let taken = body.world_from_body().transform_point(at);
+        if sampler.spend(point).is_none() {
+            return Some(taken);
+        }
+        let (value, gradient) = body.shape().distance_gradient(at);
+        let free = (value - sampler.radius() - sampler.tolerance()) / lipschitz;
+        if free <= WORTH_ADVANCING * sampler.skin() {
+            // What it touches and leaves, it does not push.
+            return (way.dot(gradient) < 0.0).then_some(taken);
+        }
+        gone += free;
+    }
+    None
 }

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Metered evaluation of a shape, and how far a probe may move after it.
+//! Metered evaluation of what is near, and how far a probe may move after it.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{BoundingBall, Point, Quality, Shape, Vector};
+use palpate_field::{Point, Vector};
+
+use crate::nearby::{Nearby, Pierced};
 
 /// How deep the proxy's offset may be violated at rest, as a part of the size of the scene.
 /// Far above the rounding of a kernel, far below what a hand can feel (0.1 nm at 1 m).
@@ -40,9 +42,11 @@ pub(crate) struct Sample<const D: usize> {
     pub(crate) gap: f64,
     /// The gradient, if it was asked for.
     pub(crate) gradient: Option<Vector<f64, D>>,
+    /// Whose surface is nearest, as far as the field says.
+    pub(crate) body: u32,
 }
 
-/// A shape with a budget of evaluations and the lengths that follow from shape and probe.
+/// Bodies with a budget of evaluations and the lengths that follow from them and the probe.
 ///
 /// The *offset surface* is `f = r` with the probe's radius `r`. The centre of the probe may dip
 /// below it during a move, by less than a *skin*, and never rests there. With a radius the skin
@@ -53,13 +57,12 @@ pub(crate) struct Sample<const D: usize> {
 /// moves between evaluated points stay in the region, and the constant holds all along them.
 #[derive(Debug)]
 pub(crate) struct Sampler<'a, const D: usize> {
-    shape: &'a Shape<D>,
+    nearby: Nearby<'a, D>,
+    pierced: Pierced,
     radius: f64,
     skin: f64,
     tolerance: f64,
     lipschitz: f64,
-    /// Where something is proven of the field; everywhere if `None`.
-    region: Option<BoundingBall<D>>,
     budget: u32,
     evaluations: u32,
 }
@@ -68,23 +71,35 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// For a probe of `radius` [m] that moves between points at most `extent` [m] from the
     /// origin and `motion` [m] apart.
     pub(crate) fn new(
-        shape: &'a Shape<D>,
+        (nearby, pierced): (Nearby<'a, D>, Pierced),
         radius: f64,
         budget: u32,
         (extent, motion): (f64, f64),
     ) -> Self {
-        let promise = shape.promise();
-        // A shape without bounds has no size; the place where it is touched has.
-        let size = promise.bounds.map_or(motion.max(extent), |b| b.ball.radius);
-        let rounding = ROUNDINGS * promise.rounding.within(extent);
+        // Bodies without bounds have no size; the place where they are touched has.
+        let size = nearby.size().unwrap_or(motion.max(extent));
+        let rounding = ROUNDINGS * nearby.rounding().within(extent);
         let tolerance = f64::max(TOLERANCE * size, rounding);
         let skin =
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
         let skin = skin.max(4.0 * tolerance);
-        let lipschitz = promise.lipschitz;
-        // Distances that are exact or bounds need no constant.
-        let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
-        Self { shape, radius, skin, tolerance, lipschitz, region, budget, evaluations: 0 }
+        let lipschitz = nearby.lipschitz();
+        Self { nearby, pierced, radius, skin, tolerance, lipschitz, budget, evaluations: 0 }
+    }
+
+    /// What is near.
+    pub(crate) fn nearby(&self) -> &Nearby<'a, D> {
+        &self.nearby
+    }
+
+    /// From now on a hand is through these layers.
+    pub(crate) fn pierce(&mut self, pierced: Pierced) {
+        self.pierced = pierced;
+    }
+
+    /// The probe's radius [m].
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// How deep below the offset surface a point may rest [m].
@@ -102,42 +117,42 @@ impl<'a, const D: usize> Sampler<'a, D> {
         0.25 * self.skin
     }
 
-    /// How often the shape was evaluated.
+    /// How often the field was evaluated.
     pub(crate) fn evaluations(&self) -> u32 {
         self.evaluations
     }
 
     /// The point closest to `goal` of which something is proven.
     pub(crate) fn within_region(&self, goal: Point<D>) -> Point<D> {
-        let Some(region) = self.region else { return goal };
-        let (way, radius) = (goal - region.centre, region.radius * (1.0 - REGION_EDGE));
-        let length = way.norm();
-        if length > radius { region.centre + way * (radius / length) } else { goal }
+        self.nearby.within_regions(goal, REGION_EDGE)
     }
 
     /// The value at `point`; `None` if the budget is spent, the field is not finite there, or
     /// nothing is proven of it.
     pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let gap = self.shape.distance(point) - self.radius;
-        gap.is_finite().then_some(Sample { point, gap, gradient: None })
+        let (value, body) = self.nearby.distance(point, &self.pierced);
+        let gap = value - self.radius;
+        gap.is_finite().then_some(Sample { point, gap, gradient: None, body })
     }
 
     /// The value and gradient at `point`, likewise.
     pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let (value, gradient) = self.shape.distance_gradient(point);
-        let gap = value - self.radius;
-        let is_finite = gap.is_finite() && gradient.is_finite();
-        is_finite.then_some(Sample { point, gap, gradient: Some(gradient) })
+        let seen = self.nearby.gradient(point, &self.pierced);
+        let gap = seen.distance - self.radius;
+        let is_finite = gap.is_finite() && seen.gradient.is_finite();
+        is_finite.then_some(Sample {
+            point,
+            gap,
+            gradient: Some(seen.gradient),
+            body: seen.body,
+        })
     }
 
-    fn spend(&mut self, point: Point<D>) -> Option<()> {
-        let is_proven = self.region.is_none_or(|ball| {
-            // Written so that NaN fails.
-            (point - ball.centre).norm() <= ball.radius
-        });
-        if self.evaluations >= self.budget || !is_proven {
+    /// Counts an evaluation at `point`, if there is one left and something is proven there.
+    pub(crate) fn spend(&mut self, point: Point<D>) -> Option<()> {
+        if self.evaluations >= self.budget || !self.nearby.is_proven(point) {
             return None;
         }
         self.evaluations += 1;

@@ -6,20 +6,25 @@
 
 mod common;
 
-use common::{ball, cuboid, half_space};
+use common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Shape, Vector};
-use palpate_haptics::{HapticsError, Material, PointState, Probe, Servo, ServoOptions, Touch};
+use palpate_haptics::{HapticsError, PointState, Probe, Servo, ServoOptions, Surface, Touch};
 
 const STIFFNESS: f64 = 1000.0;
 
-fn servo<const D: usize>(shape: &Shape<D>, radius: f64, options: ServoOptions) -> Servo<D> {
+/// A servo of one body that is a spring alone.
+fn servo<const D: usize>(
+    shape: &Shape<D>,
+    radius: f64,
+    (stiffness, options): (f64, ServoOptions),
+) -> Servo<D> {
     let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
-    Servo::new(shape.clone(), 1, options).unwrap()
+    let surface = Surface::smooth(stiffness, 0.0).unwrap();
+    Servo::new(body(shape, surface), 1, options).unwrap()
 }
 
-fn spring_alone(stiffness: f64) -> ServoOptions {
-    let material = Material::new(stiffness, 0.0).unwrap();
-    ServoOptions { material, max_force: f64::INFINITY, ..ServoOptions::default() }
+fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
+    (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
 }
 
 fn touch<const D: usize>(servo: &mut Servo<D>, device: Point<D>) -> Touch<D> {
@@ -113,8 +118,9 @@ fn over_a_convex_edge_the_force_is_continuous_if_the_probe_is_wider_than_the_dep
 #[test]
 fn the_damper_resists_the_approach_alone() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
-    let material = Material::new(512.0, 4.0).unwrap();
-    let mut servo = servo(&floor, 0.0, ServoOptions { material, ..ServoOptions::default() });
+    let surface = Surface::smooth(512.0, 4.0).unwrap();
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
+    let mut servo = Servo::new(body(&floor, surface), 1, options).unwrap();
     let position = Vector([0.0, -0.001953125, 0.0]);
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     let mut force_at = |velocity| servo.step(&[PointState { position, velocity }])[0].force;
@@ -126,8 +132,8 @@ fn the_damper_resists_the_approach_alone() {
 #[test]
 fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
-    let options = ServoOptions { max_force: 2.0, ..spring_alone(512.0) };
-    let mut servo = servo(&floor, 0.0, options);
+    let options = ServoOptions { max_force: 2.0, ..ServoOptions::default() };
+    let mut servo = servo(&floor, 0.0, (512.0, options));
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     assert_eq!(touch(&mut servo, Vector([0.0, -0.5, 0.0])).force, Vector([0.0, 2.0, 0.0]));
     servo.limit_force(0.5);
@@ -139,8 +145,8 @@ fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
 #[test]
 fn a_hand_that_starts_inside_is_led_out_gently() {
     // 8 ticks of 1/8 each.
-    let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0) };
-    let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, options);
+    let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0).1 };
+    let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
     let device = Vector([0.0, 0.2421875, 0.125]);
     for tick in 0..12 {
         let touch = touch(&mut servo, device);
@@ -153,7 +159,7 @@ fn a_hand_that_starts_inside_is_led_out_gently() {
 
 #[test]
 fn a_hand_at_a_centre_without_gradient_is_led_out_too() {
-    let mut servo = servo(&ball::<3>(0.05), 0.002, ServoOptions::default());
+    let mut servo = servo(&ball::<3>(0.05), 0.002, (500.0, ServoOptions::default()));
     let touch = touch(&mut servo, Vector::ZERO);
     assert!(touch.contact);
     assert!((touch.proxy.norm() - 0.052).abs() < 1e-9);
@@ -164,8 +170,9 @@ fn a_shape_that_moves_over_the_hand_pushes_gently() {
     let mut servo = servo(&half_space([0.0, 1.0], 0.0), 0.0, spring_alone(512.0));
     let device = Vector([0.0, 0.0625]);
     assert!(!touch(&mut servo, device).contact);
-    let old = servo.replace_shape(half_space([0.0, 1.0], 0.125));
-    assert_eq!(old.distance(device), 0.0625);
+    let surface = Surface::smooth(512.0, 0.0).unwrap();
+    let old = servo.replace_bodies(body(&half_space([0.0, 1.0], 0.125), surface));
+    assert_eq!(old.everything().look(device).0, 0.0625);
     let first = touch(&mut servo, device);
     assert_eq!((first.proxy, first.force), (Vector([0.0, 0.125]), Vector::ZERO));
     for _ in 0..100 {
@@ -200,13 +207,13 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 
 #[test]
 fn every_point_of_a_servo_is_its_own() {
-    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(512.0) };
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(500.0).1 };
     let mut servo = Servo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
     let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
     let touches = servo.step(&[at(-0.5), at(1.0), at(-0.25)]);
     let forces: Vec<_> = touches.iter().map(|t| t.force[1]).collect();
-    assert_eq!(forces, [256.0, 0.0, 128.0]);
+    assert_eq!(forces, [250.0, 0.0, 125.0]);
 }
 
 #[test]

@@ -7,7 +7,10 @@
 mod common;
 
 use arbitrary::Unstructured;
-use common::{ball, cases, cuboid, half_space, proxy, scaled, stroke, torus, unit, vector};
+use common::{
+    FollowShape as _, ball, cases, cuboid, half_space, proxy, scaled, stroke, torus, unit,
+    vector,
+};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 
 #[test]
@@ -39,7 +42,7 @@ fn a_skew_crease_holds_the_proxy_on_its_line() {
     stroke(&mut proxy, &groove, (up * 0.05, up * -0.003), 50);
     for tick in 0..200 {
         let along = Vector([0.0, 0.0, 1e-4 * f64::from(tick)]);
-        let last = proxy.follow(&groove, up * -0.003 + along);
+        let last = proxy.follow_shape(&groove, up * -0.003 + along);
         assert!((last.proxy - along).norm() < 1e-7, "{last:?}");
     }
 }
@@ -109,7 +112,7 @@ fn the_proxy_is_never_inside() {
         let radius = [0.0, 0.001, 0.004][u.choose_index(3)?];
         let mut proxy = proxy(radius);
         for device in wander(u, 200)? {
-            let last = proxy.follow(&shape, device);
+            let last = proxy.follow_shape(&shape, device);
             // A hand deep inside a concave body from the start may need another tick.
             if last.contact || last.evaluations == 1 {
                 let gap = shape.distance(last.proxy) - radius;
@@ -128,10 +131,10 @@ fn no_straight_way_from_a_proxy_at_rest_leads_closer() {
         let radius = [0.0, 0.001, 0.004][u.choose_index(3)?];
         let mut proxy = proxy(radius);
         for device in wander(u, 100)? {
-            let mut last = proxy.follow(&shape, device);
+            let mut last = proxy.follow_shape(&shape, device);
             // The hand waits until the proxy has come to rest.
             for _ in 0..20 {
-                last = proxy.follow(&shape, device);
+                last = proxy.follow_shape(&shape, device);
             }
             if !last.contact || last.evaluations > 20 {
                 continue;
@@ -164,7 +167,7 @@ fn scenes_of_a_micrometre_and_of_a_kilometre_feel_alike() {
             let radius = 0.002 * scale;
             let mut proxy = proxy(radius);
             let hand = wander(u, 100)?;
-            let follow = |device: Vector<f64, 3>| proxy.follow(&shape, device * scale);
+            let follow = |device: Vector<f64, 3>| proxy.follow_shape(&shape, device * scale);
             Ok(hand.into_iter().map(follow).collect::<Vec<_>>())
         };
         let reference = play(1.0)?;

@@ -9,7 +9,7 @@ mod common;
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use common::{ball, cuboid, torus};
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{PointState, Servo, ServoOptions, Tour};
+use palpate_haptics::{Bodies, PointState, Servo, ServoOptions, Tour};
 
 /// Aborts on an allocation where none is allowed.
 #[global_allocator]
@@ -27,7 +27,7 @@ fn a_step_allocates_and_frees_nothing() {
     let path = Tour::new(bounds, 10.0).unwrap().over(&shape).unwrap();
     let mut servo = Servo::new(shape.clone(), 3, ServoOptions::default()).unwrap();
     let budget = servo.options().probe.budget();
-    let mut next = Some(shape);
+    let mut next = Some(Bodies::from(shape));
     for tick in 0..10_000 {
         let time = f64::from(tick) * 1e-3;
         let states = [
@@ -39,7 +39,7 @@ fn a_step_allocates_and_frees_nothing() {
             let touches = servo.step(&states);
             assert!(touches.iter().all(|t| t.evaluations <= budget && t.force.is_finite()));
             match next.take() {
-                Some(shape) if tick % 1000 == 0 => Some(servo.replace_shape(shape)),
+                Some(shape) if tick % 1000 == 0 => Some(servo.replace_bodies(shape)),
                 other => other,
             }
         });

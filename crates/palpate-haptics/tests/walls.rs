@@ -7,7 +7,10 @@
 mod common;
 
 use arbitrary::Unstructured;
-use common::{Scaled, cases, cuboid, direction, proxy, rotation, scaled, stroke, unit, vector};
+use common::{
+    FollowShape as _, Scaled, cases, cuboid, direction, proxy, rotation, scaled, stroke, unit,
+    vector,
+};
 use palpate_field::{BoundingBall, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{Probe, Proxy};
 
@@ -17,7 +20,7 @@ fn a_thin_plate_holds_a_strike_of_five_metres_a_second() {
     let mut proxy = proxy(0.0);
     for tick in 0..40 {
         let height = 0.02 - 0.005 * f64::from(tick);
-        let following = proxy.follow(&plate, Vector([0.01, height, 0.01]));
+        let following = proxy.follow_shape(&plate, Vector([0.01, height, 0.01]));
         let held = height.max(0.001);
         assert!((following.proxy - Vector([0.01, held, 0.01])).norm() < 1e-9);
         assert_eq!(following.contact, height < 0.001);
@@ -33,16 +36,16 @@ fn a_wall_beyond_the_region_of_a_promise_is_not_crossed() {
     let shape = Shape::custom(Scaled { shape: plate, factor: 1.0, promise });
     for radius in [0.0, 0.002] {
         let mut proxy = proxy(radius);
-        proxy.follow(&shape, Vector::ZERO);
+        proxy.follow_shape(&shape, Vector::ZERO);
         for tick in 0..100 {
             let device = Vector([0.01 * f64::from(tick), 0.0, 0.0]);
-            let following = proxy.follow(&shape, device);
+            let following = proxy.follow_shape(&shape, device);
             let closest = Vector([device[0].min(0.1), 0.0, 0.0]);
             assert!((following.proxy - closest).norm() < 1e-9, "{following:?}");
             assert!(!following.contact);
         }
         let back = Vector([0.0, 0.05, 0.0]);
-        assert_eq!(proxy.follow(&shape, back).proxy, back);
+        assert_eq!(proxy.follow_shape(&shape, back).proxy, back);
     }
 }
 
@@ -54,7 +57,7 @@ fn a_hand_that_starts_beyond_the_region_of_a_promise_touches_nothing_until_it_en
     let shape = Shape::custom(Scaled { shape: cube, factor: 1.0, promise });
     let mut proxy = proxy(0.002);
     let far = Vector([0.0, 0.5, 0.0]);
-    let following = proxy.follow(&shape, far);
+    let following = proxy.follow_shape(&shape, far);
     assert_eq!((following.proxy, following.contact), (far, false));
     let last = stroke(&mut proxy, &shape, (far, Vector([0.0, 0.026, 0.0])), 300);
     assert!(last.contact);
@@ -78,12 +81,12 @@ fn random_strike(
     let starts_inside = u.ratio(1, 2)?;
     let start = if starts_inside { vector(u)? * 0.05 } else { direction(u)? * 0.25 };
     let mut device = pose.transform_point(start);
-    proxy.follow(&shape, device);
+    proxy.follow_shape(&shape, device);
     for _ in 0..20 {
         device += direction(u)? * (0.01 * unit(u)?.abs());
         let target = pose.transform_point(vector(u)? * 0.1);
         device += (target - device) * 0.1;
-        let following = proxy.follow(&shape, device);
+        let following = proxy.follow_shape(&shape, device);
         let in_body = pose.inverse().transform_point(following.proxy);
         let reach = in_body.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         assert_eq!(reach < 0.5 * inner + 1e-9, starts_inside, "{in_body:?} radius {radius}");
@@ -115,7 +118,7 @@ fn random_strikes_with_few_evaluations_never_tunnel() {
         let probe = Probe::new([0.0, 0.001][u.choose_index(2)?]).unwrap();
         let mut proxy = Proxy::new(probe.with_budget(budget).unwrap());
         let mut device = Vector([0.0, 0.02, 0.0]);
-        proxy.follow(&plate, device);
+        proxy.follow_shape(&plate, device);
         for _ in 0..40 {
             let mut step: Vector<f64, 3> = vector(u)? * 0.01;
             step[1] -= 0.002;
@@ -123,7 +126,7 @@ fn random_strikes_with_few_evaluations_never_tunnel() {
             // Not around the plate, which is allowed.
             device[0] = device[0].clamp(-0.1, 0.1);
             device[2] = device[2].clamp(-0.1, 0.1);
-            let following = proxy.follow(&plate, device);
+            let following = proxy.follow_shape(&plate, device);
             assert!(following.proxy[1] >= 0.5e-4 - 1e-9);
             assert!(following.evaluations <= budget);
         }
@@ -156,7 +159,7 @@ fn a_slot_narrower_than_the_probe_stops_it_at_its_mouth() {
     let pressed = (Vector([-0.005, 0.01]), Vector([0.0003, -0.02]));
     let mut last = stroke(&mut proxy, &slot, pressed, 200);
     for _ in 0..50 {
-        last = proxy.follow(&slot, pressed.1);
+        last = proxy.follow_shape(&slot, pressed.1);
     }
     assert!(last.contact);
     assert!((last.proxy - Vector([0.0, 3.0_f64.sqrt() * 1e-3])).norm() < 1e-7, "{last:?}");

@@ -12,10 +12,10 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use palpate::haptics::{
-    Ending, HandPath, HapticsError, Interpolation, Material, Pace, Probe, Progress,
-    RecordedDevice, Recorder, RunOptions, Servo, ServoOptions, Tour, run as run_servo,
+    Bodies, Body, Ending, HandPath, HapticsError, Interpolation, Pace, Probe, Progress,
+    RecordedDevice, Recorder, RunOptions, Servo, ServoOptions, Surface, Tour, run as run_servo,
 };
-use palpate::scene::{BuiltScene, Tool, World};
+use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
 
 use crate::arguments::FeelOptions;
 use crate::input::{self, Named};
@@ -59,8 +59,7 @@ where
     Dimensions: Drawable<D>,
 {
     let name = named.name.as_str();
-    let servo_options =
-        servo_options(scene, named.tool.as_ref(), options).map_err(Failure::input)?;
+    let servo_options = servo_options(named.tool.as_ref(), options).map_err(Failure::input)?;
     // Before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let paths = paths(scene, options, &servo_options)?;
@@ -68,8 +67,9 @@ where
     let duration = options.duration.unwrap_or(longest);
     let contacts = paths.len();
     let mut device = RecordedDevice::new(paths).map_err(Failure::input)?;
-    let mut servo =
-        Servo::new(scene.whole.clone(), contacts, servo_options).map_err(Failure::input)?;
+    let mut servo = bodies(scene, options)
+        .and_then(|bodies| Servo::new(bodies, contacts, servo_options))
+        .map_err(Failure::input)?;
 
     let ticks = ticks(duration, options.rate)?;
     let keeps_rows = options.trace.is_some() || options.plot.is_some();
@@ -106,7 +106,7 @@ where
     if options.json {
         writeln!(out, "{}", serde_json::to_string_pretty(&outcome)?)?;
     } else {
-        write!(out, "{}", report::text(name, &outcome, servo.options()))?;
+        write!(out, "{}", report::text(name, &outcome, &servo))?;
     }
     Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
 }
@@ -123,30 +123,34 @@ fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 }
 
 /// What the command line says, else the scene, else the default.
-///
-/// A servo has one material: that of the first body.
-fn servo_options<const D: usize>(
-    scene: &BuiltScene<D>,
+fn servo_options(
     tool: Option<&Tool>,
     options: &FeelOptions,
 ) -> Result<ServoOptions, HapticsError> {
     let default = ServoOptions::default();
-    let material = scene.bodies.first().map(|body| &body.material);
-    let written = material
-        .map_or((default.material.stiffness(), default.material.damping()), |material| {
-            (material.stiffness, material.damping)
-        });
-    let stiffness = options.stiffness.unwrap_or(written.0);
-    let damping = options.damping.unwrap_or(written.1);
     let radius = options.radius.or(tool.map(|tool| tool.radius));
     let max_force = options.max_force.or(tool.and_then(|tool| tool.max_force));
     Ok(ServoOptions {
         rate: options.rate,
-        material: Material::new(stiffness, damping)?,
         probe: Probe::new(radius.unwrap_or(default.probe.radius()))?,
         max_force: max_force.unwrap_or(default.max_force),
         ..default
     })
+}
+
+/// The bodies of the scene, each with its own material, but for what the command line says.
+fn bodies<const D: usize>(
+    scene: &BuiltScene<D>,
+    options: &FeelOptions,
+) -> Result<Bodies<D>, HapticsError> {
+    let body = |body: &BuiltBody<D>| {
+        let mut material = body.material.clone();
+        material.stiffness = options.stiffness.unwrap_or(material.stiffness);
+        material.damping = options.damping.unwrap_or(material.damping);
+        Body::new(body.shape_in_body.clone(), Surface::new(&material)?)?
+            .at(body.world_from_body)
+    };
+    Bodies::new(scene.bodies.iter().map(body).collect::<Result<_, _>>()?)
 }
 
 /// The paths of the contact points: from the file, or tours of the scene one

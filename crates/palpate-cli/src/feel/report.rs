@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use palpate::haptics::{Distribution, Ending, Progress, RunReport, ServoOptions};
+use palpate::haptics::{Body, Distribution, Ending, Progress, RunReport, Servo, Surface};
 
 /// The widest bar of a histogram.
 const BAR: u64 = 40;
@@ -34,25 +34,26 @@ fn file_name(name: &str) -> String {
 }
 
 /// The whole report.
-pub(crate) fn text(name: &str, report: &RunReport, options: &ServoOptions) -> String {
+pub(crate) fn text<const D: usize>(name: &str, report: &RunReport, servo: &Servo<D>) -> String {
     let mut out = String::new();
-    write_report(&mut out, name, report, options).unwrap_or_default();
+    write_report(&mut out, name, report, servo).unwrap_or_default();
     out
 }
 
-fn write_report(
+fn write_report<const D: usize>(
     out: &mut String,
     name: &str,
     report: &RunReport,
-    options: &ServoOptions,
+    servo: &Servo<D>,
 ) -> std::fmt::Result {
-    let material = &options.material;
+    let options = servo.options();
+    let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     writeln!(out, "{name}, felt with {} contact point(s)", report.points)?;
     writeln!(
         out,
         "  stiffness {} N/m, damping {} N·s/m, at most {} N, probe of {} mm",
-        material.stiffness(),
-        material.damping(),
+        range(surfaces().map(Surface::stiffness)),
+        range(surfaces().map(Surface::damping)),
         options.max_force,
         1e3 * options.probe.radius(),
     )?;
@@ -101,6 +102,13 @@ fn write_report(
         )?;
     }
     Ok(())
+}
+
+/// The numbers of all bodies: one, or from the least to the largest.
+fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
+    let least = numbers.clone().fold(f64::INFINITY, f64::min);
+    let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
+    if least < largest { format!("{least} to {largest}") } else { least.to_string() }
 }
 
 fn quantiles(times: &Distribution) -> String {

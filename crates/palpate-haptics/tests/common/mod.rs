@@ -11,7 +11,7 @@ use arbitrary::Unstructured;
 pub(crate) use cases::cases;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{CustomField, Point, Promise, Rotation, Shape, Vector};
-use palpate_haptics::{Following, Probe, Proxy};
+use palpate_haptics::{Bodies, Body, Following, Probe, Proxy, Surface};
 
 /// A ball of `radius`.
 pub(crate) fn ball<const D: usize>(radius: f64) -> Shape<D> {
@@ -69,6 +69,22 @@ pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {
     Proxy::new(Probe::new(radius).unwrap())
 }
 
+/// A proxy that knows one shape.
+pub(crate) trait FollowShape<const D: usize> {
+    fn follow_shape(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D>;
+}
+
+impl<const D: usize> FollowShape<D> for Proxy<D> {
+    fn follow_shape(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D> {
+        self.follow(Bodies::from(shape.clone()).everything(), device)
+    }
+}
+
+/// One body with a surface.
+pub(crate) fn body<const D: usize>(shape: &Shape<D>, surface: Surface<D>) -> Bodies<D> {
+    Bodies::new(vec![Body::new(shape.clone(), surface).unwrap()]).unwrap()
+}
+
 /// Follows a straight line in `ticks` ticks; the last tick.
 pub(crate) fn stroke<const D: usize>(
     proxy: &mut Proxy<D>,
@@ -76,10 +92,10 @@ pub(crate) fn stroke<const D: usize>(
     (from, to): (Point<D>, Point<D>),
     ticks: u32,
 ) -> Following<D> {
-    let mut last = proxy.follow(shape, from);
+    let mut last = proxy.follow_shape(shape, from);
     for tick in 1..=ticks {
         let part = f64::from(tick) / f64::from(ticks);
-        last = proxy.follow(shape, from + (to - from) * part);
+        last = proxy.follow_shape(shape, from + (to - from) * part);
     }
     last
 }

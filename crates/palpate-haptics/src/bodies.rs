@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is touched: bodies that may move, each with a surface of its own.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{
+    BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, Vector,
+};
+
+use crate::error::HapticsError;
+use crate::event::Reaction;
+use crate::nearby::Nearby;
+use crate::surface::Surface;
+
+/// Roundings of a point's way into a body's coordinates, for each metre from the origins.
+const PLACE_ROUNDINGS: f64 = 8.0;
+
+/// A shape, where it is, and what it feels like.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize> {
+    shape: Shape<D>,
+    surface: Surface<D>,
+    world_from_body: Pose<D>,
+    body_from_world: Pose<D>,
+    /// Where it was in the tick before; where it is, if it did not move.
+    world_from_before: Pose<D>,
+    has_moved: bool,
+    /// Whether its coordinates are not those of the world.
+    is_placed: bool,
+    /// A ball of the world that holds it; none if it has no bounds.
+    pub(crate) ball: Option<BoundingBall<D>>,
+    /// Whether its field may be less than the distance to that ball.
+    pub(crate) is_below_ball: bool,
+    /// Where something is proven of its field, in the world; everywhere if none.
+    pub(crate) region: Option<BoundingBall<D>>,
+}
+
+impl<const D: usize> Body<D> {
+    /// A body at the origin.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Shape`] if the shape cannot carry the texture of the surface.
+    pub fn new(shape: Shape<D>, surface: Surface<D>) -> Result<Self, HapticsError> {
+        let shape = surface.carved(shape)?;
+        Ok(Self::of(shape, surface))
+    }
+
+    /// A body whose texture is in the shape already.
+    fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
+        let identity = Pose::identity();
+        let is_below_ball = !shape.promise().above_bounds;
+        let mut body = Self {
+            shape,
+            surface,
+            world_from_body: identity,
+            body_from_world: identity,
+            world_from_before: identity,
+            has_moved: false,
+            is_placed: false,
+            ball: None,
+            is_below_ball,
+            region: None,
+        };
+        body.find_balls();
+        body
+    }
+
+    /// The same at `world_from_body`.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Pose`] if a number of the pose is not finite or beyond 1e15.
+    pub fn at(mut self, world_from_body: Pose<D>) -> Result<Self, HapticsError> {
+        if !is_usable(&world_from_body) {
+            return Err(HapticsError::Pose);
+        }
+        self.place(world_from_body);
+        self.settle();
+        Ok(self)
+    }
+
+    /// The shape in the body's coordinates.
+    #[must_use]
+    pub fn shape(&self) -> &Shape<D> {
+        &self.shape
+    }
+
+    /// What it feels like.
+    #[must_use]
+    pub fn surface(&self) -> &Surface<D> {
+        &self.surface
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn world_from_body(&self) -> &Pose<D> {
+        &self.world_from_body
+    }
+
+    pub(crate) fn body_from_world(&self) -> &Pose<D> {
+        &self.body_from_world
+    }
+
+    /// Whether it moved in this tick.
+    pub(crate) fn has_moved(&self) -> bool {
+        self.has_moved
+    }
+
+    /// Where it takes a point of the world that moves with it in this tick.
+    pub(crate) fn carried(&self, point: Point<D>) -> Point<D> {
+        let in_body = self.world_from_before.inverse().transform_point(point);
+        self.world_from_body.transform_point(in_body)
+    }
+
+    /// A point of the world before and after this tick, as the body sees it.
+    pub(crate) fn way_in_body(&self, point: Point<D>) -> [Point<D>; 2] {
+        [self.world_from_before.inverse(), self.body_from_world]
+            .map(|body_from_world| body_from_world.transform_point(point))
+    }
+
+    /// A point of the world in the body's coordinates.
+    pub(crate) fn in_body(&self, point: Point<D>) -> Point<D> {
+        if self.is_placed { self.body_from_world.transform_point(point) } else { point }
+    }
+
+    /// How far a point of the world is from the body's ball [m]; negative in it.
+    #[inline]
+    pub(crate) fn above_ball(&self, point: Point<D>) -> f64 {
+        self.ball.map_or(f64::NEG_INFINITY, |ball| (point - ball.centre).norm() - ball.radius)
+    }
+
+    /// Its field at a point of the world [m].
+    #[inline]
+    pub(crate) fn distance(&self, p: Point<D>) -> f64 {
+        self.shape.distance(self.in_body(p))
+    }
+
+    /// Likewise with its gradient.
+    #[inline]
+    pub(crate) fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let (distance, gradient) = self.shape.distance_gradient(self.in_body(p));
+        let gradient = if self.is_placed {
+            self.world_from_body.transform_vector(gradient)
+        } else {
+            gradient
+        };
+        (distance, gradient)
+    }
+
+    fn place(&mut self, world_from_body: Pose<D>) {
+        self.has_moved = world_from_body != self.world_from_before;
+        self.is_placed = world_from_body != Pose::identity();
+        self.world_from_body = world_from_body;
+        self.body_from_world = world_from_body.inverse();
+        self.find_balls();
+    }
+
+    /// From now on it has not moved.
+    fn settle(&mut self) {
+        self.world_from_before = self.world_from_body;
+        self.has_moved = false;
+    }
+
+    fn find_balls(&mut self) {
+        let promise = self.shape.promise();
+        let placed = |ball: BoundingBall<D>| BoundingBall {
+            centre: self.world_from_body.transform_point(ball.centre),
+            radius: ball.radius,
+        };
+        self.ball = promise.bounds.map(|bounds| placed(bounds.ball));
+        // Distances that are exact or bounds need no constant.
+        let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
+        self.region = region.map(placed);
+    }
+
+    /// The error of its distances in the world.
+    fn rounding(&self) -> Rounding {
+        let far = self.world_from_body.translation.norm();
+        let way = if self.is_placed { PLACE_ROUNDINGS } else { 0.0 };
+        let way = Rounding::of_operations(way, far);
+        self.shape.promise().rounding.at(1.0, far).plus(&way)
+    }
+}
+
+/// Room for a tick with so many bodies.
+fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Vec<u32>) {
+    (vec![Reaction::NONE; bodies], Vec::with_capacity(bodies))
+}
+
+fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
+    // Written so that NaN fails.
+    pose.is_finite() && pose.translation.0.iter().all(|x| x.abs() <= LARGEST_LENGTH)
+}
+
+/// All bodies that can be touched.
+///
+/// Their union is one field, the least of theirs. It is made anew of the bodies that are near
+/// for every tick, so that bodies may move.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_haptics::{Bodies, Body, Surface};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(0.05)?);
+/// let soft = Body::new(ball.clone(), Surface::smooth(200.0, 0.5)?)?;
+/// let hard = Body::new(ball, Surface::smooth(900.0, 2.0)?)?;
+/// let bodies = Bodies::new(vec![soft, hard.at(Pose::translation(Vector([0.2, 0.0, 0.0])))?])?;
+/// assert_eq!(bodies.bodies().len(), 2);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bodies<const D: usize> {
+    bodies: Vec<Body<D>>,
+    /// The radius of the ball that held all bodies at first [m]; none if one has no bounds.
+    pub(crate) size: Option<f64>,
+    pub(crate) lipschitz: f64,
+    pub(crate) rounding: Rounding,
+    pub(crate) has_regions: bool,
+    pub(crate) has_moved: bool,
+    /// What was done to each in the last tick.
+    reactions: Vec<Reaction<D>>,
+    /// Room for the numbers of those that are near.
+    list: Vec<u32>,
+}
+
+impl<const D: usize> Bodies<D> {
+    /// These bodies.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::NoBody`] if there is none.
+    pub fn new(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
+        let first = bodies.first().ok_or(HapticsError::NoBody)?;
+        let mut bounds = first.ball;
+        let mut rounding = first.rounding();
+        for body in bodies.iter().skip(1) {
+            bounds = bounds.zip(body.ball).map(|(all, ball)| all.union(&ball));
+            rounding = rounding.or(&body.rounding());
+        }
+        let lipschitz = bodies.iter().map(|body| body.shape.promise().lipschitz);
+        // Beyond what is near, the way there bounds the field: it has slope one.
+        let lipschitz = lipschitz.fold(if bodies.len() > 1 { 1.0 } else { 0.0 }, f64::max);
+        let size = bounds.map(|ball| ball.radius);
+        let has_regions = bodies.iter().any(|body| body.region.is_some());
+        let (reactions, list) = scratch(bodies.len());
+        let has_moved = false;
+        Ok(Self { bodies, size, lipschitz, rounding, has_regions, has_moved, reactions, list })
+    }
+
+    /// The bodies.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body<D>] {
+        &self.bodies
+    }
+
+    /// Moves a body; what it touches goes with it in the next tick. A pose that is not finite,
+    /// or of a body that is not there, moves nothing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+        let Some(body) = self.bodies.get_mut(body) else { return };
+        if !is_usable(&world_from_body) || world_from_body == body.world_from_body {
+            return;
+        }
+        body.place(world_from_body);
+        self.rounding = self.rounding.or(&body.rounding());
+        self.has_moved = true;
+    }
+
+    /// What was done to each body in the last tick.
+    #[must_use]
+    pub fn reactions(&self) -> &[Reaction<D>] {
+        &self.reactions
+    }
+
+    /// Room for a tick: the numbers of what is near, and what is done to each body.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn take_scratch(&mut self) -> (Vec<u32>, Vec<Reaction<D>>) {
+        self.reactions.fill(Reaction::NONE);
+        (std::mem::take(&mut self.list), std::mem::take(&mut self.reactions))
+    }
+
+    /// Takes back what was [taken](Self::take_scratch).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn put_back(&mut self, (list, reactions): (Vec<u32>, Vec<Reaction<D>>)) {
+        (self.list, self.reactions) = (list, reactions);
+    }
+
+    /// The motion of this tick is over.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn settle(&mut self) {
+        if std::mem::take(&mut self.has_moved) {
+            self.bodies.iter_mut().for_each(Body::settle);
+        }
+    }
+
+    /// All of them, however far away.
+    #[must_use]
+    pub fn everything(&self) -> Nearby<'_, D> {
+        Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
+    }
+
+    /// Those within `radius` of `centre` [m], written down in `list`; it is not enlarged, and
+    /// bodies that find no room are beyond a nearer horizon.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn nearby<'a>(
+        &'a self,
+        (centre, radius): (Point<D>, f64),
+        list: &'a mut Vec<u32>,
+    ) -> Nearby<'a, D> {
+        list.clear();
+        let mut horizon = f64::INFINITY;
+        for (index, body) in (0..).zip(&self.bodies) {
+            let away = body.above_ball(centre);
+            // Written so that NaN is near.
+            if away > radius || list.len() == list.capacity() {
+                horizon = horizon.min(away);
+            } else {
+                list.push(index);
+            }
+        }
+        Nearby { bodies: self, list: Some(list), centre, horizon }
+    }
+}
+
+impl<const D: usize> From<Shape<D>> for Bodies<D> {
+    /// One body of the default surface, which is smooth, at the origin.
+    fn from(shape: Shape<D>) -> Self {
+        let body = Body::of(shape, Surface::default());
+        let promise = *body.shape.promise();
+        let (reactions, list) = scratch(1);
+        Self {
+            size: body.ball.map(|ball| ball.radius),
+            lipschitz: promise.lipschitz,
+            rounding: body.rounding(),
+            has_regions: body.region.is_some(),
+            has_moved: false,
+            reactions,
+            list,
+            bodies: vec![body],
+        }
+    }
+}

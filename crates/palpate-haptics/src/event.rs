@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What happened at a contact point, and what it did to a body.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+/// Something that happened at a contact point.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Event {
+    /// In which tick, from 0.
+    pub tick: u64,
+    /// At which contact point.
+    pub point: u32,
+    /// On which body.
+    pub body: u32,
+    /// What it was.
+    #[serde(flatten)]
+    pub kind: EventKind,
+}
+
+/// What can happen at a contact point.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum EventKind {
+    /// It touches a body that it did not touch before.
+    Touch {
+        /// How fast it came, along the normal and relative to the body [m/s].
+        speed: f64,
+    },
+    /// It touches it no more.
+    Leave,
+    /// It sticks no more, but slips.
+    Slip,
+    /// It slips no more, but sticks.
+    Stick,
+    /// A layer gave way.
+    Pop {
+        /// The force that it did not hold [N].
+        force: f64,
+    },
+}
+
+/// What all contact points together did to a body in a tick: for a physics engine that moves
+/// it. World coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reaction<const D: usize> {
+    /// The force [N].
+    pub force: Vector<f64, D>,
+    /// The torque about the body's origin [N·m]; in the plane about z alone.
+    pub torque: Vector<f64, 3>,
+}
+
+impl<const D: usize> Reaction<D> {
+    pub(crate) const NONE: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
+
+    /// Adds a force at a place `arm` from the body's origin.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
+        self.force += force;
+        let in_space = |v: Vector<f64, D>| -> [f64; 3] {
+            std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0))
+        };
+        let ([ax, ay, az], [fx, fy, fz]) = (in_space(arm), in_space(force));
+        self.torque += Vector([ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx]);
+    }
+}

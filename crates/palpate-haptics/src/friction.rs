@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Friction: a proxy that is held back on its way along a surface.
+//!
+//! With the depth `N` of the device below the surface and the tangential part `t` of the
+//! stretch from device to proxy, the force is in the cone of Coulomb where `‖t‖ ≤ μN`. A
+//! proxy within the cone of static friction sticks: it does not move at all, so friction
+//! never creeps. Beyond it, it slips to where `‖t‖ = μ_d N`: to the point that a proxy without
+//! friction would rest at if the device were `μ_d N` closer to where the proxy was. So slipping
+//! is a [slide](crate::contact::slide) of its own and crosses no more than one. The cone is
+//! that of Harwin and Melder, "Improved haptic rendering for multi-finger manipulation using
+//! friction cone based god-objects" (2002).
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use crate::contact::{Rest, slide};
+use crate::sampler::{Sample, Sampler};
+use crate::surface::Friction;
+
+/// Part of the stretch that lies along the surface where one wall alone holds the proxy. More
+/// of it tells of a crease, of which one wall does not know how hard it is pressed.
+const ONE_WALL: f64 = 1e-3;
+
+/// How a surface holds a proxy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) enum Hold {
+    /// It is not in the way, or has no friction.
+    #[default]
+    None,
+    /// The proxy does not move along it.
+    Stick,
+    /// It slows the proxy down.
+    Slip,
+}
+
+/// Slides from `start`, where the proxy was held, as far as `friction` lets it, to the point
+/// closest to `device`, which moved by `motion` [m] in this tick.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
+/// evaluations.
+pub(crate) fn drag<const D: usize>(
+    sampler: &mut Sampler<'_, D>,
+    (start, normal): (Sample<D>, Vector<f64, D>),
+    (device, motion): (Point<D>, f64),
+    (friction, hold): (Friction, Hold),
+) -> (Rest<D>, Hold) {
+    let free = |sampler: &mut Sampler<'_, D>| {
+        (slide(sampler, start, normal, (device, motion)), Hold::None)
+    };
+    if start.gradient.is_none() || friction.fixed <= 0.0 {
+        return free(sampler);
+    }
+    let (normal, gap) = sampler.tangent(&start, normal);
+    let stretch = start.point - device;
+    let height = stretch.dot(normal);
+    let depth = height - gap;
+    if depth <= 0.0 || gap > sampler.near() {
+        return free(sampler);
+    }
+    let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
+    let stuck = Rest { sample: start, normal, contact: true };
+    let Some(goal) =
+        held_back(device, stretch - normal * height, depth, (most, friction.slipping))
+    else {
+        return (stuck, Hold::Stick);
+    };
+    let rest = slide(sampler, start, normal, (goal, motion));
+    let pull = rest.sample.point - goal;
+    let along = pull - rest.normal * pull.dot(rest.normal);
+    if !rest.contact || along.norm() <= ONE_WALL * pull.norm() {
+        return (rest, Hold::Slip);
+    }
+    // A crease: all its walls together press with what keeps a proxy without friction there.
+    let rest = slide(sampler, start, normal, (device, motion));
+    let depth = (rest.sample.point - device).norm();
+    let way = start.point - rest.sample.point;
+    match held_back(device, way, depth, (most, friction.slipping)) {
+        None => (stuck, Hold::Stick),
+        Some(goal) => (slide(sampler, rest.sample, rest.normal, (goal, motion)), Hold::Slip),
+    }
+}
+
+/// The device moved towards where the proxy was, `along` the surface from where it would be
+/// without friction; none if `most` times the depth holds the proxy there.
+fn held_back<const D: usize>(
+    device: Point<D>,
+    along: Vector<f64, D>,
+    depth: f64,
+    (most, slipping): (f64, f64),
+) -> Option<Point<D>> {
+    let length = along.norm();
+    // Written so that NaN is held.
+    (length > most * depth).then(|| device + along * (slipping * depth / length))
+}

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A force is no larger than a device may give.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+/// Shortens `force` to `max_force`, keeping its direction; zero if it is not finite.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+#[must_use]
+pub(crate) fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> Vector<f64, D> {
+    let norm = force.norm();
+    if norm <= max_force {
+        force
+    } else {
+        // The norm of a huge but finite force overflows; its direction does not.
+        force.normalized().map_or(Vector::ZERO, |direction| direction * max_force)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_keeps_the_direction() {
+        assert_eq!(limited(Vector([3.0, -4.0]), 2.5), Vector([1.5, -2.0]));
+        assert_eq!(limited(Vector([3.0, -4.0]), 5.0), Vector([3.0, -4.0]));
+        assert_eq!(limited(Vector([0.0, 1e300, 0.0]), 2.0), Vector([0.0, 2.0, 0.0]));
+    }
+
+    #[test]
+    fn a_force_that_is_not_finite_is_none() {
+        assert_eq!(limited(Vector([f64::NAN, 1.0]), 2.0), Vector::ZERO);
+        assert_eq!(limited(Vector([f64::INFINITY, 1.0]), 2.0), Vector::ZERO);
+    }
+}

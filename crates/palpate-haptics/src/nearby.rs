@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The bodies near a place, as one field.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Rounding, Vector};
+
+use crate::bodies::{Bodies, Body};
+
+/// Which layers of which bodies a hand went through: they hold it no more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Pierced {
+    entries: [Option<(u32, u8)>; Self::CAPACITY],
+}
+
+impl Pierced {
+    /// Bodies that a hand is through at a time.
+    const CAPACITY: usize = 4;
+
+    /// How many layers of a body the hand went through.
+    #[inline]
+    pub(crate) fn level(&self, body: u32) -> usize {
+        let found = self.entries.iter().flatten().find(|(pierced, _)| *pierced == body);
+        found.map_or(0, |(_, level)| usize::from(*level))
+    }
+
+    /// Notes that the hand went through one more layer of a body; `false` if it is through as
+    /// many as there is room for.
+    pub(crate) fn pierce(&mut self, body: u32) -> bool {
+        let known = self.entries.iter_mut().flatten().find(|(pierced, _)| *pierced == body);
+        if let Some((_, level)) = known {
+            *level = level.saturating_add(1);
+            return true;
+        }
+        let room = self.entries.iter_mut().find(|entry| entry.is_none());
+        room.map(|entry| *entry = Some((body, 1))).is_some()
+    }
+
+    /// Lets those layers hold again that `is_away` says the hand is away from.
+    pub(crate) fn heal(&mut self, mut is_away: impl FnMut(u32, usize) -> bool) {
+        for entry in &mut self.entries {
+            *entry = entry.filter(|(body, level)| !is_away(*body, usize::from(*level)));
+        }
+    }
+}
+
+/// What is known of a place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<const D: usize> {
+    /// The field [m].
+    pub(crate) distance: f64,
+    /// Its gradient.
+    pub(crate) gradient: Vector<f64, D>,
+    /// Whose field it is.
+    pub(crate) body: u32,
+}
+
+/// The bodies near a place, as one field: the least of theirs, and of the way to the horizon,
+/// beyond which the others are.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearby<'a, const D: usize> {
+    pub(crate) bodies: &'a Bodies<D>,
+    /// Which; all if none.
+    pub(crate) list: Option<&'a [u32]>,
+    pub(crate) centre: Point<D>,
+    /// No other body is within this of the centre [m].
+    pub(crate) horizon: f64,
+}
+
+impl<'a, const D: usize> Nearby<'a, D> {
+    /// The body of that number.
+    pub(crate) fn body(&self, body: u32) -> Option<&'a Body<D>> {
+        self.bodies.bodies().get(body as usize)
+    }
+
+    /// The field at a point and its gradient.
+    #[must_use]
+    pub fn look(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        let seen = self.gradient(p, &Pierced::default());
+        (seen.distance, seen.gradient)
+    }
+
+    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, &'a Body<D>)> {
+        let bodies = self.bodies.bodies();
+        let count = self.list.map_or(bodies.len(), <[u32]>::len);
+        let list = self.list;
+        (0..count).filter_map(move |i| {
+            let index = list.map_or(Some(i as u32), |list| list.get(i).copied())?;
+            Some((index, bodies.get(index as usize)?))
+        })
+    }
+
+    pub(crate) fn lipschitz(&self) -> f64 {
+        self.bodies.lipschitz
+    }
+
+    pub(crate) fn size(&self) -> Option<f64> {
+        self.bodies.size
+    }
+
+    pub(crate) fn rounding(&self) -> &Rounding {
+        &self.bodies.rounding
+    }
+
+    /// Whether any body moved in this tick.
+    pub(crate) fn has_moved(&self) -> bool {
+        self.bodies.has_moved
+    }
+
+    /// The field at a point, and whose it is.
+    #[inline]
+    pub(crate) fn distance(&self, p: Point<D>, pierced: &Pierced) -> (f64, u32) {
+        if let ([body], true) = (self.bodies.bodies(), *pierced == Pierced::default()) {
+            return (body.distance(p), 0);
+        }
+        let mut least = (self.horizon - (p - self.centre).norm(), 0);
+        for (index, body) in self.all() {
+            let above = body.above_ball(p);
+            // Written so that NaN is looked at.
+            if above >= least.0 {
+                continue;
+            }
+            let Some(sunk) = sunk(body, pierced.level(index)) else { continue };
+            let mut distance = body.distance(p) + sunk;
+            if body.is_below_ball {
+                distance = distance.max(above);
+            }
+            if distance.is_nan() {
+                return (distance, index);
+            }
+            if distance < least.0 {
+                least = (distance, index);
+            }
+        }
+        least
+    }
+
+    /// The field at a point with its gradient, and whose it is.
+    #[inline]
+    pub(crate) fn gradient(&self, p: Point<D>, pierced: &Pierced) -> Seen<D> {
+        if let ([body], true) = (self.bodies.bodies(), *pierced == Pierced::default()) {
+            let (distance, gradient) = body.distance_gradient(p);
+            return Seen { distance, gradient, body: 0 };
+        }
+        let way = p - self.centre;
+        let length = way.norm();
+        let inwards = if length > 0.0 { way * (-1.0 / length) } else { Vector::ZERO };
+        let mut least = Seen { distance: self.horizon - length, gradient: inwards, body: 0 };
+        for (index, body) in self.all() {
+            let above = body.above_ball(p);
+            if above >= least.distance {
+                continue;
+            }
+            let Some(sunk) = sunk(body, pierced.level(index)) else { continue };
+            let (distance, gradient) = body.distance_gradient(p);
+            let mut seen = Seen { distance: distance + sunk, gradient, body: index };
+            if body.is_below_ball
+                && above > seen.distance
+                && let Some(ball) = body.ball
+            {
+                seen.distance = above;
+                seen.gradient = (p - ball.centre).normalized().unwrap_or(Vector::ZERO);
+            }
+            if seen.distance.is_nan() {
+                return seen;
+            }
+            if seen.distance < least.distance {
+                least = seen;
+            }
+        }
+        least
+    }
+
+    /// `true` if all that is near is proven at a point.
+    pub(crate) fn is_proven(&self, p: Point<D>) -> bool {
+        if !self.bodies.has_regions {
+            return true;
+        }
+        let regions = self.all().filter_map(|(_, body)| body.region);
+        // Written so that NaN fails.
+        regions.into_iter().all(|region| (p - region.centre).norm() <= region.radius)
+    }
+
+    /// The point closest to `goal` of which something is proven: in one region; in several,
+    /// a point near it.
+    pub(crate) fn within_regions(&self, goal: Point<D>, edge: f64) -> Point<D> {
+        if !self.bodies.has_regions {
+            return goal;
+        }
+        let mut goal = goal;
+        for region in self.all().filter_map(|(_, body)| body.region) {
+            let (way, radius) = (goal - region.centre, region.radius * (1.0 - edge));
+            let length = way.norm();
+            if length > radius {
+                goal = region.centre + way * (radius / length);
+            }
+        }
+        goal
+    }
+}
+
+/// How deep the surface lies that holds a hand which went through `level` layers [m]; none
+/// if nothing does.
+#[inline]
+fn sunk<const D: usize>(body: &Body<D>, level: usize) -> Option<f64> {
+    if level == 0 { Some(0.0) } else { body.surface().strata.top(level).map(|top| top.depth) }
+}

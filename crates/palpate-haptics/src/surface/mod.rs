@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a body feels like: a [`Material`] made ready for the servo.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod magnet;
+mod ring;
+mod ripples;
+mod strata;
+
+use palpate_field::{Point, Shape, Vector};
+use palpate_scene::{Material, TextureKind};
+
+use crate::error::{HapticsError, not_negative, positive};
+
+pub(crate) use magnet::Pull;
+pub(crate) use ring::{Ring, Ringing};
+pub(crate) use ripples::Ripples;
+pub(crate) use strata::{Friction, Strata};
+
+/// A material made ready for the servo.
+///
+/// With the proxy `p`, the device point `x`, the stretch `s = p − x`, its direction
+/// `n = s / ‖s‖` and the velocity `v` of the device point relative to the body, the force on
+/// the hand is
+///
+/// ```text
+/// F = N(‖s‖) n − B min(v·n, 0) n − V v + texture + ring
+/// ```
+///
+/// - `N(d) = ∫ K`, with the stiffness `K` of the layer at each depth: the spring of Zilles and
+///   Salisbury, "A constraint-based god-object method for haptic display" (1995), section 3.
+/// - The damper `B` acts on the approach alone, so it never pulls the hand in. `B` and the
+///   viscosity `V` are those of the layer at the depth of the hand.
+/// - A texture of kind *height* is the force of the potential `∫ N` at the depth
+///   `‖s‖ + w(p)`, with the height `w` of the wave at the proxy: pushed harder over a crest,
+///   and to the side down its slope (Minsky, "Computational haptics", 1995, chapter 4). One of
+///   kind *displacement* is part of the body's shape, not of its force.
+/// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
+///   Dennerlein, "Reality-based models for vibration feedback", 2001).
+///
+/// A friction never is a force of its own: it holds the proxy back (see
+/// [`Proxy`](crate::Proxy)).
+///
+/// # Examples
+///
+/// ```
+/// use palpate_haptics::{Material, Surface};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let wood = Surface::<3>::new(&Material { stiffness: 800.0, ..Material::default() })?;
+/// assert_eq!(wood.stiffness(), 800.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface<const D: usize> {
+    pub(crate) strata: Strata,
+    pub(crate) magnet: Option<Pull>,
+    /// A texture of kind *height*.
+    ripples: Option<Ripples<D>>,
+    /// A texture of kind *displacement*.
+    relief: Option<Ripples<D>>,
+    impact: Option<Ring>,
+}
+
+impl<const D: usize> Surface<D> {
+    /// Makes a material ready.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if a number of the material breaks its rule.
+    pub fn new(material: &Material) -> Result<Self, HapticsError> {
+        let (mut ripples, mut relief) = (None, None);
+        if let Some(texture) = &material.texture {
+            let waves = Some(Ripples::new(texture)?);
+            match texture.kind {
+                TextureKind::Height => ripples = waves,
+                TextureKind::Displacement => relief = waves,
+            }
+        }
+        Ok(Self {
+            strata: Strata::new(material)?,
+            magnet: material.magnet.as_ref().map(Pull::new).transpose()?,
+            ripples,
+            relief,
+            impact: material.impact.as_ref().map(Ring::new).transpose()?,
+        })
+    }
+
+    /// A smooth surface, without friction, of `stiffness` [N/m] and `damping` [N·s/m].
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the stiffness is not positive, the damping negative, or
+    /// either not finite.
+    ///
+    /// ```
+    /// use palpate_haptics::Surface;
+    ///
+    /// let error = Surface::<3>::smooth(-3.0, 0.0).unwrap_err();
+    /// assert_eq!(error.to_string(), "stiffness must be positive and finite, got -3 N/m");
+    /// ```
+    pub fn smooth(stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
+        Self::new(&Material {
+            stiffness: positive("stiffness", stiffness, "N/m")?,
+            damping: not_negative("damping", damping, "N·s/m")?,
+            static_friction: 0.0,
+            dynamic_friction: 0.0,
+            ..Material::default()
+        })
+    }
+
+    /// The stiffness at the surface [N/m].
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.strata.stiffness()
+    }
+
+    /// The damping at the surface [N·s/m].
+    #[must_use]
+    pub fn damping(&self) -> f64 {
+        self.strata.damping()
+    }
+
+    /// The same with stiffness and damping of all layers `factor` times as large.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { strata: self.strata.scaled(factor), ..self.clone() }
+    }
+
+    /// The shape with a relief of its texture, if it has one.
+    ///
+    /// # Errors
+    ///
+    /// If the shape cannot be displaced.
+    pub(crate) fn carved(&self, shape: Shape<D>) -> Result<Shape<D>, HapticsError> {
+        let Some(relief) = &self.relief else { return Ok(shape) };
+        let height = relief.height();
+        Ok(shape.displaced(Shape::from_kernel(relief.clone()), height)?)
+    }
+
+    /// The force on the hand [N] for a `stretch` from device point to proxy [m], a `velocity`
+    /// of the device point relative to the body [m/s], and the place of the proxy in the body,
+    /// in the body's coordinates.
+    ///
+    /// `level` is how many layers the hand went through.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn force(
+        &self,
+        level: usize,
+        stretch: Vector<f64, D>,
+        velocity: Vector<f64, D>,
+        proxy_in_body: Point<D>,
+    ) -> Vector<f64, D> {
+        let depth = stretch.norm();
+        let layer = self.strata.at(level, depth);
+        let drag = velocity * -layer.viscosity;
+        if depth == 0.0 {
+            return drag;
+        }
+        let normal = stretch * (1.0 / depth);
+        let (mut push, mut slope) = (depth, Vector::ZERO);
+        if let Some(ripples) = &self.ripples {
+            let (height, gradient) = ripples.at(proxy_in_body);
+            push = (depth + height).max(0.0);
+            // Along the surface alone: across it the wave does not change the depth.
+            slope = gradient - normal * gradient.dot(normal);
+        }
+        let spring = self.strata.force(level, push);
+        let approach = (-velocity.dot(normal)).max(0.0);
+        normal * (spring + layer.damping * approach) - slope * spring + drag
+    }
+
+    /// What an impact at `speed` [m/s] along the normal starts, at `rate` ticks a second [Hz].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn ringing(&self, speed: f64, rate: f64) -> Ringing {
+        self.impact.as_ref().map_or(Ringing::SILENT, |ring| ring.struck(speed, rate))
+    }
+}
+
+impl<const D: usize> Default for Surface<D> {
+    /// Smooth, 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m
+    /// of its own.
+    fn default() -> Self {
+        let material =
+            Material { static_friction: 0.0, dynamic_friction: 0.0, ..Material::default() };
+        let strata = Strata::of(&material);
+        Self { strata, magnet: None, ripples: None, relief: None, impact: None }
+    }
+}

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A sine wave on a surface.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::scalar::Scalar;
+use palpate_field::{Kernel, Point, Promise, Vector};
+use palpate_scene::Texture;
+
+use crate::error::{HapticsError, positive};
+
+/// Roundings of a wave's phase: of the products, their sum and the sine.
+const ROUNDINGS: f64 = 16.0;
+
+/// A wave through space, in a body's coordinates: `a · sin(2π u·p / λ)` along a direction `u`,
+/// or `a · Π sin(2π pᵢ / λ)` along all axes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ripples<const D: usize> {
+    amplitude: f64,
+    /// Radians a metre along each wave vector.
+    waves: Waves<D>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Waves<const D: usize> {
+    /// Along one wave vector [rad/m].
+    Plane([f64; D]),
+    /// Along all axes, by this number [rad/m].
+    Product(f64),
+}
+
+impl<const D: usize> Ripples<D> {
+    pub(crate) fn new(texture: &Texture) -> Result<Self, HapticsError> {
+        let amplitude = positive("texture.amplitude", texture.amplitude, "m")?;
+        let wavelength = positive("texture.wavelength", texture.wavelength, "m")?;
+        let number = 2.0 * std::f64::consts::PI / wavelength;
+        let Some(direction) = &texture.direction else {
+            return Ok(Self { amplitude, waves: Waves::Product(number) });
+        };
+        let components: Result<[f64; D], _> = direction.as_slice().try_into();
+        let unit = components.ok().and_then(|components| Vector(components).normalized());
+        let unit = unit.ok_or(HapticsError::Number {
+            parameter: "texture.direction",
+            rule: "a direction of the scene's dimension",
+            value: direction.len() as f64,
+            unit: "numbers",
+        })?;
+        Ok(Self { amplitude, waves: Waves::Plane((unit * number).0) })
+    }
+
+    /// How far the wave rises [m].
+    pub(crate) fn height(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// The height of the wave [m] and its gradient.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn at(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+        self.distance_gradient(p)
+    }
+}
+
+impl<const D: usize> Kernel<D> for Ripples<D> {
+    #[inline(always)]
+    fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
+        let wave = match &self.waves {
+            Waves::Plane(along) => p.dot_constant(along).sin(),
+            Waves::Product(number) => {
+                let factor = |x: S| (x * S::constant(*number)).sin();
+                p.0.into_iter().map(factor).fold(S::constant(1.0), |wave, x| wave * x)
+            }
+        };
+        wave * S::constant(self.amplitude)
+    }
+
+    fn promise(&self) -> Promise<D> {
+        // All of a product's slopes together are at most that of one: the squares of the
+        // cosines and the products of sines that go with them sum to at most 1.
+        let number = match &self.waves {
+            Waves::Plane(along) => Vector(*along).norm(),
+            Waves::Product(number) => *number,
+        };
+        let steepness = self.amplitude * number * (1.0 + 1e-12);
+        let rounding = palpate_field::Rounding::of_operations(ROUNDINGS * steepness, 0.0);
+        let constant = ROUNDINGS * f64::EPSILON * self.amplitude;
+        let rounding = palpate_field::Rounding { constant, ..rounding };
+        Promise { rounding, ..Promise::lipschitz(None, steepness) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Shape;
+    use palpate_scene::TextureKind;
+
+    use super::*;
+    use crate::cases::cases;
+
+    fn texture(direction: Option<Vec<f64>>) -> Texture {
+        let (amplitude, wavelength) = (0.5, 8.0);
+        let kind = TextureKind::Height;
+        Texture { description: None, kind, amplitude, wavelength, direction }
+    }
+
+    #[test]
+    fn a_quarter_of_a_wave_is_a_crest() {
+        let plane = Ripples::<3>::new(&texture(Some(vec![0.0, 3.0, 0.0]))).unwrap();
+        let (height, slope) = plane.at(Vector([7.0, 2.0, 9.0]));
+        assert!((height - 0.5).abs() < 1e-15 && slope.norm() < 1e-15);
+        let product = Ripples::<2>::new(&texture(None)).unwrap();
+        assert!((product.at(Vector([2.0, -2.0])).0 + 0.5).abs() < 1e-15);
+        assert!(Ripples::<2>::new(&texture(Some(vec![0.0, 3.0, 0.0]))).is_err());
+    }
+
+    #[test]
+    fn no_wave_is_steeper_than_promised() {
+        let product = Ripples::<3>::new(&texture(None)).unwrap();
+        let promised = Shape::from_kernel(product.clone()).promise().lipschitz;
+        cases(500, |u| {
+            let mut unit = || u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 0.02);
+            let p = Vector([unit()?, unit()?, unit()?]);
+            let (_, slope) = product.at(p);
+            assert!(slope.norm() <= promised);
+            let step = Vector([1e-5, -2e-5, 1e-5]);
+            let change = (product.at(p + step).0 - product.at(p - step).0) * 0.5;
+            assert!((change - slope.dot(step)).abs() < 1e-12);
+            Ok(())
+        });
+    }
+}

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Layers by depth: stiffness, damping, friction, and where they give way.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_scene::Material;
+
+use crate::error::{HapticsError, not_negative, positive};
+
+/// Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Friction {
+    /// Greatest tangential over normal force while sticking.
+    pub(crate) fixed: f64,
+    /// Tangential over normal force while slipping.
+    pub(crate) slipping: f64,
+}
+
+/// When a surface gives way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PopThrough {
+    /// The force from which it no longer holds [N].
+    pub(crate) force: f64,
+    /// How far away the hand must be before it holds again [m].
+    pub(crate) distance: f64,
+}
+
+/// What is felt from a depth on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stratum {
+    /// How deep below the surface it begins [m].
+    pub(crate) depth: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: Friction,
+    pub(crate) viscosity: f64,
+    /// When its top gives way.
+    pub(crate) pop_through: Option<PopThrough>,
+}
+
+/// The layers of a material, the outermost first; there is one at least.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Strata {
+    outermost: Stratum,
+    deeper: Box<[Stratum]>,
+}
+
+impl Strata {
+    /// The layers of a material that was checked.
+    pub(crate) fn new(material: &Material) -> Result<Self, HapticsError> {
+        let strata = Self::of(material);
+        let mut above = 0.0;
+        for stratum in strata.all() {
+            not_negative("stiffness", stratum.stiffness, "N/m")?;
+            not_negative("damping", stratum.damping, "N·s/m")?;
+            not_negative("viscosity", stratum.viscosity, "N·s/m")?;
+            not_negative("static_friction", stratum.friction.fixed, "")?;
+            not_negative("dynamic_friction", stratum.friction.slipping, "")?;
+            not_negative("depth of a layer below the one above", stratum.depth - above, "m")?;
+            above = stratum.depth;
+            if let Some(pop) = &stratum.pop_through {
+                positive("pop_through.force", pop.force, "N")?;
+                not_negative("pop_through.distance", pop.distance, "m")?;
+            }
+        }
+        Ok(strata)
+    }
+
+    /// The layers of a material, unchecked: what a layer leaves out is as in the one above.
+    pub(crate) fn of(material: &Material) -> Self {
+        let pop_through = |pop: &Option<palpate_scene::PopThrough>| {
+            pop.as_ref().map(|pop| PopThrough { force: pop.force, distance: pop.distance })
+        };
+        let outermost = Stratum {
+            depth: 0.0,
+            stiffness: material.stiffness,
+            damping: material.damping,
+            friction: Friction {
+                fixed: material.static_friction,
+                slipping: material.dynamic_friction,
+            },
+            viscosity: material.viscosity,
+            pop_through: pop_through(&material.pop_through),
+        };
+        let mut above = outermost;
+        let deeper = material.layers.iter().map(|layer| {
+            above = Stratum {
+                depth: layer.depth,
+                stiffness: layer.stiffness.unwrap_or(above.stiffness),
+                damping: layer.damping.unwrap_or(above.damping),
+                friction: Friction {
+                    fixed: layer.static_friction.unwrap_or(above.friction.fixed),
+                    slipping: layer.dynamic_friction.unwrap_or(above.friction.slipping),
+                },
+                viscosity: layer.viscosity.unwrap_or(above.viscosity),
+                pop_through: pop_through(&layer.pop_through),
+            };
+            above
+        });
+        Self { outermost, deeper: deeper.collect() }
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Stratum> + Clone {
+        std::iter::once(&self.outermost).chain(&self.deeper)
+    }
+
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.outermost.stiffness
+    }
+
+    pub(crate) fn damping(&self) -> f64 {
+        self.outermost.damping
+    }
+
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let scaled = |stratum: &Stratum| Stratum {
+            stiffness: factor * stratum.stiffness,
+            damping: factor * stratum.damping,
+            ..*stratum
+        };
+        Self {
+            outermost: scaled(&self.outermost),
+            deeper: self.deeper.iter().map(scaled).collect(),
+        }
+    }
+
+    /// The layer whose top holds a hand that went through `level` of them; none if that was
+    /// the last.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn top(&self, level: usize) -> Option<&Stratum> {
+        match level.checked_sub(1) {
+            None => Some(&self.outermost),
+            Some(deeper) => self.deeper.get(deeper),
+        }
+    }
+
+    /// The layer at `depth` [m] below the top of layer `level`.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn at(&self, level: usize, depth: f64) -> &Stratum {
+        let top = self.top(level).unwrap_or(&self.outermost);
+        let depth = top.depth + depth;
+        let reached = self.deeper.iter().skip(level).take_while(|layer| layer.depth <= depth);
+        reached.last().unwrap_or(top)
+    }
+
+    /// The force of the springs `depth` [m] below the top of layer `level` [N]: the integral
+    /// of the stiffness.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn force(&self, level: usize, depth: f64) -> f64 {
+        let top = self.top(level).unwrap_or(&self.outermost);
+        let (mut force, mut stiffness, mut from) = (0.0, top.stiffness, 0.0);
+        for layer in self.deeper.iter().skip(level) {
+            let begins = layer.depth - top.depth;
+            if begins >= depth {
+                break;
+            }
+            force += stiffness * (begins - from);
+            (stiffness, from) = (layer.stiffness, begins);
+        }
+        force + stiffness * (depth - from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_scene::Layer;
+
+    use super::*;
+
+    fn layered() -> Strata {
+        let layer = |depth, stiffness| Layer {
+            description: None,
+            depth,
+            stiffness: Some(stiffness),
+            damping: None,
+            static_friction: None,
+            dynamic_friction: None,
+            viscosity: None,
+            pop_through: None,
+        };
+        let layers = vec![layer(0.25, 16.0), layer(0.5, 2.0)];
+        Strata::new(&Material { stiffness: 4.0, layers, ..Material::default() }).unwrap()
+    }
+
+    #[test]
+    fn the_force_is_the_integral_of_the_stiffness() {
+        let strata = layered();
+        for (depth, force) in [(0.0, 0.0), (0.25, 1.0), (0.5, 5.0), (1.5, 7.0)] {
+            assert_eq!(strata.force(0, depth), force);
+        }
+        // From the top of the second layer on.
+        for (depth, force) in [(0.0, 0.0), (0.25, 4.0), (0.5, 4.5)] {
+            assert_eq!(strata.force(1, depth), force);
+        }
+    }
+
+    #[test]
+    fn layers_begin_at_their_depths() {
+        let strata = layered();
+        let stiffness = |level, depth| strata.at(level, depth).stiffness;
+        assert_eq!([0.0, 0.2, 0.25, 0.6].map(|d| stiffness(0, d)), [4.0, 4.0, 16.0, 2.0]);
+        assert_eq!([0.0, 0.2, 0.25].map(|d| stiffness(1, d)), [16.0, 16.0, 2.0]);
+        assert!(strata.top(2).is_some() && strata.top(3).is_none());
+    }
+
+    #[test]
+    fn wrong_numbers_are_named() {
+        let material = Material { viscosity: -1.0, ..Material::default() };
+        let error = Strata::new(&material).unwrap_err();
+        let text = "viscosity must be zero or more and finite, got -1 N·s/m";
+        assert_eq!(error.to_string(), text);
+    }
+}
