@@ -61,6 +61,22 @@ pub(crate) const COLLIDE: &[Bar] = &[
     ("world.1000_bodies.step_ns", 10_000_000.0),
 ];
 
+/// Those of the servo.
+pub(crate) const HAPTICS: &[Bar] = &[
+    ("tick.sphere.p50_ns", 250.0),
+    ("tick.sphere.p99_ns", 500.0),
+    ("tick.S3.p50_ns", 600.0),
+    ("tick.S3.p99_ns", 1500.0),
+    ("tick.union_1000.p50_ns", 1500.0),
+    ("tick.union_1000.p99_ns", 4000.0),
+    ("tick.ten_fingers_S3.p50_ns", 5000.0),
+    ("tick.ten_fingers_S3.p99_ns", 10_000.0),
+    ("tick.24_points_union_1000.p50_ns", 20_000.0),
+    ("tick.24_points_union_1000.p99_ns", 50_000.0),
+    ("tick.tool_1000_points_S3.p50_ns", 60_000.0),
+    ("tick.tool_1000_points_S3.p99_ns", 120_000.0),
+];
+
 /// Rows in the plane, and those in space that they take at most as long as.
 const IN_THE_PLANE: &[(&str, &str)] = &[
     ("segment.hit.P1.ns", "triangle.hit.S1.ns"),

@@ -9,6 +9,7 @@
 mod bars;
 mod collide;
 mod fields;
+mod haptics;
 mod peers;
 mod random;
 mod rounds;
@@ -43,6 +44,12 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// Ticks of the servo.
+    Haptics {
+        /// Print one JSON object of keys and numbers.
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -51,6 +58,7 @@ fn main() -> ExitCode {
         Suite::Collide { json, only } => {
             (collide::measure(only.as_deref()), bars::COLLIDE, only.is_some(), json)
         }
+        Suite::Haptics { json } => (haptics::measure(), bars::HAPTICS, false, json),
     };
     match measured {
         Ok(rows) => {

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a tick of the servo costs.
+//!
+//! Hands go round a scene at 0.1 m/s, nearly straight on, pressed 3 mm below
+//! where a probe of 2 mm rests, with friction. A tick is all contact points from their states
+//! to their forces. Each is timed alone, the clock's own cost included, in five passes over
+//! the same path; what counts of a tick is the fastest pass, since all do the same work.
+
+mod orbit;
+
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
+
+use palpate::field::{Point, Shape, kernel::Ball};
+use palpate::haptics::{
+    Bodies, Body, Material, PointState, Probe, Servo, ServoOptions, Surface,
+};
+
+use crate::fields::Rows;
+use crate::scenes;
+
+/// Ticks of a path: 20 s at 1 kHz.
+const TICKS: usize = 20_000;
+
+/// Ticks before the path, in which the hands land.
+const LANDING: usize = 300;
+
+/// Times that a path is gone.
+const PASSES: usize = 5;
+
+/// The radius of the sphere and of the ball that S3 is scaled to [m].
+const RADIUS: f64 = 0.05;
+
+/// The radius of the probe [m].
+const PROBE: f64 = 0.002;
+
+/// How deep hands press [m].
+const DEPTH: f64 = 0.003;
+
+/// All rows of the suite.
+pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
+    let mut rows = Rows::new();
+    let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
+    let s3 = scenes::spatial()?.into_iter().find(|work| work.name == "S3");
+    let s3 = s3.ok_or("there is no S3")?.shape.scaled(RADIUS)?;
+    let thousand = scenes::thousand()?.shape;
+    ticks("tick.sphere", &sphere, 1, &mut rows)?;
+    ticks("tick.S3", &s3, 1, &mut rows)?;
+    ticks("tick.union_1000", &thousand, 1, &mut rows)?;
+    ticks("tick.ten_fingers_S3", &s3, 10, &mut rows)?;
+    ticks("tick.24_points_union_1000", &thousand, 24, &mut rows)?;
+    Ok(rows)
+}
+
+/// Adds what a tick costs with so many contact points.
+fn ticks(
+    key: &str,
+    shape: &Shape<3>,
+    points: usize,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
+    let paths: Vec<Vec<Point<3>>> =
+        (0..points).map(|hand| orbit::around(shape, hand)).collect();
+    let states: Vec<Vec<PointState<3>>> = (0..LANDING + TICKS)
+        .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
+        .collect();
+    let mut fastest = vec![u64::MAX; TICKS];
+    let (mut evaluations, mut contacts, mut most) = (0_u64, 0_u64, 0);
+    for pass in 0..PASSES {
+        let mut servo = servo(shape, points)?;
+        for (tick, states) in states.iter().enumerate() {
+            let start = Instant::now();
+            let touches = black_box(servo.step(black_box(states)));
+            let nanoseconds = start.elapsed().as_nanos() as u64;
+            let Some(tick) = tick.checked_sub(LANDING) else { continue };
+            fastest[tick] = fastest[tick].min(nanoseconds);
+            if pass == 0 {
+                for touch in touches {
+                    evaluations += u64::from(touch.evaluations);
+                    contacts += u64::from(touch.contact);
+                    most = most.max(touch.evaluations);
+                }
+            }
+        }
+    }
+    fastest.sort_unstable();
+    let at = |part: f64| fastest[((TICKS - 1) as f64 * part) as usize] as f64;
+    let visits = (TICKS * points) as f64;
+    rows.insert(format!("{key}.p50_ns"), at(0.5));
+    rows.insert(format!("{key}.p99_ns"), at(0.99));
+    rows.insert(format!("{key}.max_ns"), at(1.0));
+    rows.insert(format!("{key}.evaluations"), evaluations as f64 / visits);
+    rows.insert(format!("{key}.most_evaluations"), f64::from(most));
+    rows.insert(format!("{key}.contact"), contacts as f64 / visits);
+    Ok(())
+}
+
+/// Where a hand is in a tick, and how fast.
+fn state(path: &[Point<3>], tick: usize) -> PointState<3> {
+    let velocity = (path[tick] - path[tick.saturating_sub(1)]) * 1000.0;
+    PointState { position: path[tick], velocity }
+}
+
+/// A servo of one body with friction.
+fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3>, Box<dyn Error>> {
+    let material = Material {
+        stiffness: 1000.0,
+        static_friction: 0.5,
+        dynamic_friction: 0.3,
+        ..Material::default()
+    };
+    let body = Body::new(shape.clone(), Surface::new(&material)?)?;
+    let probe = Probe::new(PROBE)?;
+    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
+    Ok(Servo::new(Bodies::new(vec![body])?, points, options)?)
+}
