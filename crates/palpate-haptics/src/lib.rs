@@ -67,6 +67,7 @@ mod sampler;
 mod servo;
 mod statistics;
 mod tour;
+pub mod vibrotactile;
 
 pub use clock::{Clock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
