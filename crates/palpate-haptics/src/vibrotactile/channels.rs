@@ -181,6 +181,7 @@ impl<const D: usize> ActuatorArray<D> {
 }
 
 #[cfg(test)]
+#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use palpate_field::Vector;
 

@@ -287,8 +287,8 @@ impl Mapping {
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(super) fn level(value: f64) -> f64 {
-    // `max` ignores NaN.
-    value.max(0.0).min(1.0)
+    // Written so that NaN is nothing.
+    if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
 fn at_most(

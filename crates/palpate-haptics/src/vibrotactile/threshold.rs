@@ -54,9 +54,9 @@ pub fn threshold_db(frequency: f64) -> f64 {
 /// ```
 /// use palpate_haptics::vibrotactile::perceptual_weight;
 ///
-/// // 60 Hz has to be 16 times as strong as 250 Hz.
+/// // 60 Hz has to be 17 times as strong as 250 Hz.
 /// let ratio = perceptual_weight(60.0) / perceptual_weight(250.0);
-/// assert!((ratio - 16.5).abs() < 0.1);
+/// assert!((ratio - 16.7).abs() < 0.05);
 /// ```
 #[must_use]
 pub fn perceptual_weight(frequency: f64) -> f64 {
