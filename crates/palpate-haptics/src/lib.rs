@@ -8,6 +8,10 @@
 //! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
 //! counts, records and reports.
 //!
+//! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
+//! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
+//! into vibration.
+//!
 //! Without hardware, a [`RecordedDevice`] follows a [`HandPath`], recorded or made up by a
 //! [`Tour`] of the shape.
 //!

@@ -158,6 +158,56 @@ impl<const D: usize> ActuatorArray<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at each actuator once.
     pub fn play(&self, point: Point<D>, amplitude: f64, amplitudes: &mut [f64]) {
+        let nearest = self.nearest(point);
+        let [(largest, _), ..] = nearest;
+        for (weight, actuator) in nearest {
+            if weight > 0.0 {
+                raise(amplitudes, actuator, level(amplitude) * (weight / largest));
+            }
+        }
+    }
+
+    /// Plays `amplitude` at `point` [m] as a [`phantom`] between the two nearest actuators within
+    /// reach, at the point of the way between them closest to it; by one alone, if there is no
+    /// second. Raises `amplitudes` as [`play`](Self::play) does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; looks at each actuator once.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_haptics::vibrotactile::ActuatorArray;
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let places = [0.0, 0.25, 0.5].map(|x| Vector([x, 0.0]));
+    /// let sleeve = ActuatorArray::new(places.to_vec(), 0.5)?;
+    /// let mut amplitudes = [0.0; 3];
+    /// sleeve.play_between(Vector([0.3125, 0.125]), 1.0, &mut amplitudes);
+    /// assert_eq!(amplitudes, [0.0, 0.75_f64.sqrt(), 0.5]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn play_between(&self, point: Point<D>, amplitude: f64, amplitudes: &mut [f64]) {
+        let [(weight, first), (other_weight, second), _] = self.nearest(point);
+        if weight <= 0.0 {
+            return;
+        }
+        let places = (self.places.get(first), self.places.get(second));
+        let beta = match places {
+            (Some(from), Some(to)) if other_weight > 0.0 => {
+                let way = *to - *from;
+                (point - *from).dot(way) / way.dot(way)
+            }
+            _ => 0.0,
+        };
+        // Of two at one place, `level` makes the first play alone.
+        let [near, far] = phantom(amplitude, beta);
+        raise(amplitudes, first, near);
+        raise(amplitudes, second, far);
+    }
+
+    /// The weights and numbers of the nearest actuators, nearest first; weight zero for those
+    /// missing or out of reach.
+    fn nearest(&self, point: Point<D>) -> [(f64, usize); NEAREST] {
         // The largest weights so far, and whose they are; of equals the first.
         let mut nearest = [(0.0, usize::MAX); NEAREST];
         for (actuator, place) in self.places.iter().enumerate() {
@@ -169,14 +219,13 @@ impl<const D: usize> ActuatorArray<D> {
                 }
             }
         }
-        let [(largest, _), ..] = nearest;
-        for (weight, actuator) in nearest {
-            if let Some(place) = amplitudes.get_mut(actuator)
-                && weight > 0.0
-            {
-                *place = place.max(level(amplitude) * (weight / largest));
-            }
-        }
+        nearest
+    }
+}
+
+fn raise(amplitudes: &mut [f64], actuator: usize, amplitude: f64) {
+    if let Some(place) = amplitudes.get_mut(actuator) {
+        *place = place.max(amplitude);
     }
 }
 
@@ -246,6 +295,29 @@ mod tests {
             }
             Ok(())
         });
+    }
+
+    #[test]
+    fn a_phantom_moves_from_one_actuator_to_the_next() {
+        let array = ActuatorArray::new(vec![Vector([0.0, 0.0]), Vector([1.0, 0.0])], 2.0);
+        let array = array.unwrap();
+        let at = |x: f64| {
+            let mut amplitudes = [0.0; 2];
+            array.play_between(Vector([x, 0.1]), 1.0, &mut amplitudes);
+            amplitudes
+        };
+        assert_eq!((at(-0.2), at(1.2)), ([1.0, 0.0], [0.0, 1.0]));
+        for step in 0..=10 {
+            let beta = f64::from(step) / 10.0;
+            let [first, second] = at(beta);
+            assert!((first - (1.0 - beta).sqrt()).abs() < 1e-12);
+            assert!((second - beta.sqrt()).abs() < 1e-12);
+        }
+        assert_eq!((at(5.0), at(f64::NAN)), ([0.0; 2], [0.0; 2]));
+        let twins = ActuatorArray::new(vec![Vector([0.0, 0.0]); 2], 2.0).unwrap();
+        let mut amplitudes = [0.0; 2];
+        twins.play_between(Vector([0.5, 0.0]), 0.5, &mut amplitudes);
+        assert_eq!(amplitudes, [0.5, 0.0]);
     }
 
     #[test]
