@@ -86,7 +86,7 @@ const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "membrane",
-        source: "A membrane that gives way at 1.5 N, as a needle goes through it. All numbers are chosen; puncture forces of tissue range from 0.1 to 3 N (Okamura, Simone and O'Leary 2004).",
+        source: "A membrane that gives way at 1.5 N, as a needle goes through it. All numbers are chosen, in the order of the needle forces of Okamura, Simone and O'Leary (2004).",
         material: || Material {
             pop_through: Some(pop_through(1.5)),
             ..contact(500.0, 1.0, (0.3, 0.2))
