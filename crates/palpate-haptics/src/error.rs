@@ -73,6 +73,12 @@ pub enum HapticsError {
     /// A shape cannot be what a surface asks for.
     #[error(transparent)]
     Shape(#[from] palpate_field::ShapeError),
+    /// A guide leads to one target.
+    #[error("a guide needs one target, got {count}")]
+    GuideTargets {
+        /// How many it has.
+        count: usize,
+    },
     /// A tour finds nothing to touch in its box.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,

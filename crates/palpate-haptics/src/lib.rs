@@ -8,6 +8,10 @@
 //! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
 //! counts, records and reports.
 //!
+//! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
+//! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
+//! into vibration.
+//!
 //! Without hardware, a [`RecordedDevice`] follows a [`HandPath`], recorded or made up by a
 //! [`Tour`] of the shape.
 //!
@@ -56,6 +60,7 @@ mod device;
 mod error;
 mod event;
 mod friction;
+mod guide;
 mod half_spaces;
 mod hand_path;
 mod limit;
@@ -72,12 +77,14 @@ mod servo;
 mod statistics;
 mod surface;
 mod tour;
+pub mod vibrotactile;
 
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
 pub use error::HapticsError;
 pub use event::{Event, EventKind, Reaction};
+pub use guide::{Curve, Guide, GuideOptions, Slope};
 pub use hand_path::{HandPath, Interpolation};
 pub use live::Progress;
 pub use nearby::Nearby;

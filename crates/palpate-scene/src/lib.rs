@@ -13,7 +13,7 @@
 //! listed nowhere in this crate: reading, writing and the [`schema`] follow the
 //! catalogue.
 //!
-//! [`Material`], [`Tool`], [`Motion`] and [`View`] are data that other crates
+//! [`Material`], [`Tool`], [`Guide`], [`Motion`] and [`View`] are data that other crates
 //! give a meaning to.
 //!
 //! ```
@@ -41,19 +41,23 @@ mod build;
 mod catalogue;
 mod check;
 mod error;
+mod guide;
 mod json;
 mod material;
 mod motion;
 mod node;
 mod pose;
+mod presets;
 mod problem;
 mod scene;
 mod schema;
 mod tool;
 mod view;
+mod written_material;
 
 pub use build::{BuiltBody, BuiltScene, World};
 pub use error::SceneError;
+pub use guide::{Guide, GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell};
 pub use material::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 pub use motion::{Motion, Repeat};
 pub use node::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Row, Rows};
@@ -62,3 +66,4 @@ pub use scene::{Body, Dimension, Scene};
 pub use schema::{schema, schema_text};
 pub use tool::{Coupling, Tool, Workspace};
 pub use view::{FreePlane, View, ViewPlane};
+pub use written_material::WrittenMaterial;

@@ -13,13 +13,14 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use crate::build::{self, World};
 use crate::error::SceneError;
+use crate::guide::Guide;
 use crate::json::{self, Document};
-use crate::material::Material;
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::pose::WrittenPose;
 use crate::tool::Tool;
 use crate::view::View;
+use crate::written_material::WrittenMaterial;
 
 /// The number of dimensions of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -88,6 +89,9 @@ pub struct Scene {
     /// What touches: the tip of a stylus, fingers, a shape held in the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tool: Option<Tool>,
+    /// What guides the hand in free space.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub guides: Vec<Guide>,
     /// How bodies move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
@@ -111,9 +115,11 @@ pub struct Body {
     /// Where the body is, as `world_from_body`; at the origin if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pose: Option<WrittenPose>,
-    /// What the body feels like; the default material if left out.
+    /// What the body feels like, in numbers or the name of a preset; the default material if
+    /// left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub material: Option<Material>,
+    #[schemars(schema_with = "crate::schema::material")]
+    pub material: Option<WrittenMaterial>,
 }
 
 impl Body {
@@ -134,6 +140,7 @@ impl Scene {
             shapes: IndexMap::new(),
             bodies: Vec::new(),
             tool: None,
+            guides: Vec::new(),
             motions: Vec::new(),
             views: Vec::new(),
         }

@@ -139,6 +139,81 @@ fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {
                 Accepts,
             ),
             (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": "wod" }]"#,
+                "bodies[0].material, line 2: unknown material `wod`, did you mean `wood`?",
+                Refuses,
+            ),
+            (
+                r#""bodies": [{ "name": "b", "shape": "x", "material": 3 }]"#,
+                "bodies[0].material, line 2: material must be an object or the name of a material, got 3",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0, 0], "stiffness": 0 }]"#,
+                "guides[1].stiffness, line 2: stiffness must be positive, got 0 N/m",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0] }]"#,
+                "guides[1].point, line 2: point must have 3 numbers in 3D, got 2",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "damping": 2 }]"#,
+                "guides[1], line 2: a guide needs one of `point`, `line`, `segment`, `plane`, `curve`, `well`",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0, 0], "well": { "center": [0, 0, 0], "reach": 1 } }]"#,
+                "guides[1], line 2: a guide has one target, got `point` and `well`",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "line": { "through": [0, 0, 0], "direction": [0, 0, 0] } }]"#,
+                "guides[1].line.direction, line 2: direction must be a direction, got a vector of length 0",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "plane": { "through": [0, 0, 0] } }]"#,
+                "guides[1].plane, line 2: missing key `normal`",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "segment": { "from": [1, 0, 0], "to": [1, 0, 0] } }]"#,
+                "guides[1].segment.to, line 2: to must not be where the segment begins",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "curve": { "points": [[0, 0, 0]] } }]"#,
+                "guides[1].curve.points, line 2: points must have 2 to 1025 points, got 1",
+                Refuses,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "curve": { "points": [[0, 0, 0], [0, 1, 0], [0, 1, 0]] } }]"#,
+                "guides[1].curve.points[2], line 2: points[2] must not be where the point before it is",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "well": { "center": [0, 0, 0], "reach": 0.004 }, "stiffness": 500 }]"#,
+                "guides[1].well.reach, line 2: reach must be more than max_force / stiffness, 0.004 m, got 0.004 m",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0, 0], "snap_distance": 0.02, "release_distance": 0.01 }]"#,
+                "guides[1].release_distance, line 2: release_distance must be at least the snap distance 0.02 m, got 0.01 m",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0, 0], "release_distance": 0.01 }]"#,
+                "guides[1].release_distance, line 2: release_distance has a meaning only beside `snap_distance`",
+                Accepts,
+            ),
+            (
+                r#""guides": [{ "point": [0, 0, 0], "max_force": 1 }, { "point": [0, 0, 0], "snap": 0.01 }]"#,
+                "guides[1].snap, line 2: unknown key `snap`; known are `description`, `point`, `line`, `segment`, `plane`, `curve`, `well`, `stiffness`, `damping`, `snap_distance`, `release_distance` and `max_force`",
+                Refuses,
+            ),
+            (
                 r#""bodies": [{ "name": "b" }]"#,
                 "bodies[0], line 2: missing key `shape`",
                 Refuses,

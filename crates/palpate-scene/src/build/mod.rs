@@ -71,6 +71,9 @@ where
     let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
         .map_err(|error| Problem::new(error.to_string()).under("bodies"))?;
     let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
+    for (i, guide) in scene.guides.iter().enumerate() {
+        guide.check(D).map_err(|problem| problem.at(i).under("guides"))?;
+    }
     check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
     check_views(scene, D).map_err(|problem| problem.under("views"))?;
     Ok(BuiltScene { bodies, whole, tool })
@@ -103,7 +106,10 @@ where
                 }
                 None => (Pose::identity(), shape_in_body.clone()),
             };
-            let material = body.material.clone().unwrap_or_default();
+            let material = match &body.material {
+                Some(written) => written.known().map_err(|p| p.under("material"))?,
+                None => Material::default(),
+            };
             material.check(D).map_err(|problem| problem.under("material"))?;
             let name = body.name.clone();
             Ok(BuiltBody { name, shape, shape_in_body, world_from_body, material })

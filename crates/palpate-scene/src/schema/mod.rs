@@ -209,3 +209,10 @@ pub(crate) fn plane(generator: &mut SchemaGenerator) -> Schema {
     let free = generator.subschema_for::<crate::view::FreePlane>();
     json_schema!({ "anyOf": [{ "enum": ["xy", "xz", "yz"] }, free] })
 }
+
+/// The schema of a body's material.
+pub(crate) fn material(generator: &mut SchemaGenerator) -> Schema {
+    let own = generator.subschema_for::<crate::material::Material>();
+    let names: Vec<_> = crate::material::Material::preset_names().collect();
+    json_schema!({ "anyOf": [{ "enum": names }, own] })
+}

@@ -6,9 +6,11 @@
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
 use palpate_scene::{
-    Axis, AxisAngle, Body, Boolean, Coupling, Dimension, Factor, Form, FreePlane, Impact,
-    Layer, Magnet, Material, Motion, Node, PopThrough, Profile, Repeat, Row, Rows, Scene,
-    Texture, TextureKind, Tool, View, ViewPlane, Workspace, WrittenPose, WrittenRotation,
+    Axis, AxisAngle, Body, Boolean, Coupling, Dimension, Factor, Form, FreePlane, Guide,
+    GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, Impact, Layer, Magnet,
+    Material, Motion, Node, PopThrough, Profile, Repeat, Row, Rows, Scene, Texture,
+    TextureKind, Tool, View, ViewPlane, Workspace, WrittenMaterial, WrittenPose,
+    WrittenRotation,
 };
 
 /// A primitive of the catalogue with the keys of its parameters in files.
@@ -121,10 +123,19 @@ impl Generator {
             let mut body = Body::new(format!("body {i}"), self.node(u, d, 4, shapes)?);
             body.description = text(u)?;
             body.pose = maybe(u, |u| pose(u, d))?;
-            body.material = maybe(u, |u| material(u, d))?;
+            body.material = maybe(u, |u| {
+                if u.ratio(1, 3)? {
+                    let names: Vec<_> = Material::preset_names().collect();
+                    return Ok(WrittenMaterial::Preset(u.choose(&names)?.to_string()));
+                }
+                material(u, d).map(WrittenMaterial::from)
+            })?;
             scene.bodies.push(body);
         }
         scene.tool = maybe(u, |u| self.tool(u, d, shapes))?;
+        for _ in 0..u.int_in_range(0..=2)? {
+            scene.guides.push(guide(u, d)?);
+        }
         for _ in 0..u.int_in_range(0..=2)? {
             scene.motions.push(motion(u, d)?);
         }
@@ -348,6 +359,48 @@ fn material(u: Random, d: usize) -> Result<Material> {
             })
         })?,
     })
+}
+
+fn guide(u: Random, d: usize) -> Result<Guide> {
+    let direction = |u: Random| Ok(direction::<3>(u)?[..d].to_vec());
+    let (stiffness, max_force) = (length(u)?, length(u)?);
+    let snap_distance = maybe(u, length)?;
+    let mut guide = Guide {
+        description: text(u)?,
+        stiffness,
+        damping: length(u)?,
+        snap_distance,
+        release_distance: snap_distance.map(|snap| 2.0 * snap),
+        max_force,
+        ..Guide::default()
+    };
+    let description = text(u)?;
+    match u.int_in_range(0..=5)? {
+        0 => guide.point = Some(numbers(u, d)?),
+        1 => {
+            let (through, direction) = (numbers(u, d)?, direction(u)?);
+            guide.line = Some(GuideLine { description, through, direction });
+        }
+        2 => {
+            let (from, to) = (numbers(u, d)?, numbers(u, d)?);
+            guide.segment = Some(GuideSegment { description, from, to });
+        }
+        3 => {
+            let (through, normal) = (numbers(u, d)?, direction(u)?);
+            guide.plane = Some(GuidePlane { description, through, normal });
+        }
+        4 => {
+            let count = u.int_in_range(2..=5)?;
+            let points = (0..count).map(|_| numbers(u, d)).collect::<Result<_>>()?;
+            let smooth = u.arbitrary()?;
+            guide.curve = Some(GuideCurve { description, points, smooth });
+        }
+        _ => {
+            let reach = 1.5 * max_force / stiffness;
+            guide.well = Some(GuideWell { description, center: numbers(u, d)?, reach });
+        }
+    }
+    Ok(guide)
 }
 
 fn motion(u: Random, d: usize) -> Result<Motion> {

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A curve as short straight segments, and the closest point of it in bounded time.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use super::finite;
+use super::target::Closest;
+use crate::error::HapticsError;
+
+/// The most segments of a curve: what a tick has time for if no group can be skipped.
+const MOST_SEGMENTS: usize = 1024;
+
+/// Segments with a common ball: fewer make more balls to ask, more make them larger.
+const GROUP: usize = 16;
+
+/// Segments from one point of a smooth curve to the next.
+const PIECES: usize = 16;
+
+/// A curve through points: straight from each to the next, or smooth.
+///
+/// Between two neighbours the closest point moves continuously with the hand, except where the
+/// hand is equally far from two parts of the curve: there it changes sides.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_haptics::{Curve, Guide, GuideOptions};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let corner = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+/// let mut guide = Guide::along_curve(Curve::polyline(&corner)?, GuideOptions::default())?;
+/// let force = guide.force(Vector([0.5, 0.00390625]), Vector([0.25, 0.0]));
+/// assert_eq!(force, Vector([0.0, -1.171875])); // 300/256 N
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Curve<const D: usize> {
+    segments: Vec<Segment<D>>,
+    /// Centre and radius of a ball around each [`GROUP`] of segments.
+    balls: Vec<(Point<D>, f64)>,
+    deviation: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Segment<const D: usize> {
+    from: Point<D>,
+    tangent: Vector<f64, D>,
+    length: f64,
+}
+
+impl<const D: usize> Curve<D> {
+    /// Straight from each point to the next [m]; points that repeat their predecessor are
+    /// left out.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::TooFewSamples`] without two different points;
+    /// [`HapticsError::Number`] with more than 1025, or if a coordinate is not finite.
+    pub fn polyline(points: &[Point<D>]) -> Result<Self, HapticsError> {
+        if points.len() > MOST_SEGMENTS + 1 {
+            return Err(too_many(points.len(), "at most 1025"));
+        }
+        for point in points {
+            finite("points", *point)?;
+        }
+        let pairs = points.iter().zip(points.iter().skip(1));
+        let segments: Vec<_> = pairs
+            .filter_map(|(from, to)| {
+                let way = *to - *from;
+                let tangent = way.normalized()?;
+                Some(Segment { from: *from, tangent, length: way.norm() })
+            })
+            .collect();
+        if segments.is_empty() {
+            return Err(HapticsError::TooFewSamples { count: points.len().min(1) });
+        }
+        let balls = segments.chunks(GROUP).map(ball_around).collect();
+        Ok(Self { segments, balls, deviation: 0.0 })
+    }
+
+    /// Smoothly through the points [m], by the cubics of Catmull and Rom, "A class of local
+    /// interpolating splines" (1974): at each point the tangent is that from the one before to
+    /// the one after, at the ends that to the neighbour.
+    ///
+    /// Each cubic is kept as 16 straight pieces: see [`deviation`](Self::deviation).
+    ///
+    /// # Errors
+    ///
+    /// As [`polyline`](Self::polyline), with more than 65 points.
+    pub fn smooth(points: &[Point<D>]) -> Result<Self, HapticsError> {
+        if points.len() > MOST_SEGMENTS / PIECES + 1 {
+            return Err(too_many(points.len(), "at most 65"));
+        }
+        let at = |i: usize| points.get(i).copied();
+        let mut path: Vec<_> = at(0).into_iter().collect();
+        let mut deviation: f64 = 0.0;
+        for i in 1..points.len() {
+            let (Some(from), Some(to)) = (at(i - 1), at(i)) else { break };
+            let before = i.checked_sub(2).and_then(at).unwrap_or(from);
+            let after = at(i + 1).unwrap_or(to);
+            let (leave, arrive) = ((to - before) * 0.5, (after - from) * 0.5);
+            let way = to - from;
+            for piece in 1..=PIECES {
+                let t = piece as f64 / PIECES as f64;
+                // Hermite's basis.
+                let step = t * t * (3.0 - 2.0 * t);
+                let (rise, fall) = (t * (1.0 - t) * (1.0 - t), t * t * (t - 1.0));
+                path.push(if piece == PIECES {
+                    to
+                } else {
+                    from + way * step + leave * rise + arrive * fall
+                });
+            }
+            // The second derivative is linear in t, so largest at an end; a chord over a step h
+            // is within h²/8 of it.
+            let bends = [
+                way * 6.0 - leave * 4.0 - arrive * 2.0,
+                way * -6.0 + leave * 2.0 + arrive * 4.0,
+            ];
+            let bend = bends.iter().map(|bend| bend.norm()).fold(0.0, f64::max);
+            deviation = deviation.max(bend / (8 * PIECES * PIECES) as f64);
+        }
+        let polyline = Self::polyline(&path)?;
+        Ok(Self { deviation, ..polyline })
+    }
+
+    /// How far the curve is at most from the smooth one it stands for [m]; zero for a polyline.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// The closest point; of equally close ones the first along the curve.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; looks at 64 balls and 1024
+    /// segments at most.
+    pub(super) fn closest(&self, position: Point<D>) -> Closest<D> {
+        let mut best = (f64::INFINITY, Closest::on_curve(position, None));
+        let last = self.segments.len() - 1;
+        let groups = self.segments.chunks(GROUP).zip(&self.balls).enumerate();
+        for (group, (segments, (centre, radius))) in groups {
+            if (*centre - position).norm() - radius > best.0 {
+                continue;
+            }
+            for (i, segment) in segments.iter().enumerate() {
+                let i = group * GROUP + i;
+                let wanted = (position - segment.from).dot(segment.tangent);
+                let along = wanted.clamp(0.0, segment.length);
+                let point = segment.from + segment.tangent * along;
+                let distance = (point - position).norm();
+                if distance < best.0 {
+                    let at_end =
+                        (i == 0 && wanted < 0.0) || (i == last && wanted > segment.length);
+                    let tangent = (!at_end).then_some(segment.tangent);
+                    best = (distance, Closest::on_curve(point, tangent));
+                }
+            }
+        }
+        best.1
+    }
+}
+
+fn too_many(count: usize, rule: &'static str) -> HapticsError {
+    HapticsError::Number { parameter: "points", rule, value: count as f64, unit: "points" }
+}
+
+/// A ball around segments that follow one another.
+fn ball_around<const D: usize>(segments: &[Segment<D>]) -> (Point<D>, f64) {
+    let ends = || segments.iter().flat_map(|s| [s.from, s.from + s.tangent * s.length]);
+    let mut centre = Vector::ZERO;
+    for end in ends() {
+        centre += end * (0.5 / segments.len() as f64);
+    }
+    let radius = ends().map(|end| (end - centre).norm()).fold(0.0, f64::max);
+    // Rounding must not let a ball miss what it holds.
+    (centre, radius * (1.0 + 1e-12) + 1e-12 * centre.norm())
+}

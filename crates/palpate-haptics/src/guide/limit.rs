@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The limit on a guide's force, which keeps it passive.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+use crate::limit::limited;
+
+/// The two parts of a force [N].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion<const D: usize> {
+    /// What depends on the position alone.
+    pub(super) spring: Vector<f64, D>,
+    /// What takes energy from the motion.
+    pub(super) damper: Vector<f64, D>,
+}
+
+/// The sum of both, at most `max_force`: the spring limited on its own, then as much of the
+/// damper as there is room for.
+///
+/// Shortening the sum instead would let the speed decide how much of the spring is felt: pressed
+/// in slowly and let out fast, it would give back more than it took.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(super) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vector<f64, D> {
+    let spring = limited(motion.spring, max_force);
+    let damper = motion.damper;
+    let whole = spring + damper;
+    if whole.norm() <= max_force {
+        return whole;
+    }
+    // The larger root of ‖spring + λ damper‖² = max_force².
+    let (a, b) = (damper.dot(damper), spring.dot(damper));
+    let room = (max_force * max_force - spring.dot(spring)).max(0.0);
+    let part = ((b * b + a * room).sqrt() - b) / a;
+    // Written so that NaN, of huge numbers, leaves the damper out; the second limit is rounding.
+    let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+    limited(spring + damper * part, max_force)
+}

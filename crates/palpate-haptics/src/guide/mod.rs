@@ -1,0 +1,335 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Forces in free space: virtual fixtures that a hand follows, wells and slopes that draw it.
+//!
+//! Rosenberg, "Virtual fixtures: perceptual tools for telerobotic manipulation" (1993), who
+//! likens them to a ruler under a pencil.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod curve;
+mod from_data;
+mod limit;
+mod slope;
+mod target;
+mod well;
+
+use palpate_field::{Point, Vector};
+
+use crate::error::{HapticsError, not_negative, positive};
+pub use curve::Curve;
+use limit::{Motion, damped};
+pub use slope::Slope;
+use target::Target;
+
+/// How strongly a guide holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuideOptions {
+    /// Force for each metre off the guide [N/m]; positive.
+    pub stiffness: f64,
+    /// Force for each metre per second off the guide [N·s/m]; zero or more.
+    pub damping: f64,
+    /// How near the hand must come before the guide takes hold [m]; infinite for always.
+    pub snap_distance: f64,
+    /// How far it must be pulled before it lets go [m], not below the snap distance; none for
+    /// the snap distance itself.
+    pub release_distance: Option<f64>,
+    /// The largest force [N]; infinite for none.
+    pub max_force: f64,
+}
+
+impl Default for GuideOptions {
+    /// 300 N/m and 1 N·s/m at any distance, at most 2 N: firm to a finger, and passed with
+    /// intent.
+    fn default() -> Self {
+        Self {
+            stiffness: 300.0,
+            damping: 1.0,
+            snap_distance: f64::INFINITY,
+            release_distance: None,
+            max_force: 2.0,
+        }
+    }
+}
+
+impl GuideOptions {
+    fn checked(self) -> Result<Self, HapticsError> {
+        positive("stiffness", self.stiffness, "N/m")?;
+        not_negative("damping", self.damping, "N·s/m")?;
+        positive_or_infinite("snap_distance", self.snap_distance, "m")?;
+        positive_or_infinite("max_force", self.max_force, "N")?;
+        // Written so that NaN fails.
+        if self.release() >= self.snap_distance {
+            return Ok(self);
+        }
+        let (parameter, rule) = ("release_distance", "at least the snap distance");
+        Err(HapticsError::Number { parameter, rule, value: self.release(), unit: "m" })
+    }
+
+    fn release(&self) -> f64 {
+        self.release_distance.unwrap_or(self.snap_distance)
+    }
+}
+
+fn positive_or_infinite(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<(), HapticsError> {
+    if value > 0.0 {
+        return Ok(());
+    }
+    Err(HapticsError::Number { parameter, rule: "positive", value, unit })
+}
+
+/// Refuses a point that is not finite.
+fn finite<const D: usize>(
+    parameter: &'static str,
+    point: Point<D>,
+) -> Result<Point<D>, HapticsError> {
+    match point.0.iter().find(|x| !x.is_finite()) {
+        None => Ok(point),
+        Some(value) => {
+            let (rule, unit) = ("finite", "m");
+            Err(HapticsError::Number { parameter, rule, value: *value, unit })
+        }
+    }
+}
+
+/// The unit vector along `direction`; refused if it has none.
+fn unit<const D: usize>(
+    parameter: &'static str,
+    direction: Vector<f64, D>,
+) -> Result<Vector<f64, D>, HapticsError> {
+    direction.normalized().ok_or(HapticsError::Number {
+        parameter,
+        rule: "a finite direction",
+        value: direction.norm(),
+        unit: "long",
+    })
+}
+
+/// A force that guides a hand: towards a point, line, plane or curve, into a well, or down a
+/// field.
+///
+/// Towards the closest point c of its target, with the hand at x moving at v,
+///
+/// ```text
+/// F = min(K, F_max / ‖c − x‖) (c − x) − λ B P v
+/// ```
+///
+/// where P drops what of the motion the target leaves free: nothing at a point and at the ends
+/// of a segment or curve, along a line all that is along it. The spring alone is never more than
+/// the largest force, and λ ≤ 1 is the largest for which the whole is not. So the spring gives
+/// back what was put in, and the damper, `−λ B P v · v ≤ 0`, only takes.
+///
+/// The spring is continuous in the position wherever the closest point is, and zero on the
+/// target. A guide that snaps is not continuous where it takes hold and lets go: the force jumps
+/// by at most `min(K d, F_max)` there, and since it lets go no nearer than it took hold, what the
+/// hand gains by the one it pays back by the other.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_haptics::{Guide, GuideOptions};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let options = GuideOptions { stiffness: 256.0, damping: 2.0, ..GuideOptions::default() };
+/// let ruler = Vector([1.0, 0.0]);
+/// let mut guide = Guide::along_line(Vector::ZERO, ruler, options)?;
+///
+/// // 1/256 m above the line, sliding along it and rising.
+/// let force = guide.force(Vector([3.0, 0.00390625]), Vector([0.5, 0.25]));
+/// assert_eq!(force, Vector([0.0, -1.5]));
+/// // Never more than the largest force.
+/// assert_eq!(guide.force(Vector([0.0, 1.0]), Vector::ZERO), Vector([0.0, -2.0]));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Guide<const D: usize> {
+    kind: Kind<D>,
+    options: GuideOptions,
+    engaged: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Kind<const D: usize> {
+    Target(Target<D>),
+    Well(well::Well<D>),
+    Slope(Slope<D>),
+}
+
+impl<const D: usize> Guide<D> {
+    /// Towards `point` [m].
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if an option is outside its range or a coordinate not finite; so
+    /// it is of every guide.
+    pub fn to_point(point: Point<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+        Self::of(Kind::Target(Target::Point(finite("point", point)?)), options)
+    }
+
+    /// Towards the line through the point `through` [m] along `direction`, of any length but
+    /// zero.
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point), and without a direction.
+    pub fn along_line(
+        through: Point<D>,
+        direction: Vector<f64, D>,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        let through = finite("through", through)?;
+        let direction = unit("direction", direction)?;
+        Self::of(Kind::Target(Target::Line { through, direction }), options)
+    }
+
+    /// Towards the straight way from `from` to `to` [m].
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point), and if the ends are one.
+    pub fn along_segment(
+        from: Point<D>,
+        to: Point<D>,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        Self::along_curve(Curve::polyline(&[from, to])?, options)
+    }
+
+    /// Towards the plane, in 2D the line, through `through` [m] with the `normal`, of any length
+    /// but zero.
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point), and without a normal.
+    pub fn on_plane(
+        through: Point<D>,
+        normal: Vector<f64, D>,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        let (through, normal) = (finite("through", through)?, unit("normal", normal)?);
+        Self::of(Kind::Target(Target::Plane { through, normal }), options)
+    }
+
+    /// Towards `curve`.
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point).
+    pub fn along_curve(curve: Curve<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+        Self::of(Kind::Target(Target::Curve(curve)), options)
+    }
+
+    /// Towards `centre` [m] from within `reach` [m]: the pull rises by the stiffness to the
+    /// largest force, and from there falls evenly to nothing at the reach.
+    ///
+    /// Continuous everywhere; a central force, which gives and takes nothing over a closed path.
+    /// Its damper is against all motion, at full strength up to the largest force, and falls with
+    /// the pull beyond. Snap and release distances mean nothing to it.
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point), and if the largest force is not finite or the reach not
+    /// beyond where the pull is largest, `max_force / stiffness`.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_haptics::{Guide, GuideOptions};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let options = GuideOptions { stiffness: 128.0, ..GuideOptions::default() };
+    /// let mut well = Guide::well(Vector::ZERO, 0.046875, options)?;
+    /// let mut pull = |x: f64| well.force(Vector([x, 0.0]), Vector::ZERO)[0];
+    /// assert_eq!(pull(0.0078125), -1.0); // half way to 1/64 m
+    /// assert_eq!(pull(0.015625), -2.0);
+    /// assert_eq!(pull(0.03125), -1.0); // half way from there to the reach, 3/64 m
+    /// assert_eq!(pull(0.046875), 0.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn well(
+        centre: Point<D>,
+        reach: f64,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        let options = options.checked()?;
+        Self::of(Kind::Well(well::Well::new(centre, reach, &options)?), options)
+    }
+
+    /// Down the field of `shape` within a band of distances: see [`Slope`].
+    ///
+    /// Of the options it uses damping and largest force alone.
+    ///
+    /// # Errors
+    ///
+    /// As [`to_point`](Self::to_point).
+    pub fn down(slope: Slope<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+        Self::of(Kind::Slope(slope), options)
+    }
+
+    fn of(kind: Kind<D>, options: GuideOptions) -> Result<Self, HapticsError> {
+        Ok(Self { kind, options: options.checked()?, engaged: false })
+    }
+
+    /// How strongly it holds.
+    #[must_use]
+    pub fn options(&self) -> &GuideOptions {
+        &self.options
+    }
+
+    /// `true` if it held the hand in the last tick; a well or slope, if it has a force there.
+    #[must_use]
+    pub fn is_engaged(&self) -> bool {
+        self.engaged
+    }
+
+    /// The force on a hand at `position` [m] that moves at `velocity` [m/s], in the world [N]:
+    /// finite, at most the largest force; zero for numbers that are not finite, which let go.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does. A
+    /// curve costs at most 1024 segments, a slope one evaluation of its shape.
+    pub fn force(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
+        let Some(motion) = self.motion(position, velocity) else {
+            self.engaged = false;
+            return Vector::ZERO;
+        };
+        self.engaged = true;
+        let force = damped(&motion, self.options.max_force);
+        if force.is_finite() { force } else { Vector::ZERO }
+    }
+
+    /// Spring and damper, without the limit; none where the guide does not hold.
+    fn motion(&self, position: Point<D>, velocity: Vector<f64, D>) -> Option<Motion<D>> {
+        if !position.is_finite() || !velocity.is_finite() {
+            return None;
+        }
+        let GuideOptions { stiffness, damping, .. } = self.options;
+        match &self.kind {
+            Kind::Target(target) => {
+                let closest = target.closest(position);
+                let off = closest.point - position;
+                let o = &self.options;
+                let hold = if self.engaged { o.release() } else { o.snap_distance };
+                // Written so that NaN lets go.
+                let holds = off.norm() <= hold;
+                let damper = closest.constrained(velocity) * -damping;
+                holds.then(|| Motion { spring: off * stiffness, damper })
+            }
+            Kind::Well(well) => well.pull(position).map(|(pull, fade)| Motion {
+                spring: pull,
+                damper: velocity * (-damping * fade),
+            }),
+            Kind::Slope(slope) => slope.motion(position, velocity, damping),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
+mod tests;

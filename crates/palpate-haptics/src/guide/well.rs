@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A pull towards a centre that ends.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use super::{GuideOptions, finite};
+use crate::error::{HapticsError, positive};
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Well<const D: usize> {
+    centre: Point<D>,
+    /// Where the pull is largest [m].
+    inner: f64,
+    /// Where it ends [m].
+    reach: f64,
+    /// The largest pull [N].
+    max_force: f64,
+}
+
+impl<const D: usize> Well<D> {
+    pub(super) fn new(
+        centre: Point<D>,
+        reach: f64,
+        options: &GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        let max_force = positive("max_force", options.max_force, "N")?;
+        let inner = max_force / options.stiffness;
+        let reach = positive("reach", reach, "m")?;
+        if reach > inner {
+            return Ok(Self { centre: finite("centre", centre)?, inner, reach, max_force });
+        }
+        let (parameter, rule) = ("reach", "more than max_force / stiffness");
+        Err(HapticsError::Number { parameter, rule, value: reach, unit: "m" })
+    }
+
+    /// The pull at `position` [N], and the part of the damper that acts there; none beyond the
+    /// reach.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn pull(&self, position: Point<D>) -> Option<(Vector<f64, D>, f64)> {
+        let inward = self.centre - position;
+        let distance = inward.norm();
+        if distance <= self.inner {
+            return Some((inward * (self.max_force / self.inner), 1.0));
+        }
+        // Written so that NaN is beyond.
+        if distance < self.reach {
+            let fade = (self.reach - distance) / (self.reach - self.inner);
+            return Some((inward * (self.max_force * fade / distance), fade));
+        }
+        None
+    }
+}

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Taps ring down: what an actuator plays from tick to tick.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use super::cue::{Sensation, Tap, Tone};
+use crate::error::{HapticsError, positive};
+
+/// The amplitude below which a tap is over: a tenth of the threshold at 250 Hz, where the skin
+/// is most sensitive. Larger, and its end could be felt; smaller, and it rings on for nothing.
+const SILENT: f64 = 5e-4;
+
+/// The longest a tap rings [s], whatever its decay: nothing gets stuck.
+const LONGEST: f64 = 1.0;
+
+/// A tap on its way down, in steps of fixed length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ringing {
+    tap: Tap,
+    /// What is left of the amplitude after a step.
+    remainder: f64,
+    steps_left: f64,
+    rate: f64,
+}
+
+impl Ringing {
+    /// Silence, in `rate` steps a second.
+    pub(super) fn new(rate: f64) -> Self {
+        let tap = Tap { amplitude: 0.0, frequency: 0.0, decay: 0.0 };
+        Self { tap, remainder: 0.0, steps_left: 0.0, rate }
+    }
+
+    /// Begins `tap`, unless what rings is stronger.
+    pub(super) fn strike(&mut self, tap: Tap) {
+        if tap.amplitude > self.tap.amplitude {
+            self.tap = tap;
+            self.remainder = libm::exp(-tap.decay / self.rate);
+            self.steps_left = LONGEST * self.rate;
+        }
+    }
+
+    /// What rings in this step.
+    pub(super) fn next(&mut self) -> Tap {
+        let now = self.tap;
+        self.steps_left -= 1.0;
+        let left = now.amplitude * self.remainder;
+        let goes_on = left >= SILENT && self.steps_left > 0.0;
+        self.tap.amplitude = if goes_on { left } else { 0.0 };
+        now
+    }
+}
+
+/// What an actuator plays in a tick, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tones {
+    /// The pressure that holds.
+    pub hold: Tone,
+    /// The texture that passes.
+    pub slide: Tone,
+    /// The tap that rings.
+    pub tap: Tone,
+    /// Its rate of decay [1/s].
+    pub tap_decay: f64,
+}
+
+/// Lets the taps of one contact point ring down at the servo's rate.
+///
+/// A tap is replaced by a stronger one; it ends at a 2000th of full amplitude, or after one
+/// second.
+///
+/// ```
+/// use palpate_haptics::vibrotactile::{Sensation, Tap, Voice};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let mut voice = Voice::new(1000.0)?;
+/// let tap = Tap { amplitude: 0.5, frequency: 200.0, decay: 100.0 };
+/// voice.step(&Sensation { tap: Some(tap), ..Sensation::default() });
+/// for _ in 0..9 {
+///     voice.step(&Sensation::default());
+/// }
+/// // After 10 ms of a decay of 100/s.
+/// let tones = voice.step(&Sensation::default());
+/// assert!((tones.tap.amplitude - 0.5 * (-1.0_f64).exp()).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Voice {
+    ringing: Ringing,
+}
+
+impl Voice {
+    /// A voice that is asked `rate` times a second [Hz].
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the rate is not positive.
+    pub fn new(rate: f64) -> Result<Self, HapticsError> {
+        Ok(Self { ringing: Ringing::new(positive("rate", rate, "Hz")?) })
+    }
+
+    /// One tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn step(&mut self, sensation: &Sensation) -> Tones {
+        if let Some(tap) = sensation.tap {
+            self.ringing.strike(tap);
+        }
+        let Tap { amplitude, frequency, decay } = self.ringing.next();
+        let tap = Tone { frequency, amplitude };
+        Tones { hold: sensation.hold, slide: sensation.slide, tap, tap_decay: decay }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn struck(amplitude: f64, decay: f64) -> Sensation {
+        let tap = Some(Tap { amplitude, frequency: 100.0, decay });
+        Sensation { tap, ..Sensation::default() }
+    }
+
+    #[test]
+    fn a_weaker_tap_does_not_end_a_stronger_one() {
+        let mut voice = Voice::new(1000.0).unwrap();
+        voice.step(&struck(0.8, 10.0));
+        let tones = voice.step(&struck(0.1, 500.0));
+        assert!((tones.tap.amplitude - 0.8 * (-0.01_f64).exp()).abs() < 1e-12);
+        assert_eq!(voice.step(&struck(1.0, 10.0)).tap.amplitude, 1.0);
+    }
+
+    #[test]
+    fn every_tap_ends() {
+        for decay in [0.0, 1e-3, 50.0, 1e9, f64::INFINITY] {
+            let mut voice = Voice::new(1000.0).unwrap();
+            assert_eq!(voice.step(&struck(1.0, decay)).tap.amplitude, 1.0);
+            let last = (0..1000).map(|_| voice.step(&Sensation::default())).last();
+            assert_eq!(last.unwrap().tap.amplitude, 0.0, "decay {decay}");
+        }
+    }
+}

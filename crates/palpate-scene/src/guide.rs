@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What guides the hand in free space.
+
+use palpate_field::LARGEST_LENGTH;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{at_least, positive, positive_if};
+use crate::pose::{direction, position};
+use crate::problem::Problem;
+use crate::schema::VectorSchema;
+
+/// A force that guides the hand: towards a point, a line, a plane or a curve, or into a well.
+///
+/// It has one of `point`, `line`, `segment`, `plane`, `curve` and `well`; all in the world.
+///
+/// ```
+/// use palpate_scene::Guide;
+///
+/// # fn main() -> Result<(), serde_json::Error> {
+/// let ruler: Guide = serde_json::from_str(
+///     r#"{ "line": { "through": [0, 0.1, 0], "direction": [1, 0, 0] }, "snap_distance": 0.01 }"#,
+/// )?;
+/// assert_eq!((ruler.stiffness, ruler.max_force), (300.0, 2.0));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, expecting = "an object")]
+#[schemars(extend("oneOf" = [
+    { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
+    { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
+]))]
+pub struct Guide {
+    /// What it is for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Towards this point [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<VectorSchema>")]
+    pub point: Option<Vec<f64>>,
+    /// Towards a line without ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<GuideLine>,
+    /// Towards the straight way between two points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment: Option<GuideSegment>,
+    /// Towards a plane; in 2D a line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<GuidePlane>,
+    /// Towards a curve.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curve: Option<GuideCurve>,
+    /// Towards a centre, from near it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub well: Option<GuideWell>,
+    /// Force for each metre off the guide [N/m]; 300 if left out.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: f64,
+    /// Force for each metre per second off the guide [N·s/m]; 1 if left out.
+    #[schemars(range(min = 0.0))]
+    pub damping: f64,
+    /// How near the hand must come before the guide takes hold [m]; any distance if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub snap_distance: Option<f64>,
+    /// How far the hand must be pulled before the guide lets go [m], at least the snap
+    /// distance; that if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub release_distance: Option<f64>,
+    /// The greatest force [N]; 2 if left out.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub max_force: f64,
+}
+
+impl Default for Guide {
+    fn default() -> Self {
+        Self {
+            description: None,
+            point: None,
+            line: None,
+            segment: None,
+            plane: None,
+            curve: None,
+            well: None,
+            stiffness: 300.0,
+            damping: 1.0,
+            snap_distance: None,
+            release_distance: None,
+            max_force: 2.0,
+        }
+    }
+}
+
+/// A line without ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct GuideLine {
+    /// What it is meant to be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// A point of it [m].
+    #[schemars(with = "VectorSchema")]
+    pub through: Vec<f64>,
+    /// Its direction, of any length but zero.
+    #[schemars(with = "VectorSchema")]
+    pub direction: Vec<f64>,
+}
+
+/// The straight way between two points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct GuideSegment {
+    /// What it is meant to be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Where it begins [m].
+    #[schemars(with = "VectorSchema")]
+    pub from: Vec<f64>,
+    /// Where it ends [m].
+    #[schemars(with = "VectorSchema")]
+    pub to: Vec<f64>,
+}
+
+/// A plane; in 2D a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct GuidePlane {
+    /// What it is meant to be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// A point of it [m].
+    #[schemars(with = "VectorSchema")]
+    pub through: Vec<f64>,
+    /// Its normal, of any length but zero.
+    #[schemars(with = "VectorSchema")]
+    pub normal: Vec<f64>,
+}
+
+/// A curve through points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct GuideCurve {
+    /// What it is meant to be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// The points, in order [m]; each unlike the one before, at most 1025, or 65 if smooth.
+    #[schemars(with = "Vec<VectorSchema>", length(min = 2, max = 1025))]
+    pub points: Vec<Vec<f64>>,
+    /// Smooth through the points (Catmull and Rom 1974) instead of straight between them.
+    #[serde(default, skip_serializing_if = "crate::check::is_default")]
+    pub smooth: bool,
+}
+
+/// A pull towards a centre that rises to the greatest force and falls to nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+pub struct GuideWell {
+    /// What it is meant to be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Its centre [m].
+    #[schemars(with = "VectorSchema")]
+    pub center: Vec<f64>,
+    /// How far it reaches [m]: farther than `max_force / stiffness`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub reach: f64,
+}
+
+impl Guide {
+    /// What is wrong with the numbers, in a scene of `dimension`.
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
+        positive("stiffness", self.stiffness, "N/m")?;
+        at_least("damping", self.damping, 0.0, "N·s/m")?;
+        positive_if("snap_distance", self.snap_distance, "m")?;
+        positive_if("release_distance", self.release_distance, "m")?;
+        positive("max_force", self.max_force, "N")?;
+        self.check_release()?;
+        self.check_one_target()?;
+        if let Some(point) = &self.point {
+            position(point, dimension).map_err(|problem| problem.under("point"))?;
+        }
+        if let Some(line) = &self.line {
+            check_straight((&line.through, "direction", &line.direction), dimension)
+                .map_err(|problem| problem.under("line"))?;
+        }
+        if let Some(plane) = &self.plane {
+            check_straight((&plane.through, "normal", &plane.normal), dimension)
+                .map_err(|problem| problem.under("plane"))?;
+        }
+        if let Some(segment) = &self.segment {
+            segment.check(dimension).map_err(|problem| problem.under("segment"))?;
+        }
+        if let Some(curve) = &self.curve {
+            curve.check(dimension).map_err(|problem| problem.under("curve"))?;
+        }
+        if let Some(well) = &self.well {
+            self.check_well(well, dimension).map_err(|problem| problem.under("well"))?;
+        }
+        Ok(())
+    }
+
+    fn check_release(&self) -> Result<(), Problem> {
+        let Some(release) = self.release_distance else { return Ok(()) };
+        let message = match self.snap_distance {
+            Some(snap) if release >= snap => return Ok(()),
+            Some(snap) => {
+                format!("must be at least the snap distance {snap} m, got {release} m")
+            }
+            None => "has a meaning only beside `snap_distance`".to_owned(),
+        };
+        Err(Problem::about(message).under("release_distance"))
+    }
+
+    fn check_one_target(&self) -> Result<(), Problem> {
+        let targets = [
+            ("point", self.point.is_some()),
+            ("line", self.line.is_some()),
+            ("segment", self.segment.is_some()),
+            ("plane", self.plane.is_some()),
+            ("curve", self.curve.is_some()),
+            ("well", self.well.is_some()),
+        ];
+        let mut given = targets.iter().filter(|(_, is_given)| *is_given);
+        let message = match (given.next(), given.next()) {
+            (Some(_), None) => return Ok(()),
+            (Some((first, _)), Some((second, _))) => {
+                format!("a guide has one target, got `{first}` and `{second}`")
+            }
+            (None, _) => {
+                let names = targets.map(|(name, _)| format!("`{name}`")).join(", ");
+                format!("a guide needs one of {names}")
+            }
+        };
+        Err(Problem::new(message))
+    }
+
+    fn check_well(&self, well: &GuideWell, dimension: usize) -> Result<(), Problem> {
+        position(&well.center, dimension).map_err(|problem| problem.under("center"))?;
+        let inner = self.max_force / self.stiffness;
+        // Written so that NaN is refused.
+        if well.reach > inner && well.reach <= LARGEST_LENGTH {
+            return Ok(());
+        }
+        let reach = well.reach;
+        let message =
+            format!("must be more than max_force / stiffness, {inner} m, got {reach} m");
+        Err(Problem::about(message).under("reach"))
+    }
+}
+
+/// Checks a point and a direction, which has a name of its own.
+fn check_straight(
+    (through, key, along): (&[f64], &str, &[f64]),
+    dimension: usize,
+) -> Result<(), Problem> {
+    position(through, dimension).map_err(|problem| problem.under("through"))?;
+    direction(along, dimension).map_err(|problem| problem.under(key))
+}
+
+impl GuideSegment {
+    fn check(&self, dimension: usize) -> Result<(), Problem> {
+        position(&self.from, dimension).map_err(|problem| problem.under("from"))?;
+        position(&self.to, dimension).map_err(|problem| problem.under("to"))?;
+        if differ(&self.from, &self.to) {
+            return Ok(());
+        }
+        Err(Problem::about("must not be where the segment begins").under("to"))
+    }
+}
+
+impl GuideCurve {
+    fn check(&self, dimension: usize) -> Result<(), Problem> {
+        let most = if self.smooth { 65 } else { 1025 };
+        let count = self.points.len();
+        if !(2..=most).contains(&count) {
+            let message = format!("must have 2 to {most} points, got {count}");
+            return Err(Problem::about(message).under("points"));
+        }
+        for (i, point) in self.points.iter().enumerate() {
+            position(point, dimension).map_err(|problem| problem.at(i).under("points"))?;
+        }
+        for (i, pair) in self.points.windows(2).enumerate() {
+            if let [before, point] = pair
+                && !differ(before, point)
+            {
+                let message = "must not be where the point before it is";
+                return Err(Problem::about(message).at(i + 1).under("points"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `true` if there is a way from `a` to `b`.
+fn differ(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).any(|(a, b)| (b - a).abs() >= f64::MIN_POSITIVE)
+}

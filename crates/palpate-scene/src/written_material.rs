@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A material as a body has it: by name or in numbers.
+
+use std::fmt;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+
+use crate::material::Material;
+use crate::presets::preset;
+use crate::problem::Problem;
+
+/// What a body feels like: the name of a preset, or numbers of its own.
+///
+/// ```
+/// use palpate_scene::{Material, WrittenMaterial};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let written: WrittenMaterial = serde_json::from_str(r#""rubber""#)?;
+/// assert_eq!(written, WrittenMaterial::Preset("rubber".into()));
+/// assert_eq!(written.material()?, Material::preset("rubber")?);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum WrittenMaterial {
+    /// The name of a preset.
+    Preset(String),
+    /// Numbers of its own.
+    Own(Box<Material>),
+}
+
+impl WrittenMaterial {
+    /// The material that is meant.
+    ///
+    /// # Errors
+    ///
+    /// As [`Material::preset`].
+    pub fn material(&self) -> Result<Material, crate::SceneError> {
+        self.known().map_err(|problem| problem.located(None))
+    }
+
+    /// The material that is meant, unchecked.
+    pub(crate) fn known(&self) -> Result<Material, Problem> {
+        match self {
+            Self::Preset(name) => preset(name),
+            Self::Own(material) => Ok(Material::clone(material)),
+        }
+    }
+}
+
+impl From<Material> for WrittenMaterial {
+    fn from(material: Material) -> Self {
+        Self::Own(Box::new(material))
+    }
+}
+
+impl Serialize for WrittenMaterial {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Preset(name) => serializer.serialize_str(name),
+            Self::Own(material) => material.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for WrittenMaterial {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(MaterialVisitor)
+    }
+}
+
+struct MaterialVisitor;
+
+impl<'de> Visitor<'de> for MaterialVisitor {
+    type Value = WrittenMaterial;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object or the name of a material")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<WrittenMaterial, E> {
+        Ok(WrittenMaterial::Preset(name.to_owned()))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<WrittenMaterial, A::Error> {
+        Material::deserialize(MapAccessDeserializer::new(map)).map(WrittenMaterial::from)
+    }
+}
