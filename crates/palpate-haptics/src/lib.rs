@@ -70,7 +70,7 @@ mod tour;
 
 pub use clock::{Clock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
-pub use error::HapticsError;
+pub use error::{HapticsError, not_negative, positive};
 pub use hand_path::{HandPath, Interpolation};
 pub use live::Progress;
 pub use material::Material;
