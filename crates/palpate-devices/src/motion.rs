@@ -38,7 +38,7 @@ const HALVINGS: u32 = 60;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
     /// The work of the servo's forces on device and hand, `∫ F·dx`. Positive: the virtual world
-    /// gave energy, which a passive one never does beyond what it was given before.
+    /// gave energy.
     pub servo: f64,
     /// The work of the hand's spring, damper and push on device and hand.
     pub hand: f64,

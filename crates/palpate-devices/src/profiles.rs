@@ -66,8 +66,8 @@ struct Assumed {
     encoder_step: f64,
 }
 
-/// The largest change of force is all of it in this time [s].
-const FORCE_TIME: f64 = 0.002;
+/// How often a second a force rises from nothing to all of it [1/s]: in 2 ms.
+const FORCE_RISES: f64 = 500.0;
 
 const fn profile(
     origin: &Origin,
@@ -79,7 +79,7 @@ const fn profile(
         name: Cow::Borrowed(name),
         max_force: published.force,
         continuous_force: assumed.continuous_force,
-        max_force_rate: published.force / FORCE_TIME,
+        max_force_rate: published.force * FORCE_RISES,
         max_stiffness: published.stiffness,
         max_damping: published.damping,
         workspace_radius: published.workspace,

@@ -148,10 +148,22 @@ impl<const D: usize> SimulatedDevice<D> {
     /// `∑ ∫ F·dx` over all contact points [J].
     ///
     /// Exact, as the force is constant over each way. Positive: the virtual world gave energy
-    /// out. A passive one, at rest at the start, never does.
+    /// out, as even a plain spring does when its force is held over a way that goes on. The
+    /// device's own damping and friction may take that; what they leave is
+    /// [`energy_to_hand`](Self::energy_to_hand).
     #[must_use]
     pub fn energy_given(&self) -> f64 {
         self.energies().servo
+    }
+
+    /// The work that device and arm did on the hands' springs, dampers and pushes from the start
+    /// to the last read [J].
+    ///
+    /// Never positive if device and virtual world together are passive: for a wall of stiffness
+    /// `K` read without steps, if `K ≤ 2b/T` (Colgate and Schenkel 1997).
+    #[must_use]
+    pub fn energy_to_hand(&self) -> f64 {
+        -self.energies().hand
     }
 
     /// What moves now, device and hands, `∑ ½ M v²` [J].

@@ -143,3 +143,27 @@ fn one_percent_beyond_the_threshold_the_mass_just_leaves_the_wall() {
     let sustained = span_at(1010.0);
     assert!((1.98e-3..2.2e-3).contains(&sustained), "{sustained} m");
 }
+
+#[test]
+fn a_passive_wall_gives_no_energy_to_any_grip() {
+    // One hundredth short of what theory allows: what the held force gives, the damping takes.
+    let profile = smooth(&profile_named("desktop").unwrap());
+    let stiffness = 0.99 * 2.0 * profile.least_damping / PERIOD;
+    let mut most_given = 0.0_f64;
+    for grip in [0.0, 0.5, 2.0, 10.0] {
+        for spring in [0.0, 50.0, 800.0] {
+            let mut pressed = Pressed::new(&profile, stiffness, 0.02);
+            let hand = Hand::resting(Vector([0.0, 0.01])).unwrap().with_mass(0.03).unwrap();
+            let hand = hand.with_spring(spring, grip).unwrap();
+            let hand = hand.with_push(Vector([0.1, -12.0])).unwrap();
+            pressed.device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
+            for _ in 0..2000 {
+                pressed.span(1);
+                let given = pressed.device.energy_to_hand();
+                most_given = most_given.max(pressed.device.energy_given());
+                assert!(given <= 1e-12, "{grip} N·s/m, {spring} N/m: {given} J");
+            }
+        }
+    }
+    assert!(most_given > 1e-3, "the force held gave no energy: {most_given} J");
+}
