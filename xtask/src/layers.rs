@@ -14,6 +14,7 @@ const LAYERS: &[&str] = &[
     "palpate-mesh",
     "palpate-query",
     "palpate-haptics",
+    "palpate-devices",
     "palpate-plot",
     "palpate",
     "palpate-cli",

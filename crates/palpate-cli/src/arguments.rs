@@ -116,6 +116,9 @@ Status 1 if the mesh is not watertight, or has triangles without an area.")]
     /// List the primitives: parameters, units, promises, how they bound cells.
     #[command(after_help = "Examples:\n  palpate shapes\n  palpate shapes --json")]
     Shapes(ShapesOptions),
+    /// List the devices that can be simulated: limits, sources, what of it is assumed.
+    #[command(after_help = "Examples:\n  palpate devices\n  palpate devices --json")]
+    Devices(DevicesOptions),
 }
 
 impl Default for Command {
@@ -489,6 +492,14 @@ pub(crate) struct ShapesOptions {
     /// Those of one dimension alone.
     #[arg(long, value_enum)]
     pub(crate) dimension: Option<Dimension>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// How devices are listed.
+#[derive(Args, Debug)]
+pub(crate) struct DevicesOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod contact;
 mod descend;
+mod devices;
 mod eval;
 mod feel;
 mod gallery;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Mesh(options) => mesh::run(&options),
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(&options),
+        Command::Devices(options) => devices::run(&options),
     };
     match result {
         Ok(Outcome::Yes) => ExitCode::SUCCESS,

@@ -168,6 +168,24 @@ fn shapes_lists_the_catalogue_with_units_and_models() {
 }
 
 #[test]
+fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
+    let all = json(&["devices", "--json"]);
+    let all = all.as_array().unwrap();
+    assert_eq!(all.len(), palpate::devices::PROFILES.len());
+    let omega = all.iter().find(|device| device["name"] == "omega").unwrap();
+    let force = serde_json::json!({ "value": 12.0, "unit": "N", "assumed": false });
+    assert_eq!(omega["max_force"], force);
+    assert_eq!(omega["least_damping"]["assumed"], true);
+    assert!(omega["source"].as_str().unwrap().contains("CHAI3D 3.3.0"));
+    let table = text(&palpate(&["devices"]));
+    let row = table.lines().find(|line| line.starts_with("omega ")).unwrap();
+    let cells: Vec<_> = row.split_whitespace().collect();
+    assert_eq!(cells[1..5], ["12", "~12", "~6000", "5000"]);
+    assert!(table.contains("\nomega: Force Dimension omega; source: "));
+    assert!(table.ends_with(&format!("{} devices\n", all.len())));
+}
+
+#[test]
 fn plot_writes_svg_and_png() {
     let folder = Folder::new();
     for (scene, plane) in [

@@ -85,7 +85,11 @@ pub enum HapticsError {
 }
 
 /// Checks that `value` is positive and finite.
-pub(crate) fn positive(
+///
+/// # Errors
+///
+/// [`HapticsError::Number`] with the name and the unit given, also for NaN.
+pub fn positive(
     parameter: &'static str,
     value: f64,
     unit: &'static str,
@@ -100,7 +104,11 @@ pub(crate) fn positive(
 }
 
 /// Checks that `value` is not negative and finite.
-pub(crate) fn not_negative(
+///
+/// # Errors
+///
+/// As [`positive`].
+pub fn not_negative(
     parameter: &'static str,
     value: f64,
     unit: &'static str,

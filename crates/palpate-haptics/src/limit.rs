@@ -7,11 +7,18 @@
 
 use palpate_field::Vector;
 
-/// Shortens `force` to `max_force`, keeping its direction; zero if it is not finite.
+/// Shortens `force` to `max_force` [N], keeping its direction; zero if it is not finite.
+///
+/// ```
+/// use palpate_field::Vector;
+///
+/// let force = palpate_haptics::limited(Vector([3.0, -4.0]), 2.5);
+/// assert_eq!(force, Vector([1.5, -2.0]));
+/// ```
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 #[must_use]
-pub(crate) fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> Vector<f64, D> {
+pub fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> Vector<f64, D> {
     let norm = force.norm();
     if norm <= max_force {
         force

@@ -4,8 +4,8 @@
 //! Signed distance functions that can be touched.
 //!
 //! One crate for everything: the [`field`]s and their promises, [`scene`] files,
-//! [`query`] for where things touch, the [`haptics`] proxy and servo, and [`plot`]s. Each is a crate of its own;
-//! this one only gathers them.
+//! [`query`] for where things touch, the [`haptics`] proxy and servo, [`devices`] to touch
+//! with, and [`plot`]s. Each is a crate of its own; this one only gathers them.
 //!
 //! ```
 //! use palpate::field::kernel::{Ball, Cuboid};
@@ -22,6 +22,7 @@
 //! # }
 //! ```
 
+pub use palpate_devices as devices;
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
 pub use palpate_mesh as mesh;

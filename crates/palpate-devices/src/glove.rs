@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Many fingers without a device to hold.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+use palpate_haptics::{
+    Device, DeviceLost, DeviceProfile, HandPath, HapticsError, PointState, limited,
+    not_negative,
+};
+
+/// Fingers that follow hand paths whatever they touch, each a contact point.
+///
+/// Without force feedback, as most gloves are, or with a largest force for each finger: what is
+/// written is cut to it. One hand has five fingers, two have ten; twelve points a hand are
+/// finger tips, the joints below them, and the palm. Fingers that give way to the force are a
+/// [`SimulatedDevice`](crate::SimulatedDevice) with a hand for each.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_devices::{Device, Glove, HandPath, PointState};
+/// use palpate_field::Vector;
+/// use palpate_haptics::Interpolation;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ends = vec![Vector([0.0, 0.1, 0.0]), Vector([0.0, 0.0, 0.0])];
+/// let hand = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Linear)?;
+/// let tips = [-0.04, -0.02, 0.0, 0.02, 0.04].map(|x| Vector([x, 0.0, 0.0]));
+/// let right = Glove::from_hand(&hand, &tips)?;
+/// let left = Glove::from_hand(&hand, &tips.map(|tip| tip - Vector([0.3, 0.0, 0.0])))?;
+/// let mut both = right.joined(left);
+///
+/// let mut points = [PointState::at_rest(Vector::ZERO); 10];
+/// both.read(0.5, &mut points)?;
+/// assert_eq!(points[1].position, Vector([-0.02, 0.05, 0.0]));
+/// assert_eq!(points[7].position, Vector([-0.3, 0.05, 0.0]));
+/// assert_eq!(both.profile().max_force, 0.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Glove<const D: usize> {
+    fingers: Vec<Finger<D>>,
+    profile: DeviceProfile,
+}
+
+#[derive(Clone, Debug)]
+struct Finger<const D: usize> {
+    path: HandPath<D>,
+    /// From the path to the finger [m].
+    offset: Vector<f64, D>,
+    /// Largest force [N].
+    limit: f64,
+    /// The force written last, cut to the limit [N].
+    force: Vector<f64, D>,
+}
+
+impl<const D: usize> Glove<D> {
+    /// A glove whose fingers have a path each, without force feedback.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::NoContactPoint`] if there are no paths.
+    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, HapticsError> {
+        let finger =
+            |path| Finger { path, offset: Vector::ZERO, limit: 0.0, force: Vector::ZERO };
+        Self::of(paths.into_iter().map(finger).collect())
+    }
+
+    /// A glove whose fingers keep their `offsets` [m] from the path of one hand, without force
+    /// feedback.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::NoContactPoint`] if there are no offsets, [`HapticsError::Number`] if one
+    /// is not finite.
+    pub fn from_hand(
+        hand: &HandPath<D>,
+        offsets: &[Vector<f64, D>],
+    ) -> Result<Self, HapticsError> {
+        for component in offsets.iter().flat_map(|offset| offset.0) {
+            not_negative("finger offset", component.abs(), "m")?;
+        }
+        let finger = |offset: &Vector<f64, D>| Finger {
+            path: hand.clone(),
+            offset: *offset,
+            limit: 0.0,
+            force: Vector::ZERO,
+        };
+        Self::of(offsets.iter().map(finger).collect())
+    }
+
+    fn of(fingers: Vec<Finger<D>>) -> Result<Self, HapticsError> {
+        if fingers.is_empty() {
+            return Err(HapticsError::NoContactPoint);
+        }
+        let profile = DeviceProfile { max_force: 0.0, ..DeviceProfile::unlimited("glove") };
+        Ok(Self { fingers, profile })
+    }
+
+    /// The same with a largest force for each finger [N], 0 for none.
+    ///
+    /// The profile's largest force is then the largest of them.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::ContactPoints`] if there are not as many limits as fingers,
+    /// [`HapticsError::Number`] if one is negative or not finite.
+    pub fn with_limits(mut self, limits: &[f64]) -> Result<Self, HapticsError> {
+        if limits.len() != self.fingers.len() {
+            let (servo, device) = (limits.len(), self.fingers.len());
+            return Err(HapticsError::ContactPoints { servo, device });
+        }
+        for (finger, limit) in self.fingers.iter_mut().zip(limits) {
+            finger.limit = not_negative("max_force", *limit, "N")?;
+        }
+        self.profile.max_force = limits.iter().copied().fold(0.0, f64::max);
+        Ok(self)
+    }
+
+    /// Both gloves as one device: the fingers of this one, then those of `other`.
+    #[must_use]
+    pub fn joined(mut self, other: Self) -> Self {
+        self.fingers.extend(other.fingers);
+        self.profile.max_force = self.profile.max_force.max(other.profile.max_force);
+        self
+    }
+
+    /// The forces written last, each cut to its finger's largest [N].
+    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
+        self.fingers.iter().map(|finger| finger.force)
+    }
+}
+
+impl<const D: usize> Device<D> for Glove<D> {
+    fn points(&self) -> usize {
+        self.fingers.len()
+    }
+
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+        for (point, finger) in points.iter_mut().zip(&self.fingers) {
+            let PointState { position, velocity } = finger.path.state_at(time);
+            *point = PointState { position: position + finger.offset, velocity };
+        }
+        Ok(())
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+        for (finger, force) in self.fingers.iter_mut().zip(forces) {
+            finger.force = limited(*force, finger.limit);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use palpate_haptics::Interpolation;
+
+    fn path(height: f64) -> HandPath<2> {
+        let ends = vec![Vector([0.0, height]), Vector([1.0, height])];
+        HandPath::new(vec![0.0, 2.0], ends, Interpolation::Linear).unwrap()
+    }
+
+    #[test]
+    fn every_finger_has_its_path_and_its_limit() {
+        let glove = Glove::new(vec![path(0.1), path(0.2), path(0.3)]).unwrap();
+        let mut glove = glove.with_limits(&[1.0, 0.0, 2.5]).unwrap();
+        assert_eq!(glove.profile().max_force, 2.5);
+        let mut points = [PointState::at_rest(Vector::ZERO); 3];
+        glove.read(1.0, &mut points).unwrap();
+        assert_eq!(points.map(|p| p.position), [0.1, 0.2, 0.3].map(|y| Vector([0.5, y])));
+        assert!(points.iter().all(|p| p.velocity == Vector([0.5, 0.0])));
+        glove.write(&[Vector([3.0, -4.0]); 3]).unwrap();
+        let forces: Vec<_> = glove.forces().collect();
+        assert_eq!(forces, [Vector([0.6, -0.8]), Vector([0.0, 0.0]), Vector([1.5, -2.0])]);
+    }
+
+    #[test]
+    fn wrong_gloves_are_refused() {
+        assert_eq!(Glove::<2>::new(Vec::new()).unwrap_err(), HapticsError::NoContactPoint);
+        let far = Glove::from_hand(&path(0.0), &[Vector([f64::NAN, 0.0])]).unwrap_err();
+        assert!(far.to_string().starts_with("finger offset must be"), "{far}");
+        let glove = Glove::new(vec![path(0.0)]).unwrap();
+        assert!(glove.clone().with_limits(&[]).is_err());
+        assert!(glove.with_limits(&[-1.0]).is_err());
+    }
+}

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Haptic devices: what known ones can do, simulated ones, gloves, and the trait for one's own.
+//!
+//! [`profile_named`] knows the limits of real devices, each with its source. A
+//! [`SimulatedDevice`] moves as such a device does in a [`Hand`]: with mass, damping, friction,
+//! encoders, and forces that are held between two writes. Its motion is integrated in closed
+//! form, so the energy that a servo puts into the hand is known to the last digits. A [`Glove`]
+//! has many fingers that follow hand paths.
+//!
+//! A device of one's own implements [`Device`]; `examples/device_of_your_own.rs` is one in 40
+//! lines.
+//!
+//! # Examples
+//!
+//! A simulated stylus is pushed onto a ball with 1 N, and rests where the spring bears it:
+//!
+//! ```
+//! use palpate_devices::{Device, Hand, SimulatedDevice, profile_named};
+//! use palpate_field::{Shape, Vector, kernel::Ball};
+//! use palpate_haptics::{
+//!     Bodies, Body, Pace, Probe, RunOptions, Servo, ServoOptions, Surface, run,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let hand = Hand::resting(Vector([0.0, 0.06, 0.0]))?
+//!     .with_spring(0.0, 5.0)?
+//!     .with_push(Vector([0.0, -1.0, 0.0]))?;
+//! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
+//! let options = ServoOptions {
+//!     probe: Probe::new(0.0)?,
+//!     ..ServoOptions::default()
+//! };
+//! let ball = Body::new(Shape::from_kernel(Ball::new(0.05)?), Surface::smooth(1000.0, 0.0)?)?;
+//! let mut servo = Servo::new(Bodies::new(vec![ball])?, 1, options)?;
+//! let paced = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
+//! run(&mut servo, &mut device, paced)?;
+//!
+//! let friction = device.profile().friction;
+//! let depth = servo.touches()[0].depth();
+//! assert!((depth * 1000.0 - 1.0).abs() < friction + 0.05);
+//! # Ok(())
+//! # }
+//! ```
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
+mod glove;
+mod hand;
+mod motion;
+mod oscillator;
+mod profiles;
+mod simulated;
+
+pub use glove::Glove;
+pub use hand::Hand;
+pub use motion::Energies;
+pub use palpate_haptics::{
+    Device, DeviceLost, DeviceProfile, HandPath, PointState, RecordedDevice,
+};
+pub use profiles::{PROFILES, UnknownDevice, profile_named};
+pub use simulated::SimulatedDevice;

@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How a device in a hand moves along one axis while the force on it is held.
+//!
+//! ```text
+//! (m + m_h) x'' + b x' + b_h (x' − y') + k_h (x − y) = F + P − f_c sign(x')
+//! ```
+//!
+//! with the force `F` and the push `P` constant and the hand's target `y` even in time. Between
+//! two changes of the sign of `x'` this is linear, and integrated exactly. At rest, friction
+//! bears what it can: the device sticks while the other forces stay within `±f_c`, and the
+//! instant at which it lets go is the root of a line.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_haptics::{HapticsError, not_negative, positive};
+
+use crate::oscillator::{Drive, Nodes, Oscillator};
+
+/// The most pieces of motion in one call: at [`FASTEST`], a tenth of a second. A device that is
+/// not read for longer stands still for the rest, rather than make a tick without end.
+const MOST_PIECES: u32 = 1024;
+
+/// The largest `σ + ω` [1/s] of device and hand, so that [`MOST_PIECES`] cover every tick.
+const FASTEST: f64 = 1e4;
+
+/// Halvings of the time in which something changes its sign: to the last bit.
+const HALVINGS: u32 = 60;
+
+/// Where the energy of a simulated contact point went since its start [J].
+///
+/// ```text
+/// kinetic = servo + hand − viscous − friction
+/// ```
+///
+/// up to rounding: each term is integrated on its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// The work of the servo's forces on device and hand, `∫ F·dx`. Positive: the virtual world
+    /// gave energy.
+    pub servo: f64,
+    /// The work of the hand's spring, damper and push on device and hand.
+    pub hand: f64,
+    /// What the device's own damping took.
+    pub viscous: f64,
+    /// What the device's Coulomb friction took.
+    pub friction: f64,
+}
+
+impl Energies {
+    /// What is left, as motion: `servo + hand − viscous − friction` [J].
+    #[must_use]
+    pub fn balance(&self) -> f64 {
+        self.servo + self.hand - self.viscous - self.friction
+    }
+
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.servo += other.servo;
+        self.hand += other.hand;
+        self.viscous += other.viscous;
+        self.friction += other.friction;
+    }
+}
+
+/// What moves: the same for all axes of a contact point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Body {
+    /// Device and hand together [kg].
+    mass: f64,
+    /// Of the device [N·s/m].
+    damping: f64,
+    /// Coulomb's, of the device [N].
+    friction: f64,
+    /// Of the hand [N/m].
+    grip_stiffness: f64,
+    /// Of the hand [N·s/m].
+    grip_damping: f64,
+    oscillator: Oscillator,
+    /// The responses over the time asked last: ticks are alike.
+    nodes: Nodes,
+}
+
+/// What is constant, or even, while the force is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Load {
+    /// The servo's force [N].
+    pub(crate) force: f64,
+    /// The hand's [N].
+    pub(crate) push: f64,
+    /// Where the hand wants to be at the start [m].
+    pub(crate) target: f64,
+    /// How fast that moves [m/s].
+    pub(crate) target_velocity: f64,
+}
+
+/// Position [m] and velocity [m/s] along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Axis {
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+}
+
+/// Device and hand as [`Body`] takes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Parts {
+    /// Of the device and of the hand [kg].
+    pub(crate) masses: (f64, f64),
+    /// Of the device [N·s/m].
+    pub(crate) damping: f64,
+    /// Coulomb's, of the device [N].
+    pub(crate) friction: f64,
+    /// Of the hand [N/m].
+    pub(crate) grip_stiffness: f64,
+    /// Of the hand [N·s/m].
+    pub(crate) grip_damping: f64,
+}
+
+impl Body {
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if nothing has a mass, damping or friction are negative or not
+    /// finite, or the parts are too fast to be followed.
+    pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
+        let (device, hand) = parts.masses;
+        not_negative("mass", device, "kg")?;
+        let mass = positive("mass of device and hand", device + hand, "kg")?;
+        let damping = not_negative("least_damping", parts.damping, "N·s/m")?;
+        let friction = not_negative("friction", parts.friction, "N")?;
+        let oscillator = Oscillator {
+            decay: (damping + parts.grip_damping) / mass,
+            spring: parts.grip_stiffness / mass,
+        };
+        let fastest = oscillator.fastest();
+        if fastest.is_nan() || fastest > FASTEST {
+            return Err(HapticsError::Number {
+                parameter: "the rate of damping and spring per mass",
+                rule: "at most 1e4",
+                value: fastest,
+                unit: "1/s",
+            });
+        }
+        Ok(Self {
+            mass,
+            damping,
+            friction,
+            grip_stiffness: parts.grip_stiffness,
+            grip_damping: parts.grip_damping,
+            oscillator,
+            nodes: Nodes::new(&oscillator, 0.0),
+        })
+    }
+
+    /// Device and hand together [kg].
+    pub(crate) fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Moves `axis` for `duration` [s] under `load`. Returns the energies of that time.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_PIECES`] pieces.
+    pub(crate) fn advance(
+        &mut self,
+        axis: &mut Axis,
+        mut load: Load,
+        duration: f64,
+    ) -> Energies {
+        let mut energies = Energies::default();
+        let mut left = duration;
+        for _ in 0..MOST_PIECES {
+            let starts = axis.velocity == 0.0 && self.friction > 0.0;
+            let sign = if starts {
+                let (wait, sign) = self.rest(axis.position, &load);
+                let wait = wait.min(left);
+                load.target += load.target_velocity * wait;
+                left -= wait;
+                sign
+            } else {
+                axis.velocity.signum()
+            };
+            if left.is_nan() || left <= 0.0 {
+                break;
+            }
+            let piece = self.piece(axis, &load, sign);
+            let longest = left.min(self.oscillator.longest());
+            let stop = piece.stop(&self.oscillator, longest);
+            let length = stop.unwrap_or(longest);
+            energies.add(&self.glide(axis, &load, (&piece, length)));
+            if stop.is_some() {
+                axis.velocity = 0.0;
+            }
+            load.target += load.target_velocity * length;
+            left -= length;
+        }
+        energies
+    }
+
+    /// For how long the device sticks at `position` [s], and in which direction it lets go.
+    fn rest(&self, position: f64, load: &Load) -> (f64, f64) {
+        let pull = self.pull(position, load);
+        let growth = self.grip_stiffness * load.target_velocity;
+        if pull.abs() > self.friction {
+            (0.0, pull.signum())
+        } else if growth == 0.0 {
+            (f64::INFINITY, 0.0)
+        } else {
+            let sign = growth.signum();
+            ((sign * self.friction - pull) / growth, sign)
+        }
+    }
+
+    /// The force on a device that rests at `position`, but for friction [N].
+    fn pull(&self, position: f64, load: &Load) -> f64 {
+        load.force
+            + load.push
+            + self.grip_stiffness * (load.target - position)
+            + self.grip_damping * load.target_velocity
+    }
+
+    fn piece(&self, axis: &Axis, load: &Load, sign: f64) -> Piece {
+        // Without friction a change of direction changes nothing.
+        let sign = if self.friction > 0.0 { sign } else { 0.0 };
+        let push = (self.pull(axis.position, load) - sign * self.friction) / self.mass;
+        let growth = self.grip_stiffness * load.target_velocity / self.mass;
+        Piece { drive: Drive { velocity: axis.velocity, push, growth }, sign }
+    }
+
+    /// Moves `axis` along a piece without a change of direction.
+    fn glide(
+        &mut self,
+        axis: &mut Axis,
+        load: &Load,
+        (piece, length): (&Piece, f64),
+    ) -> Energies {
+        if self.nodes.length != length {
+            self.nodes = Nodes::new(&self.oscillator, length);
+        }
+        let drive = &piece.drive;
+        let way = self.nodes.end.way(drive);
+        let stretch = load.target - axis.position;
+        let [squares, hand] = self.nodes.integral(|time, response| {
+            let velocity = response.velocity(drive);
+            let stretch = stretch + load.target_velocity * time - response.way(drive);
+            let grip = self.grip_stiffness * stretch
+                + self.grip_damping * (load.target_velocity - velocity);
+            [velocity * velocity, grip * velocity]
+        });
+        axis.position += way;
+        axis.velocity = self.nodes.end.velocity(drive);
+        Energies {
+            servo: load.force * way,
+            hand: hand + load.push * way,
+            viscous: self.damping * squares,
+            friction: piece.sign * self.friction * way,
+        }
+    }
+}
+
+/// Motion in one direction, or in any without friction.
+struct Piece {
+    drive: Drive,
+    /// Of the velocity; 0 without friction.
+    sign: f64,
+}
+
+impl Piece {
+    /// When the velocity first changes its sign within `length` [s], if it does.
+    ///
+    /// The acceleration has at most one zero in that time, so the velocity has at most one
+    /// extremum: it changes its sign once, seen at the end, or dips and comes back, seen at the
+    /// extremum. From rest it cannot dip.
+    fn stop(&self, oscillator: &Oscillator, length: f64) -> Option<f64> {
+        if self.sign == 0.0 {
+            return None;
+        }
+        let velocity = |time| self.sign * oscillator.response(time).velocity(&self.drive);
+        if velocity(length) < 0.0 {
+            return Some(first(length, |time| velocity(time) < 0.0));
+        }
+        let acceleration = |time: f64| {
+            let response = oscillator.response(time);
+            let (way, velocity) = (response.way(&self.drive), response.velocity(&self.drive));
+            let push = self.drive.push + self.drive.growth * time;
+            self.sign * (push - oscillator.decay * velocity - oscillator.spring * way)
+        };
+        let may_dip =
+            self.drive.velocity != 0.0 && acceleration(0.0) < 0.0 && acceleration(length) > 0.0;
+        if !may_dip {
+            return None;
+        }
+        let lowest = first(length, |time| acceleration(time) > 0.0);
+        (velocity(lowest) < 0.0).then(|| first(lowest, |time| velocity(time) < 0.0))
+    }
+}
+
+/// The first time at which `has_changed`, which is false at 0 and true at `end`.
+fn first(end: f64, has_changed: impl Fn(f64) -> bool) -> f64 {
+    let (mut before, mut after) = (0.0, end);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (before + after);
+        if has_changed(middle) {
+            after = middle;
+        } else {
+            before = middle;
+        }
+    }
+    after
+}

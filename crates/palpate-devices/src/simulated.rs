@@ -1,0 +1,360 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A device that exists only as numbers, in a hand that gives way.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+use palpate_haptics::{
+    Device, DeviceLost, DeviceProfile, HapticsError, PointState, limited, not_negative,
+};
+
+use crate::hand::Hand;
+use crate::motion::{Axis, Body, Energies, Load, Parts};
+
+/// Reads closer than this are one [s]: over less, a difference says nothing of a velocity.
+const SHORTEST: f64 = 1e-9;
+
+/// A device of a [`DeviceProfile`], held by a [`Hand`] at each of its contact points.
+///
+/// A contact point is a mass with the profile's viscous damping and Coulomb friction, together
+/// with its hand's mass, spring, damper and push. The force written last, cut to the profile's
+/// largest, is held until the next is written: a zero-order hold. Between two reads the motion
+/// is integrated in closed form, with the hand's path taken as straight from its place at the
+/// one to its place at the other; sticking and letting go are found within that time. What is
+/// read is the position in whole encoder steps.
+///
+/// Axes move on their own, and so friction is that of each axis: `f_c` along an axis, up to
+/// `√D f_c` between axes. This is the friction of a machine with a drive for each axis.
+///
+/// The velocity read is the difference of the last two positions read, over the time between
+/// them: with an encoder step Δ it comes in steps of Δ times the rate. Damping wants a better
+/// estimate than this, over a window.
+///
+/// It starts at rest where its hand wants to be at the time of the first read. Profile limits
+/// other than the largest force are for the servo to keep.
+///
+/// # Examples
+///
+/// A mass of 0.5 kg without anything to stop it falls under a push of 1 N:
+///
+/// ```
+/// use palpate_devices::{Device, DeviceProfile, Hand, PointState, SimulatedDevice};
+/// use palpate_field::Vector;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ideal = DeviceProfile {
+///     mass: 0.5,
+///     least_damping: 0.0,
+///     friction: 0.0,
+///     ..DeviceProfile::unlimited("ideal")
+/// };
+/// let hand = Hand::resting(Vector([0.0, 3.0]))?.with_mass(0.0)?.with_spring(0.0, 0.0)?;
+/// let hand = hand.with_push(Vector([0.0, -1.0]))?;
+/// let mut device = SimulatedDevice::new(ideal, vec![hand])?;
+/// let mut points = [PointState::at_rest(Vector::ZERO)];
+/// device.read(0.0, &mut points)?;
+/// device.read(0.5, &mut points)?;
+/// assert_eq!(points[0].position, Vector([0.0, 2.75])); // −½ (1 N / 0.5 kg) (0.5 s)²
+/// assert_eq!(device.kinetic_energy(), 0.25); // that of the push over 0.25 m
+/// assert_eq!(device.energy_given(), 0.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct SimulatedDevice<const D: usize> {
+    profile: DeviceProfile,
+    points: Vec<SimulatedPoint<D>>,
+    /// The time of the last read [s].
+    time: Option<f64>,
+}
+
+#[derive(Clone, Debug)]
+struct SimulatedPoint<const D: usize> {
+    hand: Hand<D>,
+    body: Body,
+    axes: [Axis; D],
+    /// The force held [N].
+    force: Vector<f64, D>,
+    /// What was read last.
+    reading: PointState<D>,
+    /// Where the hand wanted to be then [m].
+    target: Point<D>,
+    energies: Energies,
+}
+
+impl<const D: usize> SimulatedDevice<D> {
+    /// A device with one contact point for each hand.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::NoContactPoint`] if there is no hand. [`HapticsError::Number`] if the
+    /// profile's mass, least damping, friction or encoder step is negative or not finite, its
+    /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k / M)`
+    /// of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4 / s.
+    pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, HapticsError> {
+        if hands.is_empty() {
+            return Err(HapticsError::NoContactPoint);
+        }
+        not_negative("encoder_step", profile.encoder_step, "m")?;
+        if profile.max_force != f64::INFINITY {
+            not_negative("max_force", profile.max_force, "N")?;
+        }
+        let points = hands.into_iter().map(|hand| {
+            let body = Body::new(&Parts {
+                masses: (profile.mass, hand.mass()),
+                damping: profile.least_damping,
+                friction: profile.friction,
+                grip_stiffness: hand.stiffness(),
+                grip_damping: hand.damping(),
+            })?;
+            Ok(SimulatedPoint {
+                hand,
+                body,
+                axes: [Axis { position: 0.0, velocity: 0.0 }; D],
+                force: Vector::ZERO,
+                reading: PointState::at_rest(Vector::ZERO),
+                target: Vector::ZERO,
+                energies: Energies::default(),
+            })
+        });
+        let points = points.collect::<Result<_, HapticsError>>()?;
+        Ok(Self { profile, points, time: None })
+    }
+
+    /// Where each contact point is and how fast, as no encoder sees it.
+    pub fn states(&self) -> impl Iterator<Item = PointState<D>> {
+        self.points.iter().map(SimulatedPoint::state)
+    }
+
+    /// The forces held [N]: those written last, cut to the largest.
+    pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
+        self.points.iter().map(|point| point.force)
+    }
+
+    /// Where the energy went, all contact points together, up to the last read.
+    #[must_use]
+    pub fn energies(&self) -> Energies {
+        let mut sum = Energies::default();
+        for point in &self.points {
+            sum.add(&point.energies);
+        }
+        sum
+    }
+
+    /// The work that the servo's forces did on device and hand from the start to the last read,
+    /// `∑ ∫ F·dx` over all contact points [J].
+    ///
+    /// Exact, as the force is constant over each way. Positive: the virtual world gave energy
+    /// out, as even a plain spring does when its force is held over a way that goes on. The
+    /// device's own damping and friction may take that; what they leave is
+    /// [`energy_to_hand`](Self::energy_to_hand).
+    #[must_use]
+    pub fn energy_given(&self) -> f64 {
+        self.energies().servo
+    }
+
+    /// The work that device and arm did on the hands' springs, dampers and pushes from the start
+    /// to the last read [J].
+    ///
+    /// Never positive if device and virtual world together are passive: for a wall of stiffness
+    /// `K` read without steps, if `K ≤ 2b/T` (Colgate and Schenkel 1997).
+    #[must_use]
+    pub fn energy_to_hand(&self) -> f64 {
+        -self.energies().hand
+    }
+
+    /// What moves now, device and hands, `∑ ½ M v²` [J].
+    #[must_use]
+    pub fn kinetic_energy(&self) -> f64 {
+        let of = |point: &SimulatedPoint<D>| {
+            let velocity = point.state().velocity;
+            0.5 * point.body.mass() * velocity.dot(velocity)
+        };
+        self.points.iter().map(of).sum()
+    }
+}
+
+impl<const D: usize> SimulatedPoint<D> {
+    fn state(&self) -> PointState<D> {
+        PointState {
+            position: Vector(self.axes.map(|axis| axis.position)),
+            velocity: Vector(self.axes.map(|axis| axis.velocity)),
+        }
+    }
+
+    /// Lays the device where the hand wants to be.
+    fn start(&mut self, time: f64, encoder_step: f64) {
+        self.target = self.hand.path().state_at(time).position;
+        self.axes = self.target.0.map(|position| Axis { position, velocity: 0.0 });
+        self.reading = PointState::at_rest(self.encoded(encoder_step));
+    }
+
+    /// Moves from the time `last` to `time` [s].
+    fn advance(&mut self, last: f64, time: f64, encoder_step: f64) {
+        let duration = time - last;
+        let target = self.hand.path().state_at(time).position;
+        let target_velocity = (target - self.target) * (1.0 / duration);
+        let push = self.hand.push();
+        let loads = self.force.0.iter().zip(push.0).zip(self.target.0).zip(target_velocity.0);
+        for (axis, (((force, push), target), target_velocity)) in
+            self.axes.iter_mut().zip(loads)
+        {
+            let load = Load { force: *force, push, target, target_velocity };
+            self.energies.add(&self.body.advance(axis, load, duration));
+        }
+        self.target = target;
+        let position = self.encoded(encoder_step);
+        let velocity = (position - self.reading.position) * (1.0 / duration);
+        self.reading = PointState { position, velocity };
+    }
+
+    /// The position in whole steps of the encoder.
+    fn encoded(&self, step: f64) -> Point<D> {
+        let position = self.state().position;
+        if step > 0.0 {
+            Vector(position.0.map(|x| (x / step).round() * step))
+        } else {
+            position
+        }
+    }
+}
+
+impl<const D: usize> Device<D> for SimulatedDevice<D> {
+    fn points(&self) -> usize {
+        self.points.len()
+    }
+
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A time that is not a
+    /// nanosecond later than the last, or not finite, repeats the last reading. After a gap of
+    /// more than a tenth of a second, a device with a stiff hand may have stood still for a part
+    /// of it.
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+        let encoder_step = self.profile.encoder_step;
+        match self.time {
+            None => {
+                for point in &mut self.points {
+                    point.start(time, encoder_step);
+                }
+                self.time = time.is_finite().then_some(time);
+            }
+            Some(last) if time - last >= SHORTEST && time <= f64::MAX => {
+                for point in &mut self.points {
+                    point.advance(last, time, encoder_step);
+                }
+                self.time = Some(time);
+            }
+            Some(_) => {}
+        }
+        for (reading, point) in points.iter_mut().zip(&self.points) {
+            *reading = point.reading;
+        }
+        Ok(())
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite is
+    /// none.
+    fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+        for (point, force) in self.points.iter_mut().zip(forces) {
+            point.force = limited(*force, self.profile.max_force);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn resting(encoder_step: f64) -> SimulatedDevice<2> {
+        let profile = DeviceProfile {
+            mass: 0.1,
+            least_damping: 0.5,
+            friction: 0.0,
+            max_force: 2.5,
+            encoder_step,
+            ..DeviceProfile::unlimited("test")
+        };
+        let hand = Hand::resting(Vector([0.010_4, -0.003])).unwrap();
+        SimulatedDevice::new(profile, vec![hand]).unwrap()
+    }
+
+    #[test]
+    fn forces_are_cut_to_the_largest_and_what_is_none_is_zero() {
+        let mut device = resting(0.0);
+        for (written, expected) in [
+            ([3.0, -4.0], [1.5, -2.0]),
+            ([0.6, 0.8], [0.6, 0.8]),
+            ([f64::NAN, 1.0], [0.0, 0.0]),
+            ([f64::INFINITY, 1.0], [0.0, 0.0]),
+        ] {
+            device.write(&[Vector(written)]).unwrap();
+            assert_eq!(device.forces().next(), Some(Vector(expected)));
+        }
+    }
+
+    #[test]
+    fn positions_come_in_steps_and_velocities_are_their_differences() {
+        let mut device = resting(1e-3);
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(0.0, &mut points).unwrap();
+        assert_eq!(points[0], PointState::at_rest(Vector([10.0 * 1e-3, -3.0 * 1e-3])));
+        device.write(&[Vector([2.0, 0.0])]).unwrap();
+        let mut last = points[0].position;
+        for tick in 1..=100 {
+            device.read(0.001 * f64::from(tick), &mut points).unwrap();
+            let steps = points[0].position[0] / 1e-3;
+            assert!((steps - steps.round()).abs() < 1e-12);
+            let true_position = device.states().next().unwrap().position;
+            assert!((points[0].position - true_position).norm() <= 0.5e-3 * 2.0_f64.sqrt());
+            let speed = (points[0].position[0] - last[0]) / 0.001;
+            assert!((points[0].velocity[0] - speed).abs() < 1e-9);
+            last = points[0].position;
+        }
+        assert!(last[0] > 0.012);
+    }
+
+    #[test]
+    fn times_that_do_not_go_on_repeat_the_last_reading() {
+        let mut device = resting(0.0);
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(f64::NAN, &mut points).unwrap();
+        assert!(points[0].is_finite());
+        device.write(&[Vector([2.0, 0.0])]).unwrap();
+        for time in [0.0, 0.1] {
+            device.read(time, &mut points).unwrap();
+        }
+        let (reading, energies) = (points[0], device.energies());
+        for time in [0.1, 0.05, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            device.read(time, &mut points).unwrap();
+            assert_eq!((points[0], device.energies()), (reading, energies));
+        }
+        device.read(1e12, &mut points).unwrap();
+        assert!(points[0].is_finite());
+    }
+
+    #[test]
+    fn wrong_profiles_are_refused_with_their_numbers() {
+        let hand = || vec![Hand::resting(Vector([0.0, 0.0])).unwrap()];
+        let profile = resting(0.0).profile;
+        let error = |profile: DeviceProfile| {
+            SimulatedDevice::new(profile, hand()).unwrap_err().to_string()
+        };
+        let none = SimulatedDevice::<2>::new(profile.clone(), Vec::new());
+        assert_eq!(none.unwrap_err(), HapticsError::NoContactPoint);
+        let unlimited = error(DeviceProfile::unlimited("x"));
+        assert_eq!(unlimited, "least_damping must be zero or more and finite, got inf N·s/m");
+        let negative = error(DeviceProfile { friction: -1.0, ..profile.clone() });
+        assert_eq!(negative, "friction must be zero or more and finite, got -1 N");
+        assert!(
+            error(DeviceProfile { max_force: f64::NAN, ..profile.clone() }).contains("NaN")
+        );
+        let fast = error(DeviceProfile { least_damping: 1e5, ..profile });
+        assert!(fast.contains("must be at most 1e4, got"), "{fast}");
+    }
+}
