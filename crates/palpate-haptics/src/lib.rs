@@ -63,10 +63,13 @@ mod recorded;
 mod recorder;
 mod report;
 mod run;
+mod safety;
 mod sampler;
 mod servo;
 mod statistics;
 mod tour;
+mod velocity;
+mod workspace;
 
 pub use clock::{Clock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
@@ -79,6 +82,12 @@ pub use recorded::RecordedDevice;
 pub use recorder::{Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
+pub use safety::{
+    Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
+    SafetyChain, SafetyOptions, SafetyReport, WatchdogReport,
+};
 pub use servo::{Servo, ServoOptions, Touch};
 pub use statistics::{Bucket, Distribution};
 pub use tour::Tour;
+pub use velocity::VelocityEstimator;
+pub use workspace::WorkspaceMap;
