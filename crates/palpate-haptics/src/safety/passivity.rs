@@ -19,6 +19,11 @@ use super::effect::Effect;
 /// memory of 100 ticks of contact, several strikes.
 const MEMORY: f64 = 0.99;
 
+/// A force is not made smaller than to this part of what damping covers. With one, walls of
+/// `2 b / T` are left, which hardly come to rest; with zero, hands sink into walls that are seen
+/// in steps, as a hand that rests between two of them seems to be worked on.
+const FLOOR: f64 = 0.25;
+
 /// What the passivity observer saw and the controller did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct PassivityReport {
@@ -50,7 +55,9 @@ pub struct PassivityReport {
 ///
 /// *Controller.* A force is made smaller, as a whole, until the energy that it gives out in the
 /// coming tick is no more than the balance and a reserve. The motion is predicted from the
-/// velocity and from what this force and the one before do to the device's mass. The balance is
+/// velocity and from what this force and the one before do to the device's mass. A part of the
+/// force remains in any case, [`FLOOR`] of that whose leaks damping covers; a wall so soft comes
+/// to rest by itself. The balance is
 /// at most what a spring of the material's stiffness holds at this force, `½ |F|² / K`, so that
 /// a long rub against friction does not pay for an oscillation; a source of constant force that
 /// is to give back more than that must do without this stage.
@@ -196,7 +203,10 @@ impl<const D: usize> Passivity<D> {
         if wanted.dot(moved) - loss <= available {
             return 1.0;
         }
-        part_within(available, wanted.dot(coasting), wanted.dot(wanted) * yielding)
+        let part = part_within(available, wanted.dot(coasting), wanted.dot(wanted) * yielding);
+        // Where damping covers the leaks, the balance knows that already.
+        let floor = if self.is_covered() { 0.0 } else { FLOOR * self.losses / self.leaks };
+        part.max(floor)
     }
 }
 
