@@ -11,7 +11,7 @@
 use std::borrow::Cow;
 
 use crate::device::DeviceProfile;
-use crate::error::{HapticsError, positive, positive_or_infinite};
+use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
 use crate::material::Material;
 
 /// What is done with a material that a device cannot render.
@@ -209,7 +209,7 @@ fn limits(
     let period = 1.0 / positive("rate", rate, "Hz")?;
     let least = positive_or_infinite("least_damping", device.least_damping, "N·s/m")?;
     let max_stiffness = positive_or_infinite("max_stiffness", device.max_stiffness, "N/m")?;
-    let step = crate::error::not_negative("encoder_step", device.encoder_step, "m")?;
+    let step = not_negative("encoder_step", device.encoder_step, "m")?;
     let quantisation = if step > 0.0 {
         2.0 * positive_or_infinite("friction", device.friction, "N")? / (step * stiffness)
     } else {
