@@ -77,8 +77,20 @@ struct Wall {
     grip: f64,
     start: f64,
     encoder_step: f64,
+    max_force_rate: f64,
     has_control: bool,
 }
+
+/// 50 g, three times too stiff, free of steps, pushed from the surface on without a grip.
+const TOO_STIFF: Wall = Wall {
+    mass: 0.05,
+    stiffness: 3000.0,
+    grip: 0.0,
+    start: 0.0,
+    encoder_step: 0.0,
+    max_force_rate: f64::INFINITY,
+    has_control: true,
+};
 
 struct Outcome {
     /// The least of the energy that the wall took from the hand, at any time [J].
@@ -95,6 +107,7 @@ impl Wall {
             mass: self.mass,
             least_damping: 0.5,
             encoder_step: self.encoder_step,
+            max_force_rate: self.max_force_rate,
             ..DeviceProfile::unlimited("wall")
         };
         let options = SafetyOptions {
@@ -129,8 +142,7 @@ fn presses(stiffness: f64, mut check: impl FnMut(&Wall, Outcome)) {
     for mass in [0.05, 0.1] {
         for start in [0.0, 0.001, 0.01, 0.05] {
             for grip in [0.0, 0.5, 2.0, 10.0] {
-                let (has_control, encoder_step) = (true, 0.0);
-                let wall = Wall { mass, stiffness, grip, start, encoder_step, has_control };
+                let wall = Wall { mass, stiffness, grip, start, ..TOO_STIFF };
                 check(&wall, wall.press());
             }
         }
@@ -154,14 +166,7 @@ fn a_wall_three_times_too_stiff_gives_out_at_most_a_millijoule() {
 
 #[test]
 fn without_control_it_would_give_out_hundreds() {
-    let wall = Wall {
-        mass: 0.05,
-        stiffness: 3000.0,
-        grip: 0.0,
-        start: 0.0,
-        encoder_step: 0.0,
-        has_control: false,
-    };
+    let wall = Wall { has_control: false, ..TOO_STIFF };
     assert!(wall.press().least_balance < -0.3);
 }
 
@@ -170,8 +175,7 @@ fn a_wall_seen_in_steps_gives_out_at_most_a_millijoule_and_holds_the_hand() {
     for encoder_step in [1e-6, 1e-5, 3e-5] {
         for grip in [0.0, 0.5, 2.0, 10.0] {
             for start in [0.0, 0.01, 0.05] {
-                let (mass, stiffness, has_control) = (0.05, 3000.0, true);
-                let wall = Wall { mass, stiffness, grip, start, encoder_step, has_control };
+                let wall = Wall { grip, start, encoder_step, ..TOO_STIFF };
                 let Outcome { least_balance, x, v, .. } = wall.press();
                 assert!(least_balance >= -1e-3, "{least_balance} J: {encoder_step}, {grip}");
                 // A quarter of 2 b / T is left in any case: 4 mm at 1 N, and some steps.
@@ -185,6 +189,17 @@ fn a_wall_seen_in_steps_gives_out_at_most_a_millijoule_and_holds_the_hand() {
 }
 
 #[test]
+fn a_millijoule_bounds_a_wall_whose_force_changes_slowly() {
+    for (start, max_force_rate) in [(0.0, 300.0), (0.001, 1000.0), (0.01, 3000.0)] {
+        for grip in [0.0, 0.5, 2.0, 10.0] {
+            let outcome = Wall { grip, start, max_force_rate, ..TOO_STIFF }.press();
+            let least = outcome.least_balance;
+            assert!(least >= -1e-3, "{least} J: {max_force_rate} N/s, grip {grip}");
+        }
+    }
+}
+
+#[test]
 fn a_passive_wall_is_never_touched() {
     for stiffness in [50.0, 500.0, 900.0] {
         presses(stiffness, |wall, outcome| {
@@ -192,8 +207,7 @@ fn a_passive_wall_is_never_touched() {
             assert_eq!(effect.ticks, 0, "at grip {}, start {}", wall.grip, wall.start);
         });
         for encoder_step in [1e-5, 3e-5] {
-            let (mass, grip, start, has_control) = (0.05, 0.0, 0.01, true);
-            let wall = Wall { mass, stiffness, grip, start, encoder_step, has_control };
+            let wall = Wall { stiffness, start: 0.01, encoder_step, ..TOO_STIFF };
             assert_eq!(wall.press().report.passivity.effect.ticks, 0);
         }
     }

@@ -124,8 +124,9 @@ impl SafetyOptions {
 ///   eats what it leaks. A stiffer one gives out little more than it took in: three times as
 ///   stiff, on 0.05 to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with
 ///   1 N for 10 s, from up to 50 mm away and in encoder steps of up to 30 µm, at most 1 mJ
-///   (`tests/safety.rs`). A change of force that is limited behind the controller may add to
-///   that; it is observed, and paid back.
+///   (`tests/safety.rs`). The force must be allowed to change as fast as it does on the way out
+///   of the wall, `K v`: a slower [`DeviceProfile::max_force_rate`] holds forces that the
+///   controller would take back, and after strikes more is given out.
 ///
 /// The least damping of the device's profile is what the promise of passivity stands on, and is
 /// often [assumed](DeviceProfile::assumed); the report says so.
@@ -195,10 +196,11 @@ impl<const D: usize> SafetyChain<D> {
             stiffness: accepted.device_stiffness,
             damping,
             mass: not_negative("mass", device.mass, "kg")?,
+            max_rate: limit("max_force_rate", device.max_force_rate, "N/s")?,
             reserve: not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
-        let slew = SlewLimit::new(limit("max_force_rate", device.max_force_rate, "N/s")?, rate);
+        let slew = SlewLimit::new(passivity.max_rate, rate);
         let continuous_force = limit("continuous_force", device.continuous_force, "N")?;
         let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
         let rise_time = not_negative("rise_time", options.rise_time, "s")?;

@@ -55,7 +55,9 @@ pub struct PassivityReport {
 ///
 /// *Controller.* A force is made smaller, as a whole, until the energy that it gives out in the
 /// coming tick is no more than the balance and a reserve. The motion is predicted from the
-/// velocity and from what this force and the one before do to the device's mass. A part of the
+/// velocity and from what this force and the one before do to the device's mass. Where the
+/// fastest change of force keeps it from being taken back at once, what it gives out until then
+/// counts too. A part of the
 /// force remains in any case, [`FLOOR`] of that whose leaks damping covers; a wall so soft comes
 /// to rest by itself. The balance is
 /// at most what a spring of the material's stiffness holds at this force, `½ |F|² / K`, so that
@@ -82,6 +84,8 @@ pub(crate) struct PassivityOptions {
     pub(crate) damping: f64,
     /// The device's mass [kg]; 0 if it is not known.
     pub(crate) mass: f64,
+    /// How fast the force can be taken back [N/s].
+    pub(crate) max_rate: f64,
     /// What may be given out before anything was taken in [J].
     pub(crate) reserve: f64,
     /// Of a tick [s].
@@ -188,7 +192,7 @@ impl<const D: usize> Passivity<D> {
         way: Vector<f64, D>,
         state: &PortState<D>,
     ) -> f64 {
-        let PassivityOptions { damping, mass, reserve, period, .. } = self.options;
+        let PassivityOptions { damping, mass, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve).max(0.0);
         // How far a force moves the mass in a tick. Of a mass that is not known, nothing.
         let yielding = if mass > 0.0 { 0.5 * period * period / mass } else { 0.0 };
@@ -200,10 +204,19 @@ impl<const D: usize> Passivity<D> {
             if wanted.dot(by_way) >= wanted.dot(by_velocity) { by_way } else { by_velocity };
         let moved = coasting + wanted * yielding;
         let loss = if self.is_covered() { damping * moved.dot(moved) / period } else { 0.0 };
-        if wanted.dot(moved) - loss <= available {
+        // Where the force cannot be taken back at once, what it gives out until it is: the power
+        // of now, falling to nothing. Only where it may have to be.
+        let power = wanted.dot(coasting).max(0.0) / period;
+        let trailing =
+            if self.is_covered() { 0.0 } else { 0.5 * wanted.norm() / max_rate * power };
+        if wanted.dot(moved) + trailing - loss <= available {
             return 1.0;
         }
-        let part = part_within(available, wanted.dot(coasting), wanted.dot(wanted) * yielding);
+        let part = part_within(
+            available,
+            wanted.dot(coasting),
+            wanted.dot(wanted) * yielding + trailing,
+        );
         // Where damping covers the leaks, the balance knows that already.
         let floor = if self.is_covered() { 0.0 } else { FLOOR * self.losses / self.leaks };
         part.max(floor)
@@ -246,6 +259,7 @@ mod tests {
             stiffness: 100.0,
             damping: 1.0,
             mass: 0.1,
+            max_rate: f64::INFINITY,
             reserve: 1e-4,
             period: 1e-3,
         });
