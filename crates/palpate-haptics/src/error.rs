@@ -19,6 +19,21 @@ pub enum HapticsError {
         /// The unit of the parameter: "N/m".
         unit: &'static str,
     },
+    /// A device does not render a material, and is not to render a softer one.
+    #[error(
+        "a stiffness of {stiffness} N/m and a damping of {damping} N·s/m at the device break \
+         {condition}; {factor} times both would not"
+    )]
+    MaterialRefused {
+        /// Stiffness at the device [N/m].
+        stiffness: f64,
+        /// Damping at the device [N·s/m].
+        damping: f64,
+        /// The rule that is broken: "K ≤ 2 (b − |B|) / T".
+        condition: &'static str,
+        /// What both would have to be multiplied by.
+        factor: f64,
+    },
     /// A hand path needs a beginning and an end.
     #[error("a hand path needs at least 2 samples, got {count}")]
     TooFewSamples {
@@ -117,6 +132,21 @@ pub fn not_negative(
         Ok(value)
     } else {
         let rule = "zero or more and finite";
+        Err(HapticsError::Number { parameter, rule, value, unit })
+    }
+}
+
+/// Checks that `value` is positive; it may be infinite.
+pub(crate) fn positive_or_infinite(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, HapticsError> {
+    // Written so that NaN fails.
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        let rule = "positive";
         Err(HapticsError::Number { parameter, rule, value, unit })
     }
 }

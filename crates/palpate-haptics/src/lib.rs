@@ -63,6 +63,7 @@ mod friction;
 mod guide;
 mod half_spaces;
 mod hand_path;
+mod impedance;
 mod limit;
 mod live;
 mod nearby;
@@ -72,12 +73,15 @@ mod recorded;
 mod recorder;
 mod report;
 mod run;
+mod safety;
 mod sampler;
 mod servo;
 mod statistics;
 mod surface;
 mod tour;
+mod velocity;
 pub mod vibrotactile;
+mod workspace;
 
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, WallClock};
@@ -86,6 +90,7 @@ pub use error::{HapticsError, not_negative, positive};
 pub use event::{Event, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
 pub use hand_path::{HandPath, Interpolation};
+pub use impedance::Impedance;
 pub use limit::limited;
 pub use live::Progress;
 pub use nearby::Nearby;
@@ -95,7 +100,13 @@ pub use recorded::RecordedDevice;
 pub use recorder::{Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
+pub use safety::{
+    Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
+    SafetyChain, SafetyOptions, SafetyReport, WatchdogReport,
+};
 pub use servo::{Servo, ServoOptions, Touch};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use tour::Tour;
+pub use velocity::VelocityEstimator;
+pub use workspace::WorkspaceMap;

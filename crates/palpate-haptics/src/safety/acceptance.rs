@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Which materials a device renders without becoming active, and what becomes of others.
+//!
+//! J. E. Colgate, G. G. Schenkel, "Passivity of a class of sampled-data systems: application to
+//! haptic interfaces" (1997): `b > K T / 2 + |B|`. J. J. Abbott, A. M. Okamura, "Effects of
+//! position quantization and sampling rate on virtual-wall passivity" (2005):
+//! `K ≤ min(2 b / T, 2 f_c / Δ)`.
+
+use std::borrow::Cow;
+
+use crate::device::DeviceProfile;
+use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
+use crate::impedance::Impedance;
+
+/// What is done with a material that a device cannot render.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Acceptance {
+    /// Stiffness and damping are made smaller by the same factor.
+    #[default]
+    Scaled,
+    /// It is an error.
+    Strict,
+    /// Nothing: the passivity controller alone keeps the hand safe.
+    AsItIs,
+}
+
+/// A rule that limits what a device renders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// `K ≤ 2 (b − |B|) / T`, Colgate and Schenkel (1997).
+    Passivity,
+    /// `K ≤ 2 f_c / Δ`, Abbott and Okamura (2005).
+    Quantisation,
+    /// The device's largest stiffness.
+    MaxStiffness,
+    /// The device's largest damping.
+    MaxDamping,
+}
+
+impl Rule {
+    /// The rule as a condition.
+    #[must_use]
+    pub fn condition(self) -> &'static str {
+        match self {
+            Self::Passivity => "K ≤ 2 (b − |B|) / T",
+            Self::Quantisation => "K ≤ 2 f_c / Δ",
+            Self::MaxStiffness => "K ≤ the device's largest stiffness",
+            Self::MaxDamping => "B ≤ the device's largest damping",
+        }
+    }
+}
+
+/// A material as a device renders it.
+///
+/// With the stiffness `K` and damping `B` at the device, a period `T`, the device's least
+/// damping `b`, friction `f_c` and encoder step `Δ`, a material is accepted if
+///
+/// ```text
+/// K ≤ min(2 (b − |B|) / T, 2 f_c / Δ),  K ≤ K_max,  B ≤ B_max
+/// ```
+///
+/// Otherwise both are made smaller by the largest common factor `s` that satisfies all:
+///
+/// ```text
+/// s = min(b / (K T / 2 + B), 2 f_c / (Δ K), K_max / K, B_max / B)
+/// ```
+///
+/// The second clause does not bind without steps, or where the friction is infinite. What is
+/// promised is worth no more than the profile's numbers: see [`assumed`](Self::assumed). The
+/// largest stiffness and damping of a profile are those at 1 kHz, and taken as they stand at any
+/// rate.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_haptics::{Accepted, DeviceProfile, Impedance, Rule};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+/// // b / (K T / 2 + B) = 0.5 / (1.5 + 0.5)
+/// let accepted = Accepted::new(Impedance::new(3000.0, 0.5)?, 1.0, &device, 1000.0)?;
+/// assert_eq!((accepted.factor, accepted.rule), (0.25, Some(Rule::Passivity)));
+/// assert_eq!(accepted.impedance, Impedance::new(750.0, 0.125)?);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Accepted {
+    /// The material to render, in the world.
+    #[serde(skip)]
+    pub impedance: Impedance,
+    /// Its stiffness at the device [N/m].
+    pub device_stiffness: f64,
+    /// Its damping at the device [N·s/m].
+    pub device_damping: f64,
+    /// What stiffness and damping were multiplied by, in (0, 1].
+    pub factor: f64,
+    /// The rule that bound them; `None` if the material is as it was wanted.
+    pub rule: Option<Rule>,
+    /// Which of the device's numbers are assumed.
+    pub assumed: Cow<'static, [&'static str]>,
+}
+
+impl Accepted {
+    /// What `device` renders of `impedance` at `rate` [Hz], if lengths in the world are `scale`
+    /// times those at the device: [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if rate or scale is not positive and finite, if a number of the
+    /// device's profile that a rule needs is not positive, as nothing can be rendered then, or
+    /// if nothing is left of the stiffness.
+    pub fn new(
+        impedance: Impedance,
+        scale: f64,
+        device: &DeviceProfile,
+        rate: f64,
+    ) -> Result<Self, HapticsError> {
+        let (stiffness, damping) = at_device(impedance, scale)?;
+        let limits = limits(stiffness, damping, device, rate)?;
+        let (mut factor, mut rule) = (1.0, None);
+        for (limit, of) in limits {
+            if limit < factor {
+                (factor, rule) = (limit, Some(of));
+            }
+        }
+        let scaled =
+            if rule.is_some() { impedance_times(impedance, factor)? } else { impedance };
+        Ok(Self { factor, rule, ..Self::as_it_is(scaled, scale, device)? })
+    }
+
+    /// As [`new`](Self::new), but refuses what would have to be scaled.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), or [`HapticsError::MaterialRefused`].
+    ///
+    /// ```
+    /// use palpate_haptics::{Accepted, DeviceProfile, Impedance};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+    /// let refused = Accepted::strict(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0);
+    /// assert_eq!(
+    ///     refused.unwrap_err().to_string(),
+    ///     "a stiffness of 2000 N/m and a damping of 0 N·s/m at the device break \
+    ///      K ≤ 2 (b − |B|) / T; 0.5 times both would not"
+    /// );
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn strict(
+        impedance: Impedance,
+        scale: f64,
+        device: &DeviceProfile,
+        rate: f64,
+    ) -> Result<Self, HapticsError> {
+        let accepted = Self::new(impedance, scale, device, rate)?;
+        match accepted.rule {
+            None => Ok(accepted),
+            Some(rule) => {
+                let (stiffness, damping) = at_device(impedance, scale)?;
+                let (factor, condition) = (accepted.factor, rule.condition());
+                Err(HapticsError::MaterialRefused { stiffness, damping, condition, factor })
+            }
+        }
+    }
+
+    /// The material as it is wanted, whatever the device renders.
+    pub(crate) fn as_it_is(
+        impedance: Impedance,
+        scale: f64,
+        device: &DeviceProfile,
+    ) -> Result<Self, HapticsError> {
+        let (device_stiffness, device_damping) = at_device(impedance, scale)?;
+        let assumed = device.assumed.clone();
+        Ok(Self {
+            impedance,
+            device_stiffness,
+            device_damping,
+            factor: 1.0,
+            rule: None,
+            assumed,
+        })
+    }
+}
+
+/// Stiffness [N/m] and damping [N·s/m] at the device: forces are those of the world, ways and
+/// velocities `scale` times as small.
+fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), HapticsError> {
+    let scale = positive("scale", scale, "(world per device)")?;
+    Ok((scale * impedance.stiffness(), scale * impedance.damping()))
+}
+
+fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, HapticsError> {
+    Impedance::new(factor * impedance.stiffness(), factor * impedance.damping())
+}
+
+/// The largest factor that each rule allows. Infinite where it does not bind.
+fn limits(
+    stiffness: f64,
+    damping: f64,
+    device: &DeviceProfile,
+    rate: f64,
+) -> Result<[(f64, Rule); 4], HapticsError> {
+    let period = 1.0 / positive("rate", rate, "Hz")?;
+    let least = positive_or_infinite("least_damping", device.least_damping, "N·s/m")?;
+    let max_stiffness = positive_or_infinite("max_stiffness", device.max_stiffness, "N/m")?;
+    let step = not_negative("encoder_step", device.encoder_step, "m")?;
+    let quantisation = if step > 0.0 {
+        2.0 * positive_or_infinite("friction", device.friction, "N")? / (step * stiffness)
+    } else {
+        f64::INFINITY
+    };
+    let of_damping = if damping > 0.0 {
+        positive_or_infinite("max_damping", device.max_damping, "N·s/m")? / damping
+    } else {
+        f64::INFINITY
+    };
+    Ok([
+        (least / (0.5 * period * stiffness + damping), Rule::Passivity),
+        (quantisation, Rule::Quantisation),
+        (max_stiffness / stiffness, Rule::MaxStiffness),
+        (of_damping, Rule::MaxDamping),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::cases;
+
+    fn device() -> DeviceProfile {
+        DeviceProfile {
+            least_damping: 0.5,
+            friction: 0.0625,
+            encoder_step: 3e-5,
+            max_stiffness: 2500.0,
+            max_damping: 4.0,
+            assumed: Cow::Borrowed(&["least_damping"]),
+            ..DeviceProfile::unlimited("example")
+        }
+    }
+
+    fn accept(stiffness: f64, damping: f64, device: &DeviceProfile) -> Accepted {
+        Accepted::new(Impedance::new(stiffness, damping).unwrap(), 1.0, device, 1000.0).unwrap()
+    }
+
+    #[test]
+    fn every_rule_binds_somewhere() {
+        let base = device();
+        let with = |change: &dyn Fn(&mut DeviceProfile)| {
+            let mut device = device();
+            change(&mut device);
+            device
+        };
+        let rule_of = |k, b, device: &DeviceProfile| {
+            let accepted = accept(k, b, device);
+            (accepted.factor, accepted.rule)
+        };
+        assert_eq!(rule_of(1000.0, 0.0, &base), (1.0, None));
+        assert_eq!(rule_of(2000.0, 0.0, &base), (0.5, Some(Rule::Passivity)));
+        assert_eq!(rule_of(1000.0, 0.5, &base), (0.5, Some(Rule::Passivity)));
+        let rough = with(&|d| d.encoder_step = 0.000_25);
+        assert_eq!(rule_of(1000.0, 0.0, &rough), (0.5, Some(Rule::Quantisation)));
+        let soft = with(&|d| d.max_stiffness = 250.0);
+        assert_eq!(rule_of(1000.0, 0.0, &soft), (0.25, Some(Rule::MaxStiffness)));
+        let thin = with(&|d| d.max_damping = 0.0625);
+        assert_eq!(rule_of(100.0, 0.25, &thin), (0.25, Some(Rule::MaxDamping)));
+        let free = with(&|d| d.friction = f64::INFINITY);
+        assert_eq!(rule_of(1000.0, 0.0, &free), (1.0, None));
+    }
+
+    #[test]
+    fn what_is_accepted_satisfies_every_rule_and_no_larger_factor_does() {
+        let device = device();
+        cases(500, |u| {
+            let k = f64::from(u.int_in_range(1..=20_000)?);
+            let b = f64::from(u.int_in_range(0..=10_000)?) * 1e-3;
+            let accepted = accept(k, b, &device);
+            let holds = |s: f64, k: f64, b: f64| {
+                let (k, b) = (s * k, s * b);
+                k <= 2.0 * (0.5 - b) / 1e-3
+                    && k <= 2.0 * 0.0625 / 3e-5
+                    && k <= 2500.0
+                    && b <= 4.0
+            };
+            let (k_accepted, b_accepted) = (accepted.device_stiffness, accepted.device_damping);
+            assert!(holds(1.0 - 1e-12, k_accepted, b_accepted));
+            assert_eq!(accepted.rule.is_none(), accepted.factor == 1.0);
+            assert!(accepted.rule.is_none() || !holds(accepted.factor * (1.0 + 1e-12), k, b));
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn stiffness_at_the_device_counts() {
+        let impedance = Impedance::new(1000.0, 0.0).unwrap();
+        let accepted = Accepted::new(impedance, 4.0, &device(), 1000.0).unwrap();
+        assert_eq!(accepted.factor, 0.25);
+        assert_eq!(accepted.device_stiffness, 1000.0);
+        assert_eq!(accepted.impedance.stiffness(), 250.0);
+        assert_eq!(*accepted.assumed, ["least_damping"]);
+    }
+
+    #[test]
+    fn a_device_that_renders_nothing_is_an_error() {
+        let impedance = Impedance::new(100.0, 0.0).unwrap();
+        for least_damping in [0.0, -1.0, f64::NAN] {
+            let device = DeviceProfile { least_damping, ..device() };
+            assert!(Accepted::new(impedance, 1.0, &device, 1000.0).is_err());
+        }
+        let device = DeviceProfile { friction: 0.0, ..device() };
+        let error = Accepted::new(impedance, 1.0, &device, 1000.0).unwrap_err();
+        assert_eq!(error.to_string(), "friction must be positive, got 0 N");
+        assert!(Accepted::new(impedance, 0.0, &device, 1000.0).is_err());
+        assert!(Accepted::new(impedance, 1.0, &device, f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The force that motors stand for long.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+use crate::limit::limited;
+
+/// From this part of the continuous force on, larger forces are shortened. Nearer to one, they
+/// are shortened later and faster.
+const ONSET: f64 = 0.9;
+
+/// Keeps the heat of motors below that of their continuous force.
+///
+/// Heat grows with the square of the current, so of the force, and leaves in proportion to
+/// itself: with the force written `F` and a time constant `τ`, `τ dh/dt = |F|² − h`, exactly
+/// for a held force. As `√h` goes from 0.9 to 1 of the continuous force, what is longer than
+/// that is shortened to it, in proportion; so a burst of any force passes at first, and `√h`
+/// never exceeds the continuous force. Shorter forces are never changed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContinuousLimit {
+    continuous_force: f64,
+    /// What a tick brings `h` nearer to the square of its force.
+    part: f64,
+    heat: f64,
+}
+
+impl ContinuousLimit {
+    /// For `continuous_force` [N], a time constant [s] and `rate` [Hz].
+    pub(crate) fn new(continuous_force: f64, time_constant: f64, rate: f64) -> Self {
+        let part = -libm::expm1(-1.0 / (time_constant * rate));
+        Self { continuous_force, part, heat: 0.0 }
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit<const D: usize>(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+        let norm = force.norm();
+        let load = self.root_mean_square() / self.continuous_force;
+        let blend = ((load - ONSET) / (1.0 - ONSET)).clamp(0.0, 1.0);
+        if norm <= self.continuous_force || blend <= 0.0 {
+            return force;
+        }
+        limited(force, norm + (self.continuous_force - norm) * blend)
+    }
+
+    /// Takes the force that was written in the end.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn written<const D: usize>(&mut self, force: Vector<f64, D>) {
+        // A square that overflows would never cool down.
+        let square = force.dot(force).min(f64::MAX);
+        self.heat += self.part * (square - self.heat);
+    }
+
+    /// `√h` [N]: the steady force that would be as warm.
+    pub(crate) fn root_mean_square(&self) -> f64 {
+        self.heat.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_burst_passes_and_a_long_press_does_not() {
+        let mut limit = ContinuousLimit::new(2.0, 1.0, 1000.0);
+        let wanted = Vector([0.0, 6.0]);
+        let mut written = wanted;
+        for tick in 0..20_000 {
+            let next = limit.limit(wanted);
+            // h = 36 (1 − e^−t) reaches (0.9 · 2)² at t = 0.0943 s.
+            assert!(tick > 94 || next == wanted);
+            assert!((next - written).norm() < 0.6, "smoothly");
+            written = next;
+            limit.written(written);
+            assert!(limit.root_mean_square() <= 2.0);
+        }
+        assert!(written.norm() < 2.0 + 0.1 && written.norm() > 1.8);
+    }
+
+    #[test]
+    fn what_may_last_is_never_changed() {
+        let mut limit = ContinuousLimit::new(2.0, 0.1, 1000.0);
+        let wanted = Vector([2.0, 0.0]);
+        for _ in 0..2000 {
+            assert_eq!(limit.limit(wanted), wanted);
+            limit.written(wanted);
+        }
+        assert!((limit.root_mean_square() - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn without_a_continuous_force_nothing_is_changed() {
+        let mut limit = ContinuousLimit::new(f64::INFINITY, 0.1, 1000.0);
+        limit.written(Vector([1e200, 0.0]));
+        assert_eq!(limit.limit(Vector([1e200, 1.0])), Vector([1e200, 1.0]));
+    }
+}

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How often a stage acted, and how much.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+/// What a stage of the safety chain did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Effect {
+    /// Ticks in which it changed the force.
+    pub ticks: u64,
+    /// The largest change of the force [N], of those that are finite.
+    pub largest: f64,
+}
+
+impl Effect {
+    /// Counts what a stage made of a force; returns that.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn count<const D: usize>(
+        &mut self,
+        before: Vector<f64, D>,
+        after: Vector<f64, D>,
+    ) -> Vector<f64, D> {
+        // NaN differs from itself.
+        if before != after {
+            self.ticks += 1;
+            let change = (before - after).norm();
+            if change.is_finite() {
+                self.largest = self.largest.max(change);
+            }
+        }
+        after
+    }
+}

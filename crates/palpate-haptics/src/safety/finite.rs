@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The last number that is not one.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+use super::PortState;
+
+/// `true` if force, position and velocity are numbers.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
+    wanted.is_finite() && state.position.is_finite() && state.velocity.is_finite()
+}
+
+/// `force` if what led to it was sound and it is finite, or no force.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn guarded<const D: usize>(force: Vector<f64, D>, sound: bool) -> Vector<f64, D> {
+    if sound && force.is_finite() { force } else { Vector::ZERO }
+}

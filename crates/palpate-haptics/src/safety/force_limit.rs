@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The largest force.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+use crate::limit::limited;
+
+/// Shortens what is longer than a length, keeping its direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceLimit {
+    max_force: f64,
+}
+
+impl ForceLimit {
+    /// Forces of at most `max_force` [N].
+    pub(crate) fn new(max_force: f64) -> Self {
+        Self { max_force }
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit<const D: usize>(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+        limited(force, self.max_force)
+    }
+}

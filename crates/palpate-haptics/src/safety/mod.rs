@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What stands between a wanted force and a hand.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod acceptance;
+mod continuous;
+mod effect;
+mod finite;
+mod force_limit;
+mod passivity;
+mod ramp;
+mod report;
+mod slew;
+mod watchdog;
+
+use std::num::NonZeroU32;
+
+use palpate_field::{Point, Vector};
+
+pub use acceptance::{Acceptance, Accepted, Rule};
+pub use effect::Effect;
+pub use passivity::PassivityReport;
+pub use report::{ContinuousReport, SafetyReport, WatchdogReport};
+
+use continuous::ContinuousLimit;
+use force_limit::ForceLimit;
+use passivity::{Passivity, PassivityOptions};
+use ramp::Ramp;
+use report::Effects;
+use slew::SlewLimit;
+use watchdog::Watchdog;
+
+use crate::device::DeviceProfile;
+use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
+use crate::impedance::Impedance;
+
+/// One contact point in a tick, as its safety chain sees it. Device coordinates, as it is the
+/// device that has limits: [`WorkspaceMap`](crate::WorkspaceMap) gives them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PortState<const D: usize> {
+    /// Where the hand holds the device [m], unfiltered.
+    pub position: Point<D>,
+    /// How fast it moves [m/s], as by [`VelocityEstimator`](crate::VelocityEstimator).
+    pub velocity: Vector<f64, D>,
+    /// The tick began too late.
+    pub is_late: bool,
+    /// The force is to rise from nothing: the point was placed inside a shape, or a shape was
+    /// moved onto it. In one tick; in each of many, it stays down.
+    pub wants_ramp: bool,
+}
+
+impl<const D: usize> PortState<D> {
+    /// A point at rest at the origin, in time.
+    #[must_use]
+    pub fn at_rest() -> Self {
+        let (position, velocity) = (Vector::ZERO, Vector::ZERO);
+        Self { position, velocity, is_late: false, wants_ramp: false }
+    }
+}
+
+/// What a safety chain protects from, beside the limits of the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SafetyOptions {
+    /// What is to be rendered, in the world.
+    pub impedance: Impedance,
+    /// Lengths in the world over lengths at the device:
+    /// [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
+    pub scale: f64,
+    /// What is done with a material that the device cannot render.
+    pub acceptance: Acceptance,
+    /// Whether the passivity controller acts. It observes anyway. Forces that are to do work on
+    /// the hand, such as attractions, are incompatible with it.
+    pub has_passivity_control: bool,
+    /// Energy that may be given out before any was taken in [J].
+    pub reserve: f64,
+    /// The time constant with which the motors cool [s]. Makers do not state it.
+    pub cooling_time: f64,
+    /// The time over which the force rises after the start, a placement or an emergency [s].
+    pub rise_time: f64,
+    /// So many late ticks in a row lower the force to zero; as many in time raise it again.
+    pub late_ticks: NonZeroU32,
+    /// The time over which late ticks lower the force to zero [s].
+    pub fall_time: f64,
+}
+
+impl SafetyOptions {
+    /// For `impedance` in a world as large as the device's: scaled where it must be, passivity
+    /// controlled with a reserve of 0.1 mJ, which the hand does not feel; motors that cool in
+    /// 2 s; forces that rise in 0.2 s; and fall in 0.02 s after 5 late ticks.
+    #[must_use]
+    pub fn new(impedance: Impedance) -> Self {
+        Self {
+            impedance,
+            scale: 1.0,
+            acceptance: Acceptance::Scaled,
+            has_passivity_control: true,
+            reserve: 1e-4,
+            cooling_time: 2.0,
+            rise_time: 0.2,
+            late_ticks: NonZeroU32::MIN.saturating_add(4),
+            fall_time: 0.02,
+        }
+    }
+}
+
+/// The safety chain of one contact point: from the wanted force to the one that is written.
+///
+/// In this order: the material and the device's stiffness and damping ([`Accepted`], at
+/// set-up), passivity, the fastest change of force, the largest force, the continuous force,
+/// the guard against what is not a number, and the factors of ramp, deadline watchdog and
+/// emergency stop. Where nothing is wrong, the force written is the wanted one, bit for bit.
+///
+/// # What is promised
+///
+/// Whatever comes in, in any tick:
+///
+/// - The force is finite and no larger than [`DeviceProfile::max_force`].
+/// - It changes by no more than [`DeviceProfile::max_force_rate`] a second. The exceptions fall
+///   to zero in one tick: an input that is not a number, and the emergency stop.
+/// - With passivity control, a wall of up to `2 b / T` is never changed, as the device's damping
+///   eats what it leaks. A stiffer one gives out little more than it took in: three times as
+///   stiff, on 0.05 to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with
+///   1 N for 10 s, from up to 50 mm away and in encoder steps of up to 30 µm, at most 1 mJ
+///   (`tests/safety.rs`). The force must be allowed to change as fast as it does on the way out
+///   of the wall, `K v`: a slower [`DeviceProfile::max_force_rate`] holds forces that the
+///   controller would take back, and after strikes more is given out.
+///
+/// The least damping of the device's profile is what the promise of passivity stands on, and is
+/// often [assumed](DeviceProfile::assumed); the report says so.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_haptics::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let device = DeviceProfile { max_force: 2.5, ..DeviceProfile::unlimited("example") };
+/// let options = SafetyOptions { rise_time: 0.0, ..SafetyOptions::new(Impedance::default()) };
+/// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
+/// let state = PortState::at_rest();
+/// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 1.0]));
+/// assert_eq!(chain.step(Vector([3.0, 4.0]), &state), Vector([1.5, 2.0]));
+/// chain.stop();
+/// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 0.0]));
+///
+/// let report = chain.report();
+/// assert_eq!((report.force_limit.ticks, report.force_limit.largest), (1, 2.5));
+/// assert_eq!(report.emergency_stop.ticks, 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct SafetyChain<const D: usize> {
+    accepted: Accepted,
+    passivity: Passivity<D>,
+    slew: SlewLimit<D>,
+    force_limit: ForceLimit,
+    continuous: ContinuousLimit,
+    ramp: Ramp,
+    watchdog: Watchdog,
+    is_stopped: bool,
+    /// The fastest change once more, as what comes after the first may change the force too.
+    closing: SlewLimit<D>,
+    effects: Effects,
+}
+
+impl<const D: usize> SafetyChain<D> {
+    /// A chain for `device` at `rate` [Hz].
+    ///
+    /// # Errors
+    ///
+    /// As [`Accepted::new`] or, where the options say so, [`Accepted::strict`];
+    /// [`HapticsError::Number`] if a limit of the device is not positive, its mass negative, or
+    /// an energy or a time of the options negative or not finite.
+    pub fn new(
+        device: &DeviceProfile,
+        rate: f64,
+        options: SafetyOptions,
+    ) -> Result<Self, HapticsError> {
+        let rate = positive("rate", rate, "Hz")?;
+        let SafetyOptions { impedance, scale, .. } = options;
+        let accepted = match options.acceptance {
+            Acceptance::Scaled => Accepted::new(impedance, scale, device, rate),
+            Acceptance::Strict => Accepted::strict(impedance, scale, device, rate),
+            Acceptance::AsItIs => Accepted::as_it_is(impedance, scale, device),
+        }?;
+        let limit = |parameter, value, unit| positive_or_infinite(parameter, value, unit);
+        let damping = limit("least_damping", device.least_damping, "N·s/m")?;
+        let passivity = PassivityOptions {
+            // A device that loses any energy at once is passive whatever it renders.
+            is_on: options.has_passivity_control && damping < f64::INFINITY,
+            stiffness: accepted.device_stiffness,
+            damping,
+            mass: not_negative("mass", device.mass, "kg")?,
+            max_rate: limit("max_force_rate", device.max_force_rate, "N/s")?,
+            reserve: not_negative("reserve", options.reserve, "J")?,
+            period: 1.0 / rate,
+        };
+        let slew = SlewLimit::new(passivity.max_rate, rate);
+        let continuous_force = limit("continuous_force", device.continuous_force, "N")?;
+        let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
+        let rise_time = not_negative("rise_time", options.rise_time, "s")?;
+        let fall_time = not_negative("fall_time", options.fall_time, "s")?;
+        let times = (rise_time, fall_time);
+        Ok(Self {
+            accepted,
+            passivity: Passivity::new(passivity),
+            slew,
+            force_limit: ForceLimit::new(limit("max_force", device.max_force, "N")?),
+            continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
+            ramp: Ramp::new(0.0, times, rate),
+            watchdog: Watchdog::new(options.late_ticks, Ramp::new(1.0, times, rate)),
+            is_stopped: false,
+            closing: slew,
+            effects: Effects::default(),
+        })
+    }
+
+    /// The material as the device renders it: what the wanted forces are to be made with.
+    #[must_use]
+    pub fn accepted(&self) -> &Accepted {
+        &self.accepted
+    }
+
+    /// The force to write [N] where `wanted` [N] is wanted, at the device, in one tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+        self.effects.ticks += 1;
+        // What is not a number reaches no stage that remembers; the guard answers for it below.
+        let is_sound = finite::is_sound(wanted, state);
+        let force = if is_sound {
+            self.limited(wanted, state)
+        } else {
+            self.passivity.lose();
+            wanted
+        };
+        let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
+        let force = self.faded(force, state);
+        if !is_sound || self.is_stopped {
+            // To zero at once: the exceptions of the fastest change.
+            self.slew.restart();
+            self.closing.restart();
+        }
+        let closed = self.closing.limit(force);
+        let force = self.effects.slew.count(force, closed);
+        self.continuous.written(force);
+        self.passivity.written(force);
+        force
+    }
+
+    /// Stops: no force until [`release`](Self::release).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn stop(&mut self) {
+        self.effects.stops += u64::from(!self.is_stopped);
+        self.is_stopped = true;
+    }
+
+    /// Ends an emergency stop; the force rises from nothing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn release(&mut self) {
+        if self.is_stopped {
+            self.ramp.restart();
+        }
+        self.is_stopped = false;
+    }
+
+    /// `true` between [`stop`](Self::stop) and [`release`](Self::release).
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped
+    }
+
+    /// What every stage did so far.
+    #[must_use]
+    pub fn report(&self) -> SafetyReport {
+        self.effects.report(self)
+    }
+
+    /// What passivity and the device's limits leave of a force.
+    fn limited(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+        let effects = &mut self.effects;
+        let force = self.passivity.limit(wanted, state);
+        let force = effects.slew.count(force, self.slew.limit(force));
+        let force = effects.force_limit.count(force, self.force_limit.limit(force));
+        effects.continuous.count(force, self.continuous.limit(force))
+    }
+
+    /// What ramp, watchdog and emergency stop leave of a force.
+    fn faded(&mut self, force: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+        if state.wants_ramp {
+            self.ramp.restart();
+        }
+        let effects = &mut self.effects;
+        let force = effects.ramp.count(force, force * self.ramp.step(true));
+        let force = effects.watchdog.count(force, force * self.watchdog.step(state.is_late));
+        let left = if self.is_stopped { Vector::ZERO } else { force };
+        effects.emergency_stop.count(force, left)
+    }
+}

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How fast a force may change.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+use crate::limit::limited;
+
+/// Follows a force by at most so much a tick, on the straight line to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlewLimit<const D: usize> {
+    /// The largest change a tick [N].
+    step: f64,
+    last: Vector<f64, D>,
+}
+
+impl<const D: usize> SlewLimit<D> {
+    /// Changes of at most `max_rate` [N/s] at `rate` [Hz].
+    pub(crate) fn new(max_rate: f64, rate: f64) -> Self {
+        Self { step: max_rate / rate, last: Vector::ZERO }
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
+        let change = force - self.last;
+        if change.norm() <= self.step {
+            self.last = force;
+        } else {
+            self.last += limited(change, self.step);
+        }
+        self.last
+    }
+
+    /// The next force follows none.
+    pub(crate) fn restart(&mut self) {
+        self.last = Vector::ZERO;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_is_reached_in_equal_steps() {
+        let mut slew = SlewLimit::new(1000.0, 1000.0);
+        let wanted = Vector([0.0, 2.5]);
+        let steps: Vec<_> = (0..4).map(|_| slew.limit(wanted).0[1]).collect();
+        assert_eq!(steps, [1.0, 2.0, 2.5, 2.5]);
+        slew.restart();
+        assert_eq!(slew.limit(wanted), Vector([0.0, 1.0]));
+        let mut free = SlewLimit::new(f64::INFINITY, 1000.0);
+        assert_eq!(free.limit(wanted), wanted);
+    }
+}

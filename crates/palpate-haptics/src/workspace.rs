@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Where a device's workspace lies in the world, and what is felt through it.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Aabb, Point, Pose, Vector};
+
+use crate::device::PointState;
+use crate::error::{HapticsError, positive};
+
+/// From device to world coordinates and back: `world = s R device + t`.
+///
+/// A motion is turned by `R` and made `s` times as large; a force is turned alone, as the hand
+/// is to feel the newtons of the world. So a way of 1 m at the device is `s` m in a spring of
+/// the world, which is felt as `s` times as stiff: with `F = K s x`, `K_device = s K_world`.
+/// What a device can render limits the stiffness at the device.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_field::{Pose, Vector};
+/// use palpate_haptics::WorkspaceMap;
+///
+/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// let map = WorkspaceMap::new(Pose::translation(Vector([1.0, 0.0])), 4.0)?;
+/// assert_eq!(map.point_to_world(Vector([0.5, 0.25])), Vector([3.0, 1.0]));
+/// assert_eq!(map.force_to_device(Vector([0.0, 2.0])), Vector([0.0, 2.0]));
+/// assert_eq!(map.device_stiffness(500.0), 2000.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkspaceMap<const D: usize> {
+    world_from_device: Pose<D>,
+    device_from_world: Pose<D>,
+    scale: f64,
+}
+
+impl<const D: usize> WorkspaceMap<D> {
+    /// Device coordinates times `scale`, then placed by `world_from_device`.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the scale is not positive and finite, or the translation not
+    /// finite.
+    pub fn new(world_from_device: Pose<D>, scale: f64) -> Result<Self, HapticsError> {
+        let scale = positive("scale", scale, "(world per device)")?;
+        let wrong = world_from_device.translation.0.into_iter().find(|x| !x.is_finite());
+        match wrong {
+            Some(value) => Err(HapticsError::Number {
+                parameter: "translation",
+                rule: "finite",
+                value,
+                unit: "m",
+            }),
+            None => Ok(Self {
+                world_from_device,
+                device_from_world: world_from_device.inverse(),
+                scale,
+            }),
+        }
+    }
+
+    /// The map without rotation whose workspace, a ball of `workspace_radius` [m] about the
+    /// device's origin, just holds `scene`: every point of the box is reached.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the radius or the scene's size is not positive and finite.
+    ///
+    /// ```
+    /// use palpate_field::{Aabb, Vector};
+    /// use palpate_haptics::WorkspaceMap;
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let scene = Aabb::centred(Vector([3.0, 4.0]));
+    /// assert_eq!(WorkspaceMap::fitting(scene, 0.125)?.scale(), 40.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn fitting(scene: Aabb<D>, workspace_radius: f64) -> Result<Self, HapticsError> {
+        let workspace_radius = positive("workspace_radius", workspace_radius, "m")?;
+        let half_diagonal =
+            positive("half diagonal of the scene", scene.half_extents().norm(), "m")?;
+        Self::new(Pose::translation(scene.centre()), half_diagonal / workspace_radius)
+    }
+
+    /// Lengths in the world over lengths at the device.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Where a point at the device is in the world [m]. Real-time.
+    #[must_use]
+    pub fn point_to_world(&self, point: Point<D>) -> Point<D> {
+        self.world_from_device.transform_point(point * self.scale)
+    }
+
+    /// Where a point of the world is at the device [m]. Real-time.
+    #[must_use]
+    pub fn point_to_device(&self, point: Point<D>) -> Point<D> {
+        self.device_from_world.transform_point(point) * (1.0 / self.scale)
+    }
+
+    /// A velocity at the device as one in the world [m/s]. Real-time.
+    #[must_use]
+    pub fn velocity_to_world(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
+        self.world_from_device.transform_vector(velocity * self.scale)
+    }
+
+    /// A velocity in the world as one at the device [m/s]. Real-time.
+    #[must_use]
+    pub fn velocity_to_device(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
+        self.device_from_world.transform_vector(velocity) * (1.0 / self.scale)
+    }
+
+    /// A contact point at the device as one in the world. Real-time.
+    #[must_use]
+    pub fn state_to_world(&self, state: PointState<D>) -> PointState<D> {
+        PointState {
+            position: self.point_to_world(state.position),
+            velocity: self.velocity_to_world(state.velocity),
+        }
+    }
+
+    /// A force of the world as one at the device, of the same size [N]. Real-time.
+    #[must_use]
+    pub fn force_to_device(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+        self.device_from_world.transform_vector(force)
+    }
+
+    /// A force at the device as one in the world, of the same size [N]. Real-time.
+    #[must_use]
+    pub fn force_to_world(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+        self.world_from_device.transform_vector(force)
+    }
+
+    /// What a stiffness of the world is at the device [N/m]: `s` times as much.
+    #[must_use]
+    pub fn device_stiffness(&self, world_stiffness: f64) -> f64 {
+        self.scale * world_stiffness
+    }
+
+    /// What a damping of the world is at the device [N·s/m]: `s` times as much, as velocities
+    /// are scaled like ways.
+    #[must_use]
+    pub fn device_damping(&self, world_damping: f64) -> f64 {
+        self.scale * world_damping
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Rotation;
+
+    use super::*;
+
+    fn map() -> WorkspaceMap<3> {
+        let rotation = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.7).unwrap();
+        let pose = Pose::new(rotation, Vector([0.3, -1.0, 2.0]));
+        WorkspaceMap::new(pose, 2.5).unwrap()
+    }
+
+    #[test]
+    fn there_and_back_is_where_it_was() {
+        let (map, v) = (map(), Vector([0.1, -0.2, 0.7]));
+        let close = |a: Vector<f64, 3>| assert!((a - v).norm() < 1e-14);
+        close(map.point_to_device(map.point_to_world(v)));
+        close(map.velocity_to_device(map.velocity_to_world(v)));
+        close(map.force_to_device(map.force_to_world(v)));
+    }
+
+    #[test]
+    fn a_spring_of_the_world_is_felt_as_the_scaled_one() {
+        let (map, stiffness) = (map(), 300.0);
+        let (from, to) = (Vector([0.01, 0.02, 0.03]), Vector([0.011, 0.018, 0.033]));
+        let stretch = map.point_to_world(from) - map.point_to_world(to);
+        let felt = map.force_to_device(stretch * stiffness);
+        let expected = (from - to) * map.device_stiffness(stiffness);
+        assert!((felt - expected).norm() < 1e-12);
+        assert_eq!(map.device_stiffness(stiffness), 750.0);
+    }
+
+    #[test]
+    fn a_velocity_is_the_change_of_the_point() {
+        let map = map();
+        let (at, way) = (Vector([0.01, 0.02, 0.03]), Vector([0.5, 0.25, -1.0]));
+        let moved = map.point_to_world(at + way) - map.point_to_world(at);
+        let state = map.state_to_world(PointState { position: at, velocity: way });
+        assert!((moved - state.velocity).norm() < 1e-14);
+    }
+
+    #[test]
+    fn a_fitted_workspace_reaches_every_corner_and_no_farther() {
+        let points = [Vector([1.0, -2.0]), Vector([4.0, 2.0])];
+        let scene = Aabb::around(points).unwrap();
+        let map = WorkspaceMap::fitting(scene, 0.1).unwrap();
+        for corner in [[1.0, -2.0], [4.0, 2.0], [1.0, 2.0], [4.0, -2.0]] {
+            assert!((map.point_to_device(Vector(corner)).norm() - 0.1).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn wrong_numbers_are_named() {
+        for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(WorkspaceMap::<2>::new(Pose::identity(), scale).is_err());
+        }
+        let far = Pose::translation(Vector([0.0, f64::NAN]));
+        assert!(WorkspaceMap::<2>::new(far, 1.0).is_err());
+        let point = Aabb::centred(Vector([0.0, 0.0]));
+        assert!(WorkspaceMap::fitting(point, 0.1).is_err());
+        assert!(
+            WorkspaceMap::fitting(Aabb::centred(Vector([1.0, 1.0])), f64::INFINITY).is_err()
+        );
+    }
+}
