@@ -100,6 +100,11 @@ impl<const D: usize> Body<D> {
         &self.world_from_body
     }
 
+    /// Makes stiffness and damping `factor` times as large.
+    pub(crate) fn scale_surface(&mut self, factor: f64) {
+        self.surface = self.surface.scaled(factor);
+    }
+
     pub(crate) fn body_from_world(&self) -> &Pose<D> {
         &self.body_from_world
     }
@@ -258,6 +263,10 @@ impl<const D: usize> Bodies<D> {
     #[must_use]
     pub fn bodies(&self) -> &[Body<D>] {
         &self.bodies
+    }
+
+    pub(crate) fn bodies_mut(&mut self) -> &mut [Body<D>] {
+        &mut self.bodies
     }
 
     /// Moves a body; what it touches goes with it in the next tick. A pose that is not finite,

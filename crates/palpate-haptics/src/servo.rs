@@ -8,13 +8,17 @@
 use palpate_field::{Point, Pose, Vector};
 
 use crate::bodies::{Bodies, Body};
-use crate::device::PointState;
-use crate::error::{HapticsError, positive};
+use crate::device::{DeviceProfile, PointState};
+use crate::error::{HapticsError, positive, positive_or_infinite};
 use crate::event::{Event, EventKind, Reaction};
+use crate::guide::Guide;
 use crate::limit::limited;
 use crate::nearby::Nearby;
+use crate::protection::{Port, Protection};
 use crate::proxy::{Following, Probe, Proxy};
+use crate::safety::{Accepted, PortState, SafetyReport};
 use crate::surface::Ringing;
+use crate::workspace::WorkspaceMap;
 
 /// What a servo renders with, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +50,9 @@ pub struct Touch<const D: usize> {
     pub velocity: Vector<f64, D>,
     /// The proxy [m]; the device point itself in free space.
     pub proxy: Point<D>,
+    /// The force of what is touched [N], before any limit: what the hand does to the body is
+    /// its negative.
+    pub wanted: Vector<f64, D>,
     /// The force on the hand [N], always finite.
     pub force: Vector<f64, D>,
     /// The unit normal of the surface last seen, pointing out.
@@ -65,6 +72,7 @@ impl<const D: usize> Touch<D> {
         device: Vector::ZERO,
         velocity: Vector::ZERO,
         proxy: Vector::ZERO,
+        wanted: Vector::ZERO,
         force: Vector::ZERO,
         normal: Vector::ZERO,
         contact: false,
@@ -97,6 +105,7 @@ struct ContactPoint<const D: usize> {
     /// The part of the force that is given, in [0, 1].
     rise: f64,
     ringing: Ringing,
+    guides: Vec<Guide<D>>,
 }
 
 /// Renders bodies to some contact points, each on its own.
@@ -128,6 +137,12 @@ pub struct Servo<const D: usize> {
     points: Vec<ContactPoint<D>>,
     touches: Vec<Touch<D>>,
     events: Vec<Event>,
+    /// The forces to write [N], in device coordinates.
+    forces: Vec<Vector<f64, D>>,
+    /// Of each contact point to the device; none of a servo that is not protected.
+    ports: Vec<Port<D>>,
+    map: WorkspaceMap<D>,
+    is_late: bool,
     options: ServoOptions,
     /// What is added to a force's part in a tick.
     rise_step: f64,
@@ -153,22 +168,58 @@ impl<const D: usize> Servo<D> {
         }
         let rate = positive("rate", options.rate, "Hz")?;
         let rise_time = positive("rise_time", options.rise_time, "s")?;
-        if options.max_force.is_nan() || options.max_force <= 0.0 {
-            let (value, unit) = (options.max_force, "N");
-            let (parameter, rule) = ("max_force", "positive");
-            return Err(HapticsError::Number { parameter, rule, value, unit });
-        }
+        positive_or_infinite("max_force", options.max_force, "N")?;
         let proxy = Proxy::new(options.probe);
-        let point = ContactPoint { proxy, rise: 1.0, ringing: Ringing::SILENT };
+        let point =
+            ContactPoint { proxy, rise: 1.0, ringing: Ringing::SILENT, guides: Vec::new() };
         Ok(Self {
             bodies: bodies.into(),
             points: vec![point; points],
             touches: vec![Touch::NONE; points],
             events: Vec::with_capacity(MOST_EVENTS * points),
+            forces: vec![Vector::ZERO; points],
+            ports: Vec::new(),
+            map: WorkspaceMap::default(),
+            is_late: false,
             options,
             rise_step: 1.0 / (rate * rise_time),
             tick: 0,
         })
+    }
+
+    /// Stands a safety chain between every contact point and a device; states are read and
+    /// forces written in the coordinates of the device from now on. Returns what became of the
+    /// stiffness and damping of each body.
+    ///
+    /// A device without force feedback needs no protection; its forces are zero.
+    ///
+    /// # Errors
+    ///
+    /// If a body is refused, or a limit of the profile is not positive.
+    pub fn protect(
+        &mut self,
+        protection: &Protection<D>,
+    ) -> Result<Vec<Accepted>, HapticsError> {
+        self.map = protection.map;
+        self.limit_force(protection.profile.max_force);
+        if self.options.max_force == 0.0 {
+            return Ok(Vec::new());
+        }
+        let rate = self.options.rate;
+        let (bodies, accepted) = protection.accept(self.bodies.clone(), rate)?;
+        let profile =
+            DeviceProfile { max_force: self.options.max_force, ..protection.profile.clone() };
+        let port = Protection { profile, ..protection.clone() }.port(&accepted, rate)?;
+        self.ports = vec![port; self.points.len()];
+        self.bodies = bodies;
+        Ok(accepted)
+    }
+
+    /// Guides every contact point.
+    pub fn guide(&mut self, guides: &[Guide<D>]) {
+        for point in &mut self.points {
+            point.guides = guides.to_vec();
+        }
     }
 
     /// What is rendered with, and how fast.
@@ -187,6 +238,32 @@ impl<const D: usize> Servo<D> {
     #[must_use]
     pub fn touches(&self) -> &[Touch<D>] {
         &self.touches
+    }
+
+    /// The forces of the last tick, to be written to the device [N]: in its coordinates.
+    #[must_use]
+    pub fn forces(&self) -> &[Vector<f64, D>] {
+        &self.forces
+    }
+
+    /// What the safety chain of every contact point did so far; nothing if there is none.
+    #[must_use]
+    pub fn safety(&self) -> Vec<SafetyReport> {
+        self.ports.iter().map(Port::report).collect()
+    }
+
+    /// Says whether the next tick starts too late.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn set_late(&mut self, is_late: bool) {
+        self.is_late = is_late;
+    }
+
+    /// Stops all forces, or lets them rise again. It needs [protection](Self::protect).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn stop(&mut self, is_stopped: bool) {
+        self.ports.iter_mut().for_each(|port| port.stop(is_stopped));
     }
 
     /// What happened in the last tick.
@@ -245,24 +322,48 @@ impl<const D: usize> Servo<D> {
         let nearby = if self.bodies.bodies().len() < FEW {
             self.bodies.everything()
         } else {
-            self.bodies.nearby(hand(&self.touches, states, &self.options), &mut list)
+            self.bodies
+                .nearby(hand(&self.touches, states, (&self.map, &self.options)), &mut list)
         };
         let states = states.iter().copied().chain(std::iter::repeat(missing));
-        let points = self.points.iter_mut().zip(&mut self.touches);
-        for (index, ((point, touch), state)) in (0..).zip(points.zip(states)) {
+        let mut ports = self.ports.iter_mut();
+        let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
+        for (index, (((point, touch), force), state)) in (0..).zip(points.zip(states)) {
             let mut tick = Tick {
                 nearby,
                 options: &self.options,
-                rise_step: self.rise_step,
                 event: Event { tick: self.tick, point: index, body: 0, kind: EventKind::Leave },
                 events: &mut self.events,
             };
+            let mut port = ports.next();
+            let at_device = port.as_mut().map_or(state, |port| port.state(state));
             let before = *touch;
-            *touch = point.step(&mut tick, &state, &before);
+            let (mut felt, free, placed) =
+                point.step(&mut tick, &self.map.state_to_world(at_device), &before);
+            match port {
+                Some(port) => {
+                    let wanted = limited(felt.wanted, self.options.max_force);
+                    let PointState { position, velocity } = at_device;
+                    let free_force = self.map.force_to_device(free);
+                    let (is_late, wants_ramp) = (self.is_late, placed);
+                    *force = port.write(
+                        self.map.force_to_device(wanted),
+                        &PortState { position, velocity, free_force, is_late, wants_ramp },
+                    );
+                    felt.force = self.map.force_to_world(*force);
+                }
+                None => {
+                    let rise = point.rise(placed, felt.contact, self.rise_step);
+                    let all = limited(felt.wanted + free, self.options.max_force);
+                    felt.force = all * rise;
+                    *force = self.map.force_to_device(felt.force);
+                }
+            }
+            *touch = felt;
             let touched = nearby.body(touch.body).filter(|_| touch.contact);
             let reaction = reactions.get_mut(touch.body as usize);
             if let Some((body, reaction)) = touched.zip(reaction) {
-                reaction.add(-touch.force, touch.proxy - body.world_from_body().translation);
+                reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
             }
         }
         self.bodies.put_back((list, reactions));
@@ -277,19 +378,20 @@ impl<const D: usize> Servo<D> {
 fn hand<const D: usize>(
     touches: &[Touch<D>],
     states: &[PointState<D>],
-    options: &ServoOptions,
+    (map, options): (&WorkspaceMap<D>, &ServoOptions),
 ) -> (Point<D>, f64) {
     let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
+    let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
     let (mut sum, mut count) = (Vector::ZERO, 0.0);
-    for (state, _) in known.clone() {
-        sum += state.position;
+    for (position, _) in known.clone() {
+        sum += position;
         count += 1.0;
     }
     let centre = if count > 0.0 { sum * (1.0 / count) } else { Vector::ZERO };
     let (mut radius, mut motion) = (0.0_f64, 0.0_f64);
-    for (state, touch) in known {
-        radius = radius.max((state.position - centre).norm());
-        motion = motion.max((state.position - touch.proxy).norm());
+    for (position, touch) in known {
+        radius = radius.max((position - centre).norm());
+        motion = motion.max((position - touch.proxy).norm());
     }
     (centre, radius + WAYS * (motion + options.probe.radius()))
 }
@@ -298,7 +400,6 @@ fn hand<const D: usize>(
 struct Tick<'a, const D: usize> {
     nearby: Nearby<'a, D>,
     options: &'a ServoOptions,
-    rise_step: f64,
     /// An event of this point in this tick, to be filled in.
     event: Event,
     events: &'a mut Vec<Event>,
@@ -314,27 +415,23 @@ impl<const D: usize> Tick<'_, D> {
 }
 
 impl<const D: usize> ContactPoint<D> {
+    /// The touch with its wanted force, the force of guides and magnets, and whether the force
+    /// should rise anew.
     fn step(
         &mut self,
         tick: &mut Tick<'_, D>,
         state: &PointState<D>,
         before: &Touch<D>,
-    ) -> Touch<D> {
+    ) -> (Touch<D>, Vector<f64, D>, bool) {
         let device = state.position;
         // A proxy told of a point that is not finite stays where it is.
         let following = self.proxy.follow(tick.nearby, device);
-        self.rise = if following.placed {
-            0.0
-        } else if following.contact {
-            (self.rise + tick.rise_step).min(1.0)
-        } else {
-            1.0
-        };
         let body = tick.nearby.body(following.body);
         let mut touch = Touch {
             device,
             velocity: state.velocity,
             proxy: following.proxy,
+            wanted: Vector::ZERO,
             force: Vector::ZERO,
             normal: following.normal,
             contact: following.contact,
@@ -344,23 +441,35 @@ impl<const D: usize> ContactPoint<D> {
         };
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
-            return touch;
+            return (touch, Vector::ZERO, following.placed);
         };
+        let guides = self.guides.iter_mut();
+        let mut free =
+            guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(device, state.velocity));
         if following.contact {
             if body.has_moved() {
                 touch.velocity -= (body.carried(device) - device) * tick.options.rate;
             }
             self.tell_changes(tick, &touch, before, body);
-            let force = self.force(tick, &touch, &following, body);
-            touch.force = limited(force, tick.options.max_force) * self.rise;
+            touch.wanted = self.force(tick, &touch, &following, body);
         } else {
             self.ringing = Ringing::SILENT;
             if before.contact {
                 tick.tell(before.body, EventKind::Leave);
             }
-            touch.force = limited(self.pull(tick, &mut touch), tick.options.max_force);
+            free += self.pull(tick, &mut touch);
         }
-        touch
+        (touch, free, following.placed)
+    }
+
+    /// The part of the force that is given, which rises after a placement.
+    fn rise(&mut self, placed: bool, contact: bool, step: f64) -> f64 {
+        self.rise = match (placed, contact) {
+            (true, _) => 0.0,
+            (false, true) => (self.rise + step).min(1.0),
+            (false, false) => 1.0,
+        };
+        self.rise
     }
 
     /// Tells of what is new since the last tick, and starts what rings because of it.

@@ -38,6 +38,14 @@ pub struct WorkspaceMap<const D: usize> {
     scale: f64,
 }
 
+impl<const D: usize> Default for WorkspaceMap<D> {
+    /// The world as the device sees it.
+    fn default() -> Self {
+        let identity = Pose::identity();
+        Self { world_from_device: identity, device_from_world: identity, scale: 1.0 }
+    }
+}
+
 impl<const D: usize> WorkspaceMap<D> {
     /// Device coordinates times `scale`, then placed by `world_from_device`.
     ///

@@ -17,7 +17,7 @@ mod well;
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
 pub use curve::Curve;
 use limit::{Motion, damped};
 pub use slope::Slope;
@@ -70,17 +70,6 @@ impl GuideOptions {
     fn release(&self) -> f64 {
         self.release_distance.unwrap_or(self.snap_distance)
     }
-}
-
-fn positive_or_infinite(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<(), HapticsError> {
-    if value > 0.0 {
-        return Ok(());
-    }
-    Err(HapticsError::Number { parameter, rule: "positive", value, unit })
 }
 
 /// Refuses a point that is not finite.

@@ -9,11 +9,12 @@ use palpate_field::Vector;
 
 use super::PortState;
 
-/// `true` if force, position and velocity are numbers.
+/// `true` if forces, position and velocity are numbers.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
-    wanted.is_finite() && state.position.is_finite() && state.velocity.is_finite()
+    let vectors = [wanted, state.position, state.velocity, state.free_force];
+    vectors.iter().all(Vector::is_finite)
 }
 
 /// `force` if what led to it was sound and it is finite, or no force.

@@ -45,6 +45,10 @@ pub struct PortState<const D: usize> {
     pub position: Point<D>,
     /// How fast it moves [m/s], as by [`VelocityEstimator`](crate::VelocityEstimator).
     pub velocity: Vector<f64, D>,
+    /// A force on the hand that is added to the wanted one and is not observed for passivity
+    /// [N]: that of guides and magnets, which is a function of the place and gives back what
+    /// it takes.
+    pub free_force: Vector<f64, D>,
     /// The tick began too late.
     pub is_late: bool,
     /// The force is to rise from nothing: the point was placed inside a shape, or a shape was
@@ -56,8 +60,9 @@ impl<const D: usize> PortState<D> {
     /// A point at rest at the origin, in time.
     #[must_use]
     pub fn at_rest() -> Self {
-        let (position, velocity) = (Vector::ZERO, Vector::ZERO);
-        Self { position, velocity, is_late: false, wants_ramp: false }
+        let still = Vector::ZERO;
+        let (is_late, wants_ramp) = (false, false);
+        Self { position: still, velocity: still, free_force: still, is_late, wants_ramp }
     }
 }
 
@@ -234,12 +239,14 @@ impl<const D: usize> SafetyChain<D> {
         self.effects.ticks += 1;
         // What is not a number reaches no stage that remembers; the guard answers for it below.
         let is_sound = finite::is_sound(wanted, state);
-        let force = if is_sound {
-            self.limited(wanted, state)
+        let observed = if is_sound {
+            self.passivity.limit(wanted, state)
         } else {
             self.passivity.lose();
             wanted
         };
+        let all = with_free(observed, state.free_force);
+        let force = if is_sound { self.limited(all) } else { all };
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
         let force = self.faded(force, state);
         if !is_sound || self.is_stopped {
@@ -250,7 +257,9 @@ impl<const D: usize> SafetyChain<D> {
         let closed = self.closing.limit(force);
         let force = self.effects.slew.count(force, closed);
         self.continuous.written(force);
-        self.passivity.written(force);
+        // What the stages left of all of it, they left of the part that is observed.
+        let left = if force == all { 1.0 } else { force.dot(all) / all.dot(all) };
+        self.passivity.written(if left == 1.0 { observed } else { observed * left });
         force
     }
 
@@ -284,10 +293,9 @@ impl<const D: usize> SafetyChain<D> {
         self.effects.report(self)
     }
 
-    /// What passivity and the device's limits leave of a force.
-    fn limited(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+    /// What the device's limits leave of a force.
+    fn limited(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
         let effects = &mut self.effects;
-        let force = self.passivity.limit(wanted, state);
         let force = effects.slew.count(force, self.slew.limit(force));
         let force = effects.force_limit.count(force, self.force_limit.limit(force));
         effects.continuous.count(force, self.continuous.limit(force))
@@ -304,4 +312,9 @@ impl<const D: usize> SafetyChain<D> {
         let left = if self.is_stopped { Vector::ZERO } else { force };
         effects.emergency_stop.count(force, left)
     }
+}
+
+/// Both forces together; of one alone the same bits.
+fn with_free<const D: usize>(observed: Vector<f64, D>, free: Vector<f64, D>) -> Vector<f64, D> {
+    if free == Vector::ZERO { observed } else { observed + free }
 }

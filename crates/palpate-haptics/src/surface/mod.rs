@@ -14,6 +14,7 @@ use palpate_field::{Point, Shape, Vector};
 use palpate_scene::{Material, TextureKind};
 
 use crate::error::{HapticsError, not_negative, positive};
+use crate::impedance::Impedance;
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};
@@ -123,6 +124,13 @@ impl<const D: usize> Surface<D> {
     #[must_use]
     pub fn damping(&self) -> f64 {
         self.strata.damping()
+    }
+
+    /// Stiffness and damping of each layer.
+    pub(crate) fn impedances(
+        &self,
+    ) -> impl Iterator<Item = Result<Impedance, HapticsError>> + '_ {
+        self.strata.impedances()
     }
 
     /// The same with stiffness and damping of all layers `factor` times as large.

@@ -8,6 +8,10 @@
 use palpate_scene::Material;
 
 use crate::error::{HapticsError, not_negative, positive};
+use crate::impedance::Impedance;
+
+/// What a layer without a spring counts as [N/m]: no hand feels it.
+const LEAST_STIFFNESS: f64 = 1e-9;
 
 /// Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +108,15 @@ impl Strata {
 
     fn all(&self) -> impl Iterator<Item = &Stratum> + Clone {
         std::iter::once(&self.outermost).chain(&self.deeper)
+    }
+
+    /// Stiffness and damping of each layer.
+    pub(crate) fn impedances(
+        &self,
+    ) -> impl Iterator<Item = Result<Impedance, HapticsError>> + '_ {
+        // A layer without a spring still has a damper to be accepted.
+        self.all()
+            .map(|layer| Impedance::new(layer.stiffness.max(LEAST_STIFFNESS), layer.damping))
     }
 
     pub(crate) fn stiffness(&self) -> f64 {
