@@ -9,7 +9,9 @@ use palpate_devices::{
 };
 use palpate_field::kernel::HalfSpace;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{Bodies, Body, Probe, Servo, ServoOptions, Surface};
+use palpate_haptics::{
+    Acceptance, Bodies, Body, Probe, Protection, Servo, ServoOptions, Surface,
+};
 
 const PERIOD: f64 = 1e-3;
 
@@ -168,4 +170,54 @@ fn a_passive_wall_gives_no_energy_to_any_grip() {
         }
     }
     assert!(most_given > 1e-3, "the force held gave no energy: {most_given} J");
+}
+
+/// The most energy that the servo gave out in net at any time of 10 s [J], and how deep the
+/// device is in the end, on a wall three times as stiff as is passive.
+fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f64, f64) {
+    let stiffness = 3.0 * 2.0 * profile.least_damping / PERIOD;
+    let Pressed { mut servo, .. } = Pressed::new(profile, stiffness, height);
+    let accepted = servo
+        .protect(&Protection {
+            acceptance: Acceptance::AsItIs,
+            rise_time: 0.0,
+            ..Protection::new(profile.clone())
+        })
+        .unwrap();
+    assert_eq!(accepted[0].factor, 1.0);
+    let hand = Hand::resting(Vector([0.0, height])).unwrap();
+    let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
+    let hand = hand.with_push(Vector([0.0, -1.0])).unwrap();
+    let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
+    let mut points = [PointState::at_rest(Vector::ZERO)];
+    let mut most = 0.0_f64;
+    for tick in 0..10_000 {
+        device.read(f64::from(tick) * PERIOD, &mut points).unwrap();
+        most = most.max(device.energy_given());
+        servo.step(&points);
+        device.write(servo.forces()).unwrap();
+    }
+    (most, -points[0].position[1])
+}
+
+#[test]
+fn a_wall_thrice_as_stiff_gives_out_less_than_a_millijoule_under_control() {
+    let wall = DeviceProfile {
+        mass: 0.05,
+        least_damping: 0.5,
+        friction: 0.0,
+        ..DeviceProfile::unlimited("wall")
+    };
+    let mut worst = 0.0_f64;
+    for profile in [wall.clone(), DeviceProfile { mass: 0.1, ..wall }] {
+        for grip in [0.0, 0.1, 0.3, 1.0, 3.0, 10.0] {
+            for height in [0.0, 0.001, 0.01] {
+                let (given, depth) = given_by_a_stiff_wall(&profile, grip, height);
+                worst = worst.max(given);
+                assert!(given <= 1e-3, "grip {grip}, from {height} m: {given} J");
+                assert!(depth < 0.005, "grip {grip}, from {height} m: {depth} m deep");
+            }
+        }
+    }
+    println!("given at most {worst} J");
 }
