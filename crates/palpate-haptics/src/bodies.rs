@@ -195,7 +195,7 @@ fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Vec<u32>) {
     (vec![Reaction::NONE; bodies], Vec::with_capacity(bodies))
 }
 
-fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
+pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
     // Written so that NaN fails.
     pose.is_finite() && pose.translation.0.iter().all(|x| x.abs() <= LARGEST_LENGTH)
 }

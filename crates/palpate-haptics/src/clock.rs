@@ -3,11 +3,13 @@
 
 //! What time it is, and waiting for a later one.
 
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time that only moves on.
 ///
-/// The servo loop asks it twice a tick. A test gives one that it moves itself.
+/// The servo loop asks it twice a tick. A test gives one that it moves itself, as a
+/// [`VirtualClock`] is.
 pub trait Clock {
     /// The time since some moment before the run.
     fn now(&mut self) -> Duration;
@@ -24,13 +26,30 @@ const SPIN: Duration = Duration::from_micros(200);
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock {
     start: Instant,
+    spin: Duration,
 }
 
 impl WallClock {
-    /// A clock that starts at zero now.
+    /// A clock that starts at zero now, and spins for the last 0.2 ms before a deadline.
     #[must_use]
     pub fn new() -> Self {
-        Self { start: Instant::now() }
+        Self::spinning_for(SPIN)
+    }
+
+    /// Likewise, but spins for as long as this: not at all, and it sleeps alone; for longer
+    /// than any wait, and it does not sleep.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use palpate_haptics::{Clock, WallClock};
+    ///
+    /// let mut never_asleep = WallClock::spinning_for(Duration::MAX);
+    /// never_asleep.wait_until(Duration::from_micros(50));
+    /// assert!(never_asleep.now() >= Duration::from_micros(50));
+    /// ```
+    #[must_use]
+    pub fn spinning_for(spin: Duration) -> Self {
+        Self { start: Instant::now(), spin }
     }
 }
 
@@ -47,11 +66,141 @@ impl Clock for WallClock {
 
     fn wait_until(&mut self, deadline: Duration) {
         let early = deadline.saturating_sub(self.start.elapsed());
-        if early > SPIN {
-            std::thread::sleep(early - SPIN);
+        if early > self.spin {
+            std::thread::sleep(early - self.spin);
         }
         while self.start.elapsed() < deadline {
             std::hint::spin_loop();
         }
+    }
+}
+
+/// A clock on which waiting takes no time, or as much as a [driver](ClockDriver) gives: what
+/// happens on it does not depend on the machine.
+///
+/// ```
+/// use std::time::Duration;
+/// use palpate_haptics::{Clock, VirtualClock};
+///
+/// let mut clock = VirtualClock::new();
+/// clock.wait_until(Duration::from_secs(3600));
+/// assert_eq!(clock.now(), Duration::from_secs(3600));
+/// ```
+#[derive(Debug, Default)]
+pub struct VirtualClock {
+    now: Duration,
+    gate: Option<Arc<Gate>>,
+}
+
+impl VirtualClock {
+    /// A clock at zero that is at every deadline at once.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A clock at zero that another thread moves on. Without its driver it is at every deadline
+    /// at once.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use palpate_haptics::{Clock, VirtualClock};
+    ///
+    /// let (mut clock, mut driver) = VirtualClock::driven();
+    /// let sleeper = std::thread::spawn(move || clock.wait_until(Duration::from_secs(2)));
+    /// driver.advance(Duration::from_secs(1));
+    /// assert!(!sleeper.is_finished());
+    /// driver.advance(Duration::from_secs(1));
+    /// sleeper.join().unwrap();
+    /// ```
+    #[must_use]
+    pub fn driven() -> (Self, ClockDriver) {
+        let gate = Arc::new(Gate::default());
+        (Self { now: Duration::ZERO, gate: Some(gate.clone()) }, ClockDriver { gate })
+    }
+}
+
+impl Clock for VirtualClock {
+    fn now(&mut self) -> Duration {
+        self.now
+    }
+
+    fn wait_until(&mut self, deadline: Duration) {
+        if let Some(gate) = &self.gate {
+            let mut state = gate.state();
+            while state.allowed < deadline && !state.has_lost_driver {
+                state.waits_for = Some(deadline);
+                gate.changed.notify_all();
+                state = gate.wait(state);
+            }
+            state.waits_for = None;
+        }
+        self.now = self.now.max(deadline);
+    }
+}
+
+impl Drop for VirtualClock {
+    fn drop(&mut self) {
+        if let Some(gate) = &self.gate {
+            gate.state().has_lost_clock = true;
+            gate.changed.notify_all();
+        }
+    }
+}
+
+/// Moves a [`VirtualClock`] on that another thread waits on.
+#[derive(Debug)]
+pub struct ClockDriver {
+    gate: Arc<Gate>,
+}
+
+impl ClockDriver {
+    /// Moves the clock on by `time`. Returns when all that was to happen until then has: the
+    /// other thread waits for a later time, or has dropped the clock.
+    pub fn advance(&mut self, time: Duration) {
+        let mut state = self.gate.state();
+        state.allowed += time;
+        self.gate.changed.notify_all();
+        let is_busy = |state: &GateState| {
+            let waits = state.waits_for.is_some_and(|deadline| deadline > state.allowed);
+            !(waits || state.has_lost_clock)
+        };
+        while is_busy(&state) {
+            state = self.gate.wait(state);
+        }
+    }
+}
+
+impl Drop for ClockDriver {
+    fn drop(&mut self) {
+        self.gate.state().has_lost_driver = true;
+        self.gate.changed.notify_all();
+    }
+}
+
+/// Where the thread of a virtual clock and its driver wait for one another.
+#[derive(Debug, Default)]
+struct Gate {
+    state: Mutex<GateState>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct GateState {
+    /// Up to when the clock may go.
+    allowed: Duration,
+    waits_for: Option<Duration>,
+    has_lost_clock: bool,
+    has_lost_driver: bool,
+}
+
+impl Gate {
+    // Its numbers are whole whatever thread panicked.
+    fn state(&self) -> MutexGuard<'_, GateState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wait<'a>(&self, state: MutexGuard<'a, GateState>) -> MutexGuard<'a, GateState> {
+        self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -82,6 +82,28 @@ pub enum HapticsError {
     /// There is nothing to touch.
     #[error("there must be at least one body to touch")]
     NoBody,
+    /// There is no body of that number.
+    #[error("there is no body {body}; there are {bodies}, counted from 0")]
+    NoSuchBody {
+        /// The number asked for.
+        body: usize,
+        /// How many bodies there are.
+        bodies: usize,
+    },
+    /// A hand-off has no room for so many bodies.
+    #[error("the hand-off has room for {most} bodies, got {bodies}")]
+    TooManyBodies {
+        /// How many bodies there are.
+        bodies: usize,
+        /// How many it has room for.
+        most: usize,
+    },
+    /// A thread for the servo could not be started.
+    #[error("the servo's thread did not start: {reason}")]
+    ThreadNotStarted {
+        /// What the system said.
+        reason: String,
+    },
     /// A pose has numbers that are not finite or beyond any scene.
     #[error("the numbers of a pose must be finite and at most 1e15")]
     Pose,

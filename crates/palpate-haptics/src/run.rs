@@ -1,21 +1,19 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The servo loop: a servo and a device, tick by tick, and a report.
+//! Running a servo with a device for a while, and a report.
 
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
-use palpate_field::Vector;
-
 use crate::clock::{Clock, WallClock};
-use crate::device::{Device, DeviceLost, PointState};
+use crate::device::Device;
 use crate::error::{HapticsError, not_negative};
-use crate::live::{Live, Progress};
-use crate::recorder::{Recorder, TickTimes};
-use crate::report::{Ending, RunReport, Tally};
+use crate::handoff::{Control, HandoffOptions, handoff};
+use crate::live::Progress;
+use crate::recorder::Recorder;
+use crate::report::RunReport;
 use crate::servo::Servo;
+use crate::servo_loop::{Schedule, ServoLoop, check};
 
 /// When the ticks of a run happen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,158 +113,54 @@ pub fn run_on<const D: usize>(
     device: &mut dyn Device<D>,
     options: RunOptions<'_, D>,
 ) -> Result<RunReport, HapticsError> {
-    let duration = not_negative("duration", options.duration, "s")?;
-    let points = servo.touches().len();
-    if points != device.points() {
-        let (servo, device) = (points, device.points());
-        return Err(HapticsError::ContactPoints { servo, device });
-    }
-    servo.limit_force(device.profile().max_force);
-    let rate = servo.options().rate;
+    let points = check(servo, device)?;
     let schedule = Schedule {
-        rate,
-        // Rounded, so that 10 s at 1 kHz are 10 000 ticks whatever the last bit.
-        ticks: (duration * rate).round() as u64,
+        ticks: ticks(not_negative("duration", options.duration, "s")?, servo.options().rate),
         pace: options.pace,
     };
-    let live = Live::default();
-    let mut tally = Tally::new(points, rate);
-    let mut recorder = options.recorder;
-    let mut work = || {
-        let looped = AssertUnwindSafe(|| {
-            let mut servo_loop = ServoLoop {
-                servo,
-                device: &mut *device,
-                states: vec![PointState::at_rest(Vector::ZERO); points],
-                forces: vec![Vector::ZERO; points],
-                tally: &mut tally,
-                recorder: recorder.as_deref_mut(),
-                live: &live,
-            };
-            servo_loop.run(clock, &schedule)
-        });
-        let ending = match catch_unwind(looped) {
-            Ok(Ok(())) => Ending::Finished,
-            Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
-            Err(panic) => Ending::Panicked { message: message_of(&*panic) },
-        };
-        live.finish();
-        // A device that is lost takes no force; nothing is left to do about that.
-        let _ = device.write(&vec![Vector::ZERO; points]);
-        ending
-    };
-    let ending = match options.watch {
-        None => work(),
-        Some((every, watch)) => watched(&live, every, watch, work),
-    };
-    let dropped = recorder.map_or(0, |r| r.dropped());
-    Ok(tally.report(ending, dropped))
+    let (control, mut end) = options
+        .watch
+        .is_some()
+        .then(|| handoff(servo, HandoffOptions { events: 0, bodies: 0 }))
+        .unzip();
+    let servo_loop = ServoLoop::new(servo, device, points)
+        .recording(options.recorder)
+        .handing_off(end.as_mut());
+    let run = || servo_loop.run(clock, &schedule);
+    Ok(match control.zip(options.watch) {
+        None => run(),
+        Some((control, (every, watch))) => watched(control, every, watch, run),
+    })
 }
 
-/// Works while another thread shows what is `live`.
-fn watched<T>(live: &Live, every: Duration, watch: Watch<'_>, work: impl FnOnce() -> T) -> T {
+/// The ticks of a time [s]; rounded, so that 10 s at 1 kHz are 10 000 whatever the last bit.
+pub(crate) fn ticks(duration: f64, rate: f64) -> u64 {
+    (duration * rate).round() as u64
+}
+
+/// Works while another thread shows what the servo does.
+fn watched<T, const D: usize>(
+    mut control: Control<D>,
+    every: Duration,
+    watch: Watch<'_>,
+    work: impl FnOnce() -> T,
+) -> T {
     std::thread::scope(|scope| {
         let watcher = scope.spawn(move || {
-            while !live.is_finished() {
-                if let Some(progress) = live.latest().filter(|p| p.ticks > 0) {
-                    watch(&progress);
+            loop {
+                // Asked first, so that the last look is at the last tick.
+                let is_last = control.has_ended();
+                if let Some(snapshot) = control.latest() {
+                    watch(&snapshot.progress);
+                }
+                if is_last {
+                    break;
                 }
                 std::thread::park_timeout(every);
-            }
-            if let Some(progress) = live.latest() {
-                watch(&progress);
             }
         });
         let result = work();
         watcher.thread().unpark();
         result
     })
-}
-
-fn message_of(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().copied();
-    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    text.unwrap_or("no message").to_owned()
-}
-
-struct Schedule {
-    rate: f64,
-    ticks: u64,
-    pace: Pace,
-}
-
-struct ServoLoop<'a, const D: usize> {
-    servo: &'a mut Servo<D>,
-    device: &'a mut dyn Device<D>,
-    states: Vec<PointState<D>>,
-    forces: Vec<Vector<f64, D>>,
-    tally: &'a mut Tally,
-    recorder: Option<&'a mut Recorder<D>>,
-    live: &'a Live,
-}
-
-/// How long before a tick the field is asked once more.
-const REHEARSAL: Duration = Duration::from_micros(20);
-
-impl<const D: usize> ServoLoop<'_, D> {
-    /// Asks the field where the proxies are: the sleep between ticks has let caches and
-    /// predictors go cold, and the tick finds them warm again.
-    fn rehearse(&self) {
-        for touch in self.servo.touches() {
-            let near = self.servo.bodies().everything().look(touch.proxy);
-            std::hint::black_box(near);
-        }
-    }
-
-    fn run(&mut self, clock: &mut dyn Clock, schedule: &Schedule) -> Result<(), DeviceLost> {
-        let period = Duration::from_secs_f64(1.0 / schedule.rate);
-        let mut deadline = clock.now();
-        for tick in 0..schedule.ticks {
-            let time_s = tick as f64 / schedule.rate;
-            let mut lateness_ns = 0;
-            if schedule.pace == Pace::RealTime {
-                clock.wait_until(deadline.saturating_sub(REHEARSAL));
-                self.rehearse();
-                clock.wait_until(deadline);
-                let late = clock.now().saturating_sub(deadline);
-                lateness_ns = nanoseconds(late);
-                self.tally.late(lateness_ns, late > period);
-                if late > period {
-                    deadline += late;
-                }
-                deadline += period;
-            }
-            let cost_ns = self.tick(clock, time_s)?;
-            self.account(TickTimes { time_s, cost_ns, lateness_ns });
-        }
-        Ok(())
-    }
-
-    /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's
-    /// transport is not part of it.
-    fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
-        self.device.read(time_s, &mut self.states)?;
-        let start = clock.now();
-        let touches = self.servo.step(&self.states);
-        for (force, touch) in self.forces.iter_mut().zip(touches) {
-            *force = touch.force;
-        }
-        let cost = clock.now().saturating_sub(start);
-        self.device.write(&self.forces)?;
-        Ok(nanoseconds(cost))
-    }
-
-    /// Everything that is not part of a tick: it may make the next one late, but not wrong.
-    fn account(&mut self, times: TickTimes) {
-        let touches = self.servo.touches();
-        let progress = self.tally.tick(times, touches, self.servo.options().probe.budget());
-        self.live.publish(&progress);
-        if let Some(recorder) = &mut self.recorder {
-            recorder.record(times, touches);
-        }
-    }
-}
-
-fn nanoseconds(duration: Duration) -> u64 {
-    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The end of a hand-off for the servo's thread.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::exchange::{Flag, Receiver, Writer};
+use super::{Edits, Flags};
+use crate::event::Event;
+use crate::live::{Progress, Snapshot};
+use crate::servo::Servo;
+
+/// Receives edits for a servo and publishes what it does. From [`handoff`](crate::handoff).
+pub struct ServoEnd<const D: usize> {
+    pub(super) receiver: Receiver<Edits<D>>,
+    pub(super) writer: Writer<Snapshot<D>>,
+    pub(super) events: rtrb::Producer<Event>,
+    pub(super) flags: Arc<Flags>,
+    pub(super) events_lost: u64,
+    pub(super) is_stopped: bool,
+}
+
+impl<const D: usize> ServoEnd<D> {
+    /// Changes `servo` as the other end asks; before a tick.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    pub fn receive(&mut self, servo: &mut Servo<D>) {
+        let is_stopped = self.flags.stop.is_set();
+        if is_stopped != self.is_stopped {
+            self.is_stopped = is_stopped;
+            servo.stop(is_stopped);
+        }
+        let Some(mut parcel) = self.receiver.take() else { return };
+        let edits = &mut parcel.content;
+        if let Some(bodies) = edits.bodies.take() {
+            edits.bodies = Some(servo.replace_bodies(bodies));
+        }
+        for (body, pose) in edits.poses.iter().enumerate() {
+            if let Some(pose) = pose {
+                servo.set_pose(body, *pose);
+            }
+        }
+        servo.limit_force(edits.max_force);
+        self.receiver.give_back(parcel);
+    }
+
+    /// Whether the forces to be written are zero, whatever the servo wants: since the last
+    /// [receipt](Self::receive) of an emergency stop.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped
+    }
+
+    /// Whether the loop is to end: it was asked to, or there is nobody left to ask.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn is_to_end(&self) -> bool {
+        self.flags.end.is_set() || self.events.is_abandoned()
+    }
+
+    /// Shows the other end what `servo` did; after a tick.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    pub fn publish(&mut self, servo: &Servo<D>, progress: &Progress) {
+        for event in servo.events() {
+            self.events_lost += u64::from(self.events.push(*event).is_err());
+        }
+        let events_lost = self.events_lost;
+        self.writer.publish(|snapshot| {
+            snapshot.progress = *progress;
+            snapshot.events_lost = events_lost;
+            refill(&mut snapshot.touches, servo.touches());
+            refill(&mut snapshot.reactions, servo.reactions());
+        });
+    }
+
+    /// Tells the other end that there will be no more ticks.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn finish(&self) {
+        self.flags.ended.set(true);
+    }
+}
+
+impl<const D: usize> fmt::Debug for ServoEnd<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ServoEnd")
+            .field("events_lost", &self.events_lost)
+            .field("is_stopped", &self.is_stopped)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Makes `list` a copy of `content`, as far as it has room.
+fn refill<T: Copy>(list: &mut Vec<T>, content: &[T]) {
+    list.clear();
+    let room = list.capacity();
+    list.extend(content.iter().take(room).copied());
+}

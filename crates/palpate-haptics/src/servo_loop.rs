@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The loop around a servo and a device, tick by tick; in a call or in a thread of its own.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Duration;
+
+use palpate_field::Vector;
+
+use crate::clock::Clock;
+use crate::device::{Device, DeviceLost, PointState};
+use crate::error::HapticsError;
+use crate::handoff::ServoEnd;
+use crate::pacer::{Pacer, nanoseconds};
+use crate::recorder::{Recorder, TickTimes};
+use crate::report::{Ending, RunReport, Tally};
+use crate::run::Pace;
+use crate::servo::Servo;
+
+/// How long before a tick the field is asked once more.
+const REHEARSAL: Duration = Duration::from_micros(20);
+
+/// A servo and a device, and what goes on beside them.
+pub(crate) struct ServoLoop<'a, const D: usize> {
+    servo: &'a mut Servo<D>,
+    device: &'a mut dyn Device<D>,
+    recorder: Option<&'a mut Recorder<D>>,
+    end: Option<&'a mut ServoEnd<D>>,
+    states: Vec<PointState<D>>,
+    /// The forces of an emergency, and of the end.
+    no_forces: Vec<Vector<f64, D>>,
+    tally: Tally,
+}
+
+/// When ticks happen, and how many.
+pub(crate) struct Schedule {
+    /// Unless the other end of the hand-off ends the loop before.
+    pub(crate) ticks: u64,
+    pub(crate) pace: Pace,
+}
+
+impl<'a, const D: usize> ServoLoop<'a, D> {
+    /// A loop with as many contact points as were [checked](check). The servo never exceeds the
+    /// device's largest force.
+    pub(crate) fn new(
+        servo: &'a mut Servo<D>,
+        device: &'a mut dyn Device<D>,
+        points: usize,
+    ) -> Self {
+        servo.limit_force(device.profile().max_force);
+        let tally = Tally::new(points, servo.options().rate);
+        Self {
+            servo,
+            device,
+            recorder: None,
+            end: None,
+            states: vec![PointState::at_rest(Vector::ZERO); points],
+            no_forces: vec![Vector::ZERO; points],
+            tally,
+        }
+    }
+
+    pub(crate) fn recording(mut self, recorder: Option<&'a mut Recorder<D>>) -> Self {
+        self.recorder = recorder;
+        self
+    }
+
+    pub(crate) fn handing_off(mut self, end: Option<&'a mut ServoEnd<D>>) -> Self {
+        self.end = end;
+        self
+    }
+
+    /// Runs, and whatever ends it, writes zero forces last.
+    pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
+        let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
+        let ending = match catch_unwind(ticks) {
+            Ok(Ok(())) => Ending::Finished,
+            Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
+            Err(panic) => Ending::Panicked { message: message_of(&*panic) },
+        };
+        // A device that is lost takes no force, one that panics must not take the servo with
+        // it; nothing is left to do about either.
+        let zero = AssertUnwindSafe(|| self.device.write(&self.no_forces));
+        let _ = catch_unwind(zero);
+        if let Some(end) = &self.end {
+            end.finish();
+        }
+        self.tally.report(ending, self.recorder.map_or(0, |recorder| recorder.dropped()))
+    }
+
+    fn ticks(&mut self, clock: &mut dyn Clock, schedule: &Schedule) -> Result<(), DeviceLost> {
+        let rate = self.servo.options().rate;
+        let mut pacer = Pacer::new(clock, rate);
+        for tick in 0..schedule.ticks {
+            let time_s = tick as f64 / rate;
+            let mut lateness_ns = 0;
+            if schedule.pace == Pace::RealTime {
+                let late = pacer.wait(clock, REHEARSAL, || self.rehearse());
+                self.tally.late(late.ns, late.is_missed);
+                self.servo.set_late(late.is_missed);
+                lateness_ns = late.ns;
+            }
+            if self.end.as_ref().is_some_and(|end| end.is_to_end()) {
+                break;
+            }
+            let cost_ns = self.tick(clock, time_s)?;
+            self.account(TickTimes { time_s, cost_ns, lateness_ns });
+        }
+        Ok(())
+    }
+
+    /// Asks the field where the proxies are: the sleep between ticks has let caches and
+    /// predictors go cold, and the tick finds them warm again.
+    fn rehearse(&self) {
+        for touch in self.servo.touches() {
+            let near = self.servo.bodies().everything().look(touch.proxy);
+            std::hint::black_box(near);
+        }
+    }
+
+    /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's
+    /// transport is not part of it.
+    fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
+        if let Some(end) = &mut self.end {
+            end.receive(self.servo);
+        }
+        self.device.read(time_s, &mut self.states)?;
+        let start = clock.now();
+        self.servo.step(&self.states);
+        let cost = clock.now().saturating_sub(start);
+        let is_stopped = self.end.as_ref().is_some_and(|end| end.is_stopped());
+        self.device.write(if is_stopped { &self.no_forces } else { self.servo.forces() })?;
+        Ok(nanoseconds(cost))
+    }
+
+    /// Everything that is not part of a tick: it may make the next one late, but not wrong.
+    fn account(&mut self, times: TickTimes) {
+        let touches = self.servo.touches();
+        let progress = self.tally.tick(times, touches, self.servo.options().probe.budget());
+        if let Some(end) = &mut self.end {
+            end.publish(self.servo, &progress);
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.record(times, touches);
+        }
+    }
+}
+
+/// How many contact points a servo and its device have.
+pub(crate) fn check<const D: usize>(
+    servo: &Servo<D>,
+    device: &dyn Device<D>,
+) -> Result<usize, HapticsError> {
+    let (points, device) = (servo.touches().len(), device.points());
+    if points == device {
+        Ok(points)
+    } else {
+        Err(HapticsError::ContactPoints { servo: points, device })
+    }
+}
+
+fn message_of(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no message").to_owned()
+}

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A servo in a thread of its own.
+
+use std::fmt;
+use std::panic::resume_unwind;
+use std::thread::JoinHandle;
+
+use crate::clock::{Clock, WallClock};
+use crate::device::Device;
+use crate::error::{HapticsError, not_negative};
+use crate::handoff::{Control, HandoffOptions, ServoEnd, handoff};
+use crate::priority::{Priority, raise_priority};
+use crate::report::RunReport;
+use crate::run::{Pace, ticks};
+use crate::servo::Servo;
+use crate::servo_loop::{Schedule, ServoLoop, check};
+
+/// How a thread runs a servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThreadOptions {
+    /// The time the servo runs [s]; until it is [ended](ServoThread::end) if none.
+    pub duration: Option<f64>,
+    /// Whether the thread asks to be scheduled before others.
+    pub raises_priority: bool,
+    /// What the hand-off has room for.
+    pub handoff: HandoffOptions,
+}
+
+impl Default for ThreadOptions {
+    /// Until it is ended, with a raised priority and the hand-off's default.
+    fn default() -> Self {
+        Self { duration: None, raises_priority: true, handoff: HandoffOptions::default() }
+    }
+}
+
+/// A running servo thread, and the way to and from it.
+///
+/// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`; a panic in a tick ends
+/// it; and whatever ends it, the last forces written are zero. Dropping this ends the loop too,
+/// without waiting for it.
+///
+/// # Examples
+///
+/// Two ticks of 1 ms on a virtual clock, with a body that moves between them:
+///
+/// ```
+/// use std::time::Duration;
+///
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_haptics::{
+///     Bodies, Body, HandPath, Interpolation, Probe, RecordedDevice, Servo, ServoOptions,
+///     ServoThread, Surface, ThreadOptions, VirtualClock,
+/// };
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // A hand that rests 1/128 m above a ball.
+/// let rest = vec![Vector([0.0, 0.5 + 1.0 / 128.0]); 2];
+/// let hand = HandPath::new(vec![0.0, 1.0], rest, Interpolation::Linear)?;
+/// let device = Box::new(RecordedDevice::new(vec![hand])?);
+/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
+/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
+/// let servo = Servo::new(bodies, 1, options)?;
+///
+/// let (clock, mut driver) = VirtualClock::driven();
+/// let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+/// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
+/// driver.advance(Duration::ZERO);
+/// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;
+/// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (1, false));
+///
+/// thread.control().set_poses(&[(0, Pose::translation(Vector([0.0, 1.0 / 64.0])))])?;
+/// driver.advance(Duration::from_millis(1));
+/// let snapshot = thread.control().latest().ok_or("tick 1 is over")?;
+/// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (2, true));
+///
+/// drop(driver); // which nobody waits for any more
+/// let ended = thread.end();
+/// assert!(ended.report.ticks >= 2);
+/// # Ok(())
+/// # }
+/// ```
+pub struct ServoThread<const D: usize> {
+    control: Control<D>,
+    thread: JoinHandle<Left<D>>,
+}
+
+/// What a servo thread leaves.
+pub struct EndedThread<const D: usize> {
+    /// The servo, as after its last tick.
+    pub servo: Servo<D>,
+    /// The device; zero was written to it.
+    pub device: Box<dyn Device<D> + Send>,
+    /// The hand-off, with the last snapshot and the events not taken yet.
+    pub control: Control<D>,
+    /// What happened.
+    pub report: RunReport,
+    /// Whether the thread was scheduled before others.
+    pub priority: Priority,
+}
+
+/// What comes out of the thread itself.
+struct Left<const D: usize> {
+    servo: Servo<D>,
+    device: Box<dyn Device<D> + Send>,
+    /// Kept so that what is left in it is not freed in the thread.
+    _end: ServoEnd<D>,
+    report: RunReport,
+    priority: Priority,
+}
+
+impl<const D: usize> ServoThread<D> {
+    /// Starts a thread that runs `servo` with `device` in real time.
+    ///
+    /// # Errors
+    ///
+    /// If servo and device have different numbers of contact points, the duration is negative
+    /// or not finite, or the system gives no thread.
+    pub fn start(
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        options: ThreadOptions,
+    ) -> Result<Self, HapticsError> {
+        Self::start_on(WallClock::new(), servo, device, options)
+    }
+
+    /// As [`start`](Self::start), on a clock of the caller's.
+    ///
+    /// # Errors
+    ///
+    /// As [`start`](Self::start).
+    pub fn start_on(
+        mut clock: impl Clock + Send + 'static,
+        mut servo: Servo<D>,
+        mut device: Box<dyn Device<D> + Send>,
+        options: ThreadOptions,
+    ) -> Result<Self, HapticsError> {
+        let points = check(&servo, &*device)?;
+        let ticks = match options.duration {
+            None => u64::MAX,
+            Some(duration) => {
+                ticks(not_negative("duration", duration, "s")?, servo.options().rate)
+            }
+        };
+        let schedule = Schedule { ticks, pace: Pace::RealTime };
+        let (control, mut end) = handoff(&servo, options.handoff);
+        let work = move || {
+            let priority =
+                if options.raises_priority { raise_priority() } else { Priority::Normal };
+            let report = ServoLoop::new(&mut servo, &mut *device, points)
+                .handing_off(Some(&mut end))
+                .run(&mut clock, &schedule);
+            Left { servo, device, _end: end, report, priority }
+        };
+        let thread =
+            std::thread::Builder::new().name("palpate servo".to_owned()).spawn(work).map_err(
+                |error| HapticsError::ThreadNotStarted { reason: error.to_string() },
+            )?;
+        Ok(Self { control, thread })
+    }
+
+    /// Changes what is rendered, and sees what is done.
+    #[must_use]
+    pub fn control(&mut self) -> &mut Control<D> {
+        &mut self.control
+    }
+
+    /// Whether the loop has ended: its time is over, or something went wrong.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.control.has_ended()
+    }
+
+    /// Ends the loop before its next tick; see [`join`](Self::join).
+    #[must_use]
+    pub fn end(self) -> EndedThread<D> {
+        self.control.end();
+        self.join()
+    }
+
+    /// Waits until the loop has ended: its time is over, or something went wrong. Without a
+    /// duration that may be never. A [driven](crate::VirtualClock::driven) clock must have
+    /// come to its end, or lost its driver.
+    #[must_use]
+    pub fn join(self) -> EndedThread<D> {
+        // Panics in the loop are part of the report.
+        let left = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        let Left { servo, device, report, priority, _end } = left;
+        EndedThread { servo, device, control: self.control, report, priority }
+    }
+}
+
+impl<const D: usize> fmt::Debug for ServoThread<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ServoThread").field("control", &self.control).finish_non_exhaustive()
+    }
+}
+
+impl<const D: usize> fmt::Debug for EndedThread<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EndedThread")
+            .field("report", &self.report)
+            .field("priority", &self.priority)
+            .finish_non_exhaustive()
+    }
+}
