@@ -8,8 +8,11 @@ mod common;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use common::{ball, cuboid, torus};
-use palpate_field::{Shape, Vector};
-use palpate_haptics::{Bodies, PointState, Servo, ServoOptions, Tour};
+use palpate_field::{Pose, Shape, Vector};
+use palpate_haptics::{
+    Bodies, Body, HandoffOptions, PointState, Progress, Servo, ServoOptions, Surface, Tour,
+    handoff,
+};
 
 /// Aborts on an allocation where none is allowed.
 #[global_allocator]
@@ -45,4 +48,46 @@ fn a_step_allocates_and_frees_nothing() {
         });
         next = old;
     }
+}
+
+#[test]
+fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
+    let scene = |count: usize| {
+        let body = |_| Body::new(ball::<3>(0.04), Surface::default());
+        Bodies::new((0..count).map(body).collect::<Result<_, _>>().unwrap()).unwrap()
+    };
+    let mut servo = Servo::new(scene(1), 2, ServoOptions::default()).unwrap();
+    let room = HandoffOptions { events: 10, bodies: 100 };
+    let (mut control, mut end) = handoff(&servo, room);
+    let switch = control.stop_switch();
+    for tick in 0..2000_usize {
+        // Scenes come and go, some unseen, some not collected for long; events find no room.
+        if tick % 3 == 0 {
+            control.replace_bodies(scene(1 + tick % 100)).unwrap();
+        }
+        if tick % 2 == 0 {
+            let pose = Pose::translation(Vector([0.0, 1e-5 * tick as f64, 0.0]));
+            control.set_poses(&[(0, pose)]).unwrap();
+        }
+        let height = if tick % 10 < 5 { 0.06 } else { 0.035 };
+        let states = [PointState::at_rest(Vector([0.0, height, 0.0])); 2];
+        let progress = Progress { ticks: tick as u64 + 1, ..Progress::default() };
+        let forces = assert_no_alloc(|| {
+            if tick % 100 == 99 {
+                switch.stop();
+            }
+            end.receive(&mut servo);
+            servo.step(&states);
+            end.publish(&servo, &progress);
+            switch.release();
+            servo.forces().len()
+        });
+        assert_eq!(forces, 2);
+        let snapshot = control.latest().unwrap();
+        assert_eq!(snapshot.progress.ticks, tick as u64 + 1);
+        assert_eq!(snapshot.reactions, servo.reactions());
+    }
+    assert!(control.latest().unwrap().events_lost > 0);
+    assert_no_alloc(|| end.finish());
+    assert!(control.has_ended());
 }
