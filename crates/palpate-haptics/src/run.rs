@@ -138,7 +138,6 @@ pub fn run_on<const D: usize>(
                 servo,
                 device: &mut *device,
                 states: vec![PointState::at_rest(Vector::ZERO); points],
-                forces: vec![Vector::ZERO; points],
                 tally: &mut tally,
                 recorder: recorder.as_deref_mut(),
                 live: &live,
@@ -160,7 +159,7 @@ pub fn run_on<const D: usize>(
         Some((every, watch)) => watched(&live, every, watch, work),
     };
     let dropped = recorder.map_or(0, |r| r.dropped());
-    Ok(tally.report(ending, dropped))
+    Ok(tally.report(ending, dropped, servo.safety()))
 }
 
 /// Works while another thread shows what is `live`.
@@ -199,7 +198,6 @@ struct ServoLoop<'a, const D: usize> {
     servo: &'a mut Servo<D>,
     device: &'a mut dyn Device<D>,
     states: Vec<PointState<D>>,
-    forces: Vec<Vector<f64, D>>,
     tally: &'a mut Tally,
     recorder: Option<&'a mut Recorder<D>>,
     live: &'a Live,
@@ -231,6 +229,7 @@ impl<const D: usize> ServoLoop<'_, D> {
                 let late = clock.now().saturating_sub(deadline);
                 lateness_ns = nanoseconds(late);
                 self.tally.late(lateness_ns, late > period);
+                self.servo.set_late(late > period);
                 if late > period {
                     deadline += late;
                 }
@@ -247,22 +246,18 @@ impl<const D: usize> ServoLoop<'_, D> {
     fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
         self.device.read(time_s, &mut self.states)?;
         let start = clock.now();
-        let touches = self.servo.step(&self.states);
-        for (force, touch) in self.forces.iter_mut().zip(touches) {
-            *force = touch.force;
-        }
+        self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
-        self.device.write(&self.forces)?;
+        self.device.write(self.servo.forces())?;
         Ok(nanoseconds(cost))
     }
 
     /// Everything that is not part of a tick: it may make the next one late, but not wrong.
     fn account(&mut self, times: TickTimes) {
-        let touches = self.servo.touches();
-        let progress = self.tally.tick(times, touches, self.servo.options().probe.budget());
+        let progress = self.tally.tick(times, self.servo);
         self.live.publish(&progress);
         if let Some(recorder) = &mut self.recorder {
-            recorder.record(times, touches);
+            recorder.record(times, self.servo);
         }
     }
 }

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, Vector};
-use palpate::haptics::{Recorder, TraceRow};
+use palpate::haptics::{Energy, Recorder, TraceRow};
 use palpate::plot::{
     Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Sampling,
     Series,
@@ -56,10 +56,10 @@ where
     // A scene that was felt has bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
-    let contacts = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
-    let contacts: Vec<Contact<'_, D>> = (0..contacts.min(MOST_CONTACTS))
+    let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
+    let contacts: Vec<Contact<'_, D>> = (0..count.min(MOST_CONTACTS))
         .map(|contact| Contact {
-            suffix: if contacts == 1 { String::new() } else { format!(" {contact}") },
+            suffix: if count == 1 { String::new() } else { format!(" {contact}") },
             rows: rows.iter().filter(|row| row.point == contact).collect(),
         })
         .collect();
@@ -88,7 +88,32 @@ where
             (1e3 * slice.near * 1e6).round() / 1e6
         ));
     }
-    Ok(Figure::new(title).with_caption(caption).with_views(views).with_chart(chart))
+    let figure = Figure::new(title).with_caption(caption).with_views(views).with_chart(chart);
+    Ok(if rows.iter().any(|row| row.energy != Energy::default()) {
+        figure.with_chart(energies(rows, count as usize)?)
+    } else {
+        figure
+    })
+}
+
+/// The energies of all contact points together over time.
+fn energies<const D: usize>(rows: &[TraceRow<D>], contacts: usize) -> Result<Chart, PlotError> {
+    let curves: [(&str, fn(&Energy) -> f64, Dash); 3] = [
+        ("taken from the hand", |energy| energy.taken, Dash::Solid),
+        ("given to it", |energy| energy.given, Dash::Dashed),
+        ("kept back", |energy| energy.kept, Dash::Dotted),
+    ];
+    let ticks: Vec<&[TraceRow<D>]> = rows.chunks_exact(contacts.max(1)).collect();
+    let every = ticks.len().div_ceil(MOST_POINTS).max(1);
+    let mut chart = Chart::new(Quantity::new("time", "s"), Quantity::new("energy", "mJ"));
+    for (name, of, dash) in curves {
+        let points = ticks.iter().step_by(every).map(|tick| {
+            let sum: f64 = tick.iter().map(|row| of(&row.energy)).sum();
+            [tick[0].time_s, 1e3 * sum]
+        });
+        chart = chart.with_series(Series::new(name, points)?.with_dash(dash));
+    }
+    Ok(chart)
 }
 
 /// The rows of one contact point, and what its number adds to a name.
