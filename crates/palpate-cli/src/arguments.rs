@@ -147,9 +147,10 @@ pub(crate) struct FeelOptions {
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (it follows its path whatever the force),
     /// simulated:NAME (a device that gives way, with the limits of `palpate devices`), or
-    /// glove (no force feedback).
-    #[arg(long, default_value = "recorded")]
-    pub(crate) device: DeviceChoice,
+    /// glove (no force feedback). On the built-in gallery simulated:omega, else recorded, if
+    /// left out.
+    #[arg(long)]
+    pub(crate) device: Option<DeviceChoice>,
     /// How many contact points the built-in hand has; 10 on the built-in gallery, else 1, if
     /// left out.
     #[arg(long, alias = "contacts", conflicts_with = "path")]

@@ -12,6 +12,7 @@ mod slices;
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
+use palpate::devices::profile_named;
 use palpate::haptics::{
     Acceptance, Accepted, Bodies, Body, Ending, Guide, HandPath, HapticsError, Interpolation,
     Pace, Probe, Progress, Protection, Recorder, RunOptions, Servo, ServoOptions, Surface,
@@ -19,7 +20,7 @@ use palpate::haptics::{
 };
 use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
 
-use crate::arguments::FeelOptions;
+use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::input::{self, Named};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{Dimensions, Drawable};
@@ -43,6 +44,9 @@ const MOST_CONTACTS: usize = 1000;
 
 /// The contact points of the built-in hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
+
+/// The device that feels the built-in gallery.
+const SHOWN: &str = "omega";
 
 /// How often the live line is renewed.
 const LIVE_EVERY: Duration = Duration::from_millis(100);
@@ -77,8 +81,13 @@ where
         .map_err(Failure::input)?;
     let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
     servo.guide(&guides.map_err(Failure::input)?);
-    let map = held::map(scene, &options.device)?;
-    let mut device = held::device(&options.device, paths, &map).map_err(Failure::input)?;
+    let choice = match (&options.device, &options.scene) {
+        (Some(choice), _) => choice.clone(),
+        (None, Some(_)) => DeviceChoice::Recorded,
+        (None, None) => DeviceChoice::Simulated(profile_named(SHOWN).map_err(Failure::input)?),
+    };
+    let map = held::map(scene, &choice)?;
+    let mut device = held::device(&choice, paths, &map).map_err(Failure::input)?;
     let protection = Protection {
         map,
         acceptance: if options.strict { Acceptance::Strict } else { Acceptance::Scaled },

@@ -179,7 +179,23 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
 fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
     let least = numbers.clone().fold(f64::INFINITY, f64::min);
     let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
-    if least < largest { format!("{least} to {largest}") } else { least.to_string() }
+    if least < largest {
+        format!("{} to {}", rounded(least), rounded(largest))
+    } else {
+        rounded(least)
+    }
+}
+
+/// A number with four digits that count.
+fn rounded(number: f64) -> String {
+    let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    let unit = 10.0_f64.powi(-digits);
+    let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 fn quantiles(times: &Distribution) -> String {
