@@ -6,6 +6,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use palpate::devices::{DeviceProfile, profile_named};
+use std::str::FromStr;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -143,13 +145,23 @@ pub(crate) struct FeelOptions {
     /// the surfaces if left out.
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
-    /// How many contact points the built-in hand has.
-    #[arg(long, default_value_t = 1, conflicts_with = "path")]
-    pub(crate) contacts: usize,
-    /// Stiffness of the surface [N/m]; the first body's if left out.
+    /// What the hand holds: recorded (it follows its path whatever the force),
+    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`), or
+    /// glove (no force feedback). On the built-in gallery simulated:omega, else recorded, if
+    /// left out.
+    #[arg(long)]
+    pub(crate) device: Option<DeviceChoice>,
+    /// How many contact points the built-in hand has; 10 on the built-in gallery, else 1, if
+    /// left out.
+    #[arg(long, alias = "contacts", conflicts_with = "path")]
+    pub(crate) points: Option<usize>,
+    /// Refuse bodies that the device cannot render, instead of making them softer.
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Stiffness of the surface [N/m]; that of each body if left out.
     #[arg(long)]
     pub(crate) stiffness: Option<f64>,
-    /// Damping of the surface [N·s/m]; the first body's if left out.
+    /// Damping of the surface [N·s/m]; that of each body if left out.
     #[arg(long)]
     pub(crate) damping: Option<f64>,
     /// The largest force on a contact point [N]; the tool's, or 3.3 N, if left out.
@@ -170,6 +182,32 @@ pub(crate) struct FeelOptions {
     /// Print the report as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What a hand holds.
+#[derive(Clone, Debug)]
+pub(crate) enum DeviceChoice {
+    /// A hand that follows its path whatever the force.
+    Recorded,
+    /// A device of this profile in a hand that gives way.
+    Simulated(DeviceProfile),
+    /// Fingers without force feedback.
+    Glove,
+}
+
+impl FromStr for DeviceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(':') {
+            None if text == "recorded" => Ok(Self::Recorded),
+            None if text == "glove" => Ok(Self::Glove),
+            Some(("simulated", name)) => {
+                profile_named(name).map(Self::Simulated).map_err(|unknown| unknown.to_string())
+            }
+            _ => Err(format!("{text:?} is not recorded, simulated:NAME or glove")),
+        }
+    }
 }
 
 impl FeelOptions {

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
-use palpate::scene::{BuiltScene, Scene, Tool, World};
+use palpate::scene::{BuiltScene, Guide, Scene, Tool, World};
 
 use crate::outcome::Failure;
 
@@ -18,6 +18,7 @@ pub(crate) struct Named {
     pub(crate) name: String,
     pub(crate) world: World,
     pub(crate) tool: Option<Tool>,
+    pub(crate) guides: Vec<Guide>,
 }
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
@@ -26,9 +27,9 @@ pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
         None => ("the built-in gallery".to_owned(), Scene::from_json(GALLERY)),
         Some(path) => (path.display().to_string(), Scene::from_file(path)),
     };
-    let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool)));
+    let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool, scene.guides)));
     match built {
-        Ok((world, tool)) => Ok(Named { name, world, tool }),
+        Ok((world, tool, guides)) => Ok(Named { name, world, tool, guides }),
         Err(error) => Err(Failure::input(format!("{name}: {error}"))),
     }
 }

@@ -17,21 +17,29 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The names of the columns.
 pub(crate) fn header<const D: usize>() -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "point".to_owned()];
-    let vectors = [("device", "_m"), ("proxy", "_m"), ("force", "_n"), ("normal", "")];
+    let vectors =
+        [("device", "_m"), ("proxy", "_m"), ("wanted", "_n"), ("force", "_n"), ("normal", "")];
     for (vector, unit) in vectors {
         names.extend(AXES[..D].iter().map(|axis| format!("{vector}_{axis}{unit}")));
     }
-    names.extend(["contact", "evaluations", "cost_ns", "lateness_ns"].map(str::to_owned));
+    let rest = ["contact", "body", "slipping", "taken_j", "given_j", "kept_j"];
+    names.extend(rest.map(str::to_owned));
+    names.extend(["evaluations", "cost_ns", "lateness_ns"].map(str::to_owned));
     names
 }
 
 fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
     let mut fields = vec![row.time_s.to_string(), row.point.to_string()];
-    for Vector(components) in [row.device, row.proxy, row.force, row.normal] {
+    for Vector(components) in [row.device, row.proxy, row.wanted, row.force, row.normal] {
         fields.extend(components.iter().map(f64::to_string));
     }
-    fields.push(row.contact.to_string());
     fields.extend([
+        row.contact.to_string(),
+        row.body.to_string(),
+        row.is_slipping.to_string(),
+        row.energy.taken.to_string(),
+        row.energy.given.to_string(),
+        row.energy.kept.to_string(),
         row.evaluations.to_string(),
         row.cost_ns.to_string(),
         row.lateness_ns.to_string(),

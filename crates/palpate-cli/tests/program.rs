@@ -458,12 +458,14 @@ fn feel_reports_traces_and_draws() {
     assert!(report["largest_force"].as_f64().unwrap() <= 3.3);
     assert!(report["cost"]["p50_ns"].as_u64().unwrap() > 0);
     let rows = std::fs::read_to_string(&trace).unwrap();
-    assert_eq!(rows.lines().count(), 2001);
+    // Ten fingers.
+    assert_eq!(rows.lines().count(), 20_001);
     assert_eq!(
         rows.lines().next().unwrap(),
         "time_s,point,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,\
-         force_x_n,force_y_n,force_z_n,normal_x,normal_y,normal_z,\
-         contact,evaluations,cost_ns,lateness_ns"
+         wanted_x_n,wanted_y_n,wanted_z_n,force_x_n,force_y_n,force_z_n,\
+         normal_x,normal_y,normal_z,contact,body,slipping,taken_j,given_j,kept_j,\
+         evaluations,cost_ns,lateness_ns"
     );
     assert!(std::fs::read_to_string(&plot).unwrap().starts_with("<svg"));
     let again = json(&arguments);
@@ -479,8 +481,8 @@ fn no_proxy_is_left_behind_in_the_gallery() {
     for duration in ["10", "11"] {
         let report = json(&["feel", "--fast", "--duration", duration, "--json"]);
         let depth = report["largest_depth"].as_f64().unwrap();
-        // Pressed to 3/4 of a probe of 3 mm; at edges a little more.
-        assert!(depth < 0.003, "{depth} m deep in {duration} s");
+        // Pressed to 3/4 of a probe of 3 mm, and held back by friction before edges.
+        assert!(depth < 0.006, "{depth} m deep in {duration} s");
     }
 }
 

@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::cmp::Ordering;
+
 use palpate_field::{
     BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, Vector,
 };
@@ -191,8 +193,8 @@ impl<const D: usize> Body<D> {
 }
 
 /// Room for a tick with so many bodies.
-fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Vec<u32>) {
-    (vec![Reaction::NONE; bodies], Vec::with_capacity(bodies))
+fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Box<[u32]>) {
+    (vec![Reaction::NONE; bodies], vec![0; bodies].into_boxed_slice())
 }
 
 pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
@@ -231,8 +233,9 @@ pub struct Bodies<const D: usize> {
     pub(crate) has_moved: bool,
     /// What was done to each in the last tick.
     reactions: Vec<Reaction<D>>,
-    /// Room for the numbers of those that are near.
-    list: Vec<u32>,
+    /// Room for the numbers of those that are near: a box, as a clone of a vector has less
+    /// room than the vector.
+    list: Box<[u32]>,
 }
 
 impl<const D: usize> Bodies<D> {
@@ -292,7 +295,7 @@ impl<const D: usize> Bodies<D> {
     /// Room for a tick: the numbers of what is near, and what is done to each body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn take_scratch(&mut self) -> (Vec<u32>, Vec<Reaction<D>>) {
+    pub(crate) fn take_scratch(&mut self) -> (Box<[u32]>, Vec<Reaction<D>>) {
         self.reactions.fill(Reaction::NONE);
         (std::mem::take(&mut self.list), std::mem::take(&mut self.reactions))
     }
@@ -300,7 +303,7 @@ impl<const D: usize> Bodies<D> {
     /// Takes back what was [taken](Self::take_scratch).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn put_back(&mut self, (list, reactions): (Vec<u32>, Vec<Reaction<D>>)) {
+    pub(crate) fn put_back(&mut self, (list, reactions): (Box<[u32]>, Vec<Reaction<D>>)) {
         (self.list, self.reactions) = (list, reactions);
     }
 
@@ -319,28 +322,31 @@ impl<const D: usize> Bodies<D> {
         Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
     }
 
-    /// Those within `radius` of `centre` [m], written down in `list`; it is not enlarged, and
-    /// bodies that find no room are beyond a nearer horizon.
+    /// Those within `radius` of `centre` [m], written down in `list`; bodies that find no room
+    /// there are beyond a nearer horizon.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn nearby<'a>(
         &'a self,
         (centre, radius): (Point<D>, f64),
-        list: &'a mut Vec<u32>,
+        list: &'a mut [u32],
     ) -> Nearby<'a, D> {
-        list.clear();
-        let mut horizon = f64::INFINITY;
+        let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(&self.bodies) {
             let away = body.above_ball(centre);
-            // Written so that NaN is near.
-            if away > radius || list.len() == list.capacity() {
-                horizon = horizon.min(away);
-            } else {
-                list.push(index);
+            match list.get_mut(count) {
+                // Written so that NaN is near.
+                Some(place)
+                    if !matches!(away.partial_cmp(&radius), Some(Ordering::Greater)) =>
+                {
+                    *place = index;
+                    count += 1;
+                }
+                _ => horizon = horizon.min(away),
             }
         }
-        Nearby { bodies: self, list: Some(list), centre, horizon }
+        Nearby { bodies: self, list: list.get(..count), centre, horizon }
     }
 }
 

@@ -7,7 +7,8 @@ use std::borrow::Cow;
 
 use palpate_field::{Point, Vector};
 
-/// One contact point of a device, as read in a tick. World coordinates.
+/// One contact point of a device, as read in a tick. Coordinates of the device, which are those
+/// of the world unless a servo [protects](crate::Protection) it with a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointState<const D: usize> {
     /// Where the hand holds the device [m].
@@ -102,8 +103,8 @@ pub struct DeviceLost {
 
 /// A haptic device with one contact point or more.
 ///
-/// A stylus has one point, a glove one for each finger. World coordinates both ways: mapping a
-/// workspace is the implementation's.
+/// A stylus has one point, a glove one for each finger. Coordinates of the device both ways: a
+/// [`WorkspaceMap`](crate::WorkspaceMap) of the servo takes them to the world.
 pub trait Device<const D: usize> {
     /// How many contact points it has; the same for life.
     fn points(&self) -> usize;

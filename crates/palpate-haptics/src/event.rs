@@ -43,6 +43,36 @@ pub enum EventKind {
     },
 }
 
+/// How many events of each kind there were.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct EventCounts {
+    /// A contact point touched a body that it did not touch before.
+    pub touches: u64,
+    /// It touched it no more.
+    pub leaves: u64,
+    /// It began to slip.
+    pub slips: u64,
+    /// It stuck again.
+    pub sticks: u64,
+    /// A layer gave way.
+    pub pops: u64,
+}
+
+impl EventCounts {
+    /// Counts an event.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn count(&mut self, event: &Event) {
+        *match event.kind {
+            EventKind::Touch { .. } => &mut self.touches,
+            EventKind::Leave => &mut self.leaves,
+            EventKind::Slip => &mut self.slips,
+            EventKind::Stick => &mut self.sticks,
+            EventKind::Pop { .. } => &mut self.pops,
+        } += 1;
+    }
+}
+
 /// What all contact points together did to a body in a tick: for a physics engine that moves
 /// it. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -93,7 +93,7 @@ pub use bodies::{Bodies, Body};
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
 pub use error::{HapticsError, not_negative, positive};
-pub use event::{Event, EventKind, Reaction};
+pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
 pub use hand_path::{HandPath, Interpolation};
 pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff};
@@ -107,7 +107,7 @@ pub use priority::{Priority, raise_priority};
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use recorded::RecordedDevice;
-pub use recorder::{Recorder, TraceRow};
+pub use recorder::{Energy, Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use safety::{

@@ -10,6 +10,7 @@ use crate::bodies::Bodies;
 use crate::device::{DeviceProfile, PointState};
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
+use crate::recorder::Energy;
 use crate::safety::{
     Acceptance, Accepted, PortState, SafetyChain, SafetyOptions, SafetyReport,
 };
@@ -166,6 +167,12 @@ impl<const D: usize> Port<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn stop(&mut self, is_stopped: bool) {
         if is_stopped { self.chain.stop() } else { self.chain.release() }
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn energy(&self) -> Energy {
+        let seen = self.chain.passivity();
+        Energy { taken: seen.energy_in, given: seen.energy_out, kept: seen.dissipated }
     }
 
     pub(crate) fn report(&self) -> SafetyReport {

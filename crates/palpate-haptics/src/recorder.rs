@@ -5,7 +5,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::servo::Touch;
+use crate::servo::Servo;
 
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,18 +18,38 @@ pub struct TraceRow<const D: usize> {
     pub device: Point<D>,
     /// The proxy [m]; the device point itself in free space.
     pub proxy: Point<D>,
+    /// The force of what is touched, before any limit [N].
+    pub wanted: Vector<f64, D>,
     /// The force on the hand [N].
     pub force: Vector<f64, D>,
     /// The unit normal of the surface last seen, pointing out.
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
+    /// Whose surface it is: the number of the body.
+    pub body: u32,
+    /// `true` if the proxy moves along the surface against friction.
+    pub is_slipping: bool,
+    /// Energy that the hand gave to the device and got from it so far, and what the safety
+    /// chain kept back [J]; zero of a servo that is not protected.
+    pub energy: Energy,
     /// Evaluations of the shape for this point in this tick.
     pub evaluations: u32,
     /// What the whole tick cost, all points together [ns].
     pub cost_ns: u64,
     /// How late the tick started [ns]; zero where it is not paced.
     pub lateness_ns: u64,
+}
+
+/// Energy at a contact point since the start [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Energy {
+    /// What the forces took from the hand.
+    pub taken: f64,
+    /// What they gave to it.
+    pub given: f64,
+    /// What the wanted forces would have given, but those written did not.
+    pub kept: f64,
 }
 
 /// What the loop knows about a tick beside its touches.
@@ -68,8 +88,8 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn record(&mut self, times: TickTimes, touches: &[Touch<D>]) {
-        for (point, touch) in (0..).zip(touches) {
+    pub(crate) fn record(&mut self, times: TickTimes, servo: &Servo<D>) {
+        for (point, touch) in (0..).zip(servo.touches()) {
             if self.rows.len() >= self.capacity {
                 self.dropped += 1;
                 continue;
@@ -79,9 +99,13 @@ impl<const D: usize> Recorder<D> {
                 point,
                 device: touch.device,
                 proxy: touch.proxy,
+                wanted: touch.wanted,
                 force: touch.force,
                 normal: touch.normal,
                 contact: touch.contact,
+                body: touch.body,
+                is_slipping: touch.is_slipping,
+                energy: servo.energy(point),
                 evaluations: touch.evaluations,
                 cost_ns: times.cost_ns,
                 lateness_ns: times.lateness_ns,

@@ -3,9 +3,11 @@
 
 //! What happened in a run of the servo.
 
+use crate::event::EventCounts;
 use crate::live::Progress;
 use crate::recorder::TickTimes;
-use crate::servo::Touch;
+use crate::safety::SafetyReport;
+use crate::servo::Servo;
 use crate::statistics::{Distribution, Times};
 
 /// A run of the servo in numbers.
@@ -38,6 +40,10 @@ pub struct RunReport {
     pub missed_deadlines: u64,
     /// Rows that the recorder had no room for.
     pub rows_dropped: u64,
+    /// What happened at the contact points.
+    pub events: EventCounts,
+    /// What the safety chain of each contact point did; none of a servo that is not protected.
+    pub safety: Vec<SafetyReport>,
 }
 
 /// How often the shape was evaluated.
@@ -86,6 +92,7 @@ pub(crate) struct Tally {
     largest_depth: f64,
     cost: Times,
     lateness: Times,
+    events: EventCounts,
 }
 
 impl Tally {
@@ -103,6 +110,7 @@ impl Tally {
             largest_depth: 0.0,
             cost: Times::new(),
             lateness: Times::new(),
+            events: EventCounts::default(),
         }
     }
 
@@ -120,9 +128,10 @@ impl Tally {
     pub(crate) fn tick<const D: usize>(
         &mut self,
         times: TickTimes,
-        touches: &[Touch<D>],
-        budget: u32,
+        servo: &Servo<D>,
     ) -> Progress {
+        let (touches, budget) = (servo.touches(), servo.options().probe.budget());
+        servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
         let mut progress = Progress {
@@ -148,7 +157,12 @@ impl Tally {
         progress
     }
 
-    pub(crate) fn report(&self, ending: Ending, rows_dropped: u64) -> RunReport {
+    pub(crate) fn report(
+        &self,
+        ending: Ending,
+        rows_dropped: u64,
+        safety: Vec<SafetyReport>,
+    ) -> RunReport {
         let ticks = self.ticks as f64;
         RunReport {
             ending,
@@ -169,6 +183,8 @@ impl Tally {
             lateness: self.lateness.distribution(),
             missed_deadlines: self.missed_deadlines,
             rows_dropped,
+            events: self.events,
+            safety,
         }
     }
 }

@@ -16,6 +16,7 @@ use crate::limit::limited;
 use crate::nearby::Nearby;
 use crate::protection::{Port, Protection};
 use crate::proxy::{Following, Probe, Proxy};
+use crate::recorder::Energy;
 use crate::safety::{Accepted, PortState, SafetyReport};
 use crate::surface::Ringing;
 use crate::workspace::WorkspaceMap;
@@ -250,6 +251,14 @@ impl<const D: usize> Servo<D> {
     #[must_use]
     pub fn safety(&self) -> Vec<SafetyReport> {
         self.ports.iter().map(Port::report).collect()
+    }
+
+    /// The energy at a contact point since the start; none of a servo that is not protected.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn energy(&self, point: u32) -> Energy {
+        self.ports.get(point as usize).map_or(Energy::default(), Port::energy)
     }
 
     /// Says whether the next tick starts too late.

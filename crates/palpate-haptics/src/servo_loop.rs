@@ -89,7 +89,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         if let Some(end) = &self.end {
             end.finish();
         }
-        self.tally.report(ending, self.recorder.map_or(0, |recorder| recorder.dropped()))
+        let dropped = self.recorder.map_or(0, |recorder| recorder.dropped());
+        self.tally.report(ending, dropped, self.servo.safety())
     }
 
     fn ticks(&mut self, clock: &mut dyn Clock, schedule: &Schedule) -> Result<(), DeviceLost> {
@@ -139,13 +140,12 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
 
     /// Everything that is not part of a tick: it may make the next one late, but not wrong.
     fn account(&mut self, times: TickTimes) {
-        let touches = self.servo.touches();
-        let progress = self.tally.tick(times, touches, self.servo.options().probe.budget());
+        let progress = self.tally.tick(times, self.servo);
         if let Some(end) = &mut self.end {
             end.publish(self.servo, &progress);
         }
         if let Some(recorder) = &mut self.recorder {
-            recorder.record(times, touches);
+            recorder.record(times, self.servo);
         }
     }
 }

@@ -174,7 +174,10 @@ fn a_batch_of_poses_is_seen_whole() {
 
 /// A ball that can be counted.
 #[derive(Debug)]
-struct Counted(Arc<()>, Promise<2>);
+struct Counted {
+    promise: Promise<2>,
+    _count: Arc<()>,
+}
 
 impl CustomField<2> for Counted {
     fn distance(&self, p: Point<2>) -> f64 {
@@ -184,7 +187,7 @@ impl CustomField<2> for Counted {
         (p.norm() - 0.5, p.normalized().unwrap_or(Vector::ZERO))
     }
     fn promise(&self) -> &Promise<2> {
-        &self.1
+        &self.promise
     }
 }
 
@@ -193,7 +196,7 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
     let count = Arc::new(());
     let scene = || {
         let promise = *ball(0.5).promise();
-        Bodies::from(Shape::custom(Counted(count.clone(), promise)))
+        Bodies::from(Shape::custom(Counted { promise, _count: count.clone() }))
     };
     let hand = Hand::at(&[[0.0, 1.0]]);
     let (mut thread, mut driver) = start(servo(scene(), 1), &hand, plain());

@@ -6,15 +6,15 @@
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Vector};
-use palpate::haptics::{Recorder, TraceRow};
+use palpate::field::{Aabb, Point, Vector};
+use palpate::haptics::{Energy, Recorder, TraceRow};
 use palpate::plot::{
     Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Sampling,
     Series,
 };
 use palpate::scene::BuiltScene;
 
-use super::nearness::{Pieces, Side, side, taken_apart};
+use super::nearness::{Pieces, Seen, Side, side, taken_apart};
 use super::slices::{FeltSlice, felt_slices};
 use crate::input::{self, promise_in_words};
 use crate::outcome::Failure;
@@ -29,8 +29,9 @@ const ARROW_SPACING: f64 = 0.025;
 /// How much shorter arrows are drawn where there are two views: each is half as large.
 const ARROWS_OF_VIEWS: f64 = 1.6;
 
-/// Contact points drawn at most: more than ten lines cannot be told apart.
-const MOST_CONTACTS: u32 = 10;
+/// Contact points drawn one by one at most: of more, all proxies are one line, and the chart
+/// shows their largest force.
+const MOST_CONTACTS: u32 = 3;
 
 pub(crate) fn draw<const D: usize>(
     scene: &BuiltScene<D>,
@@ -56,13 +57,16 @@ where
     // A scene that was felt has bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
-    let contacts = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
-    let contacts: Vec<Contact<'_, D>> = (0..contacts.min(MOST_CONTACTS))
-        .map(|contact| Contact {
-            suffix: if contacts == 1 { String::new() } else { format!(" {contact}") },
-            rows: rows.iter().filter(|row| row.point == contact).collect(),
-        })
-        .collect();
+    let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
+    let of_point = |point| rows.iter().filter(|row| row.point == point).collect::<Vec<_>>();
+    let together = count == 1 || count > MOST_CONTACTS;
+    let contacts: Vec<Contacts<'_, D>> = if together {
+        vec![Contacts { suffix: String::new(), points: (0..count).map(of_point).collect() }]
+    } else {
+        let alone =
+            |point| Contacts { suffix: format!(" {point}"), points: vec![of_point(point)] };
+        (0..count).map(alone).collect()
+    };
     let slices = felt_slices(&bounds, rows)?;
     let mut views = Vec::new();
     for slice in &slices {
@@ -78,8 +82,8 @@ where
         views.into_iter().map(|view| view.with_step(step)).collect::<Result<_, _>>()?;
     let mut chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
     for contact in &contacts {
-        let force = thinned(&contact.rows).map(|row| [row.time_s, row.force.norm()]);
-        chart = chart.with_series(Series::new(contact.name("force"), force)?);
+        let name = if contact.points.len() > 1 { "largest force" } else { "force" };
+        chart = chart.with_series(Series::new(contact.name(name), contact.forces())?);
     }
     let mut caption = promise_in_words(scene.whole.promise());
     if let Some(slice) = slices.iter().find(|slice| slice.near.is_finite()) {
@@ -88,18 +92,62 @@ where
             (1e3 * slice.near * 1e6).round() / 1e6
         ));
     }
-    Ok(Figure::new(title).with_caption(caption).with_views(views).with_chart(chart))
+    let figure = Figure::new(title).with_caption(caption).with_views(views).with_chart(chart);
+    Ok(if rows.iter().any(|row| row.energy != Energy::default()) {
+        figure.with_chart(energies(rows, count as usize)?)
+    } else {
+        figure
+    })
 }
 
-/// The rows of one contact point, and what its number adds to a name.
-struct Contact<'a, const D: usize> {
+/// The energies of all contact points together over time.
+fn energies<const D: usize>(rows: &[TraceRow<D>], contacts: usize) -> Result<Chart, PlotError> {
+    let names = ["taken from the hand", "given to it", "kept back"];
+    let dashes = [Dash::Solid, Dash::Dashed, Dash::Dotted];
+    let ticks: Vec<&[TraceRow<D>]> = rows.chunks_exact(contacts.max(1)).collect();
+    let every = ticks.len().div_ceil(MOST_POINTS).max(1);
+    let mut chart = Chart::new(Quantity::new("time", "s"), Quantity::new("energy", "mJ"));
+    for (curve, (name, dash)) in names.into_iter().zip(dashes).enumerate() {
+        let points = ticks.iter().step_by(every).map(|tick| {
+            let energies = tick.iter().map(|row| &row.energy);
+            let sum: f64 = energies.map(|e| [e.taken, e.given, e.kept][curve]).sum();
+            [tick[0].time_s, 1e3 * sum]
+        });
+        chart = chart.with_series(Series::new(name, points)?.with_dash(dash));
+    }
+    Ok(chart)
+}
+
+/// The rows of contact points that are drawn alike, and what their number adds to a name.
+struct Contacts<'a, const D: usize> {
     suffix: String,
-    rows: Vec<&'a TraceRow<D>>,
+    points: Vec<Vec<&'a TraceRow<D>>>,
 }
 
-impl<const D: usize> Contact<'_, D> {
+impl<'a, const D: usize> Contacts<'a, D> {
     fn name(&self, what: &str) -> String {
         format!("{what}{}", self.suffix)
+    }
+
+    /// The pieces of the lines of all points, by where they lie.
+    fn parted(&self, slice: &FeltSlice, place: fn(&TraceRow<D>) -> Point<D>) -> Vec<Seen> {
+        let line = |rows: &Vec<&'a TraceRow<D>>| {
+            let line: Vec<_> = thinned(rows).map(place).collect();
+            taken_apart::<D>(&slice.plane, slice.near, line)
+        };
+        self.points.iter().map(line).collect()
+    }
+
+    /// The largest force at each time [N].
+    fn forces(&self) -> Vec<[f64; 2]> {
+        let ticks = self.points.iter().map(Vec::len).max().unwrap_or(0);
+        let every = ticks.div_ceil(MOST_POINTS).max(1);
+        let tick = |i: usize| {
+            let rows = self.points.iter().filter_map(|rows| rows.get(i));
+            let time = rows.clone().next().map_or(0.0, |row| row.time_s);
+            [time, rows.map(|row| row.force.norm()).fold(0.0, f64::max)]
+        };
+        (0..ticks).step_by(every).map(tick).collect()
     }
 }
 
@@ -108,17 +156,19 @@ impl<const D: usize> Contact<'_, D> {
 fn overlaid<const D: usize>(
     mut isolines: Isolines,
     slice: &FeltSlice,
-    contacts: &[Contact<'_, D>],
+    contacts: &[Contacts<'_, D>],
     spacing: f64,
 ) -> Result<Isolines, PlotError> {
-    let parted = |points| taken_apart::<D>(&slice.plane, slice.near, points);
     let (mut in_front, mut behind) = (Pieces::new(), Pieces::new());
     let mut proxies = Vec::new();
     for contact in contacts {
-        let proxy = parted(thinned(&contact.rows).map(|row| row.proxy).collect::<Vec<_>>());
-        in_front.extend(proxy.in_front);
-        behind.extend(proxy.behind);
-        proxies.push(proxy.near);
+        let mut near = Pieces::new();
+        for proxy in contact.parted(slice, |row| row.proxy) {
+            in_front.extend(proxy.in_front);
+            behind.extend(proxy.behind);
+            near.extend(proxy.near);
+        }
+        proxies.push(near);
     }
     let far = [
         ("behind the slice", behind, Dash::Dashed),
@@ -130,12 +180,14 @@ fn overlaid<const D: usize>(
             isolines = isolines.with_polyline(line);
         }
     }
-    let forces = contacts.iter().flat_map(|contact| &contact.rows).map(|row| row.force.norm());
+    let rows = contacts.iter().flat_map(|contact| &contact.points).flatten();
+    let forces = rows.map(|row| row.force.norm());
     let shortened = if D < 3 { 1.0 } else { ARROWS_OF_VIEWS };
     let full_length = shortened * forces.fold(0.0, f64::max);
     for (contact, proxy) in contacts.iter().zip(proxies) {
-        let hand = parted(thinned(&contact.rows).map(|row| row.device).collect::<Vec<_>>());
-        let hand = Polyline::of_pieces(contact.name("hand"), hand.near)?;
+        let hand = contact.parted(slice, |row| row.device).into_iter();
+        let hand: Pieces = hand.flat_map(|hand| hand.near).collect();
+        let hand = Polyline::of_pieces(contact.name("hand"), hand)?;
         isolines = isolines
             .with_polyline(Polyline::of_pieces(contact.name("proxy"), proxy)?)
             .with_polyline(hand.with_dash(Dash::Dotted));
@@ -151,14 +203,15 @@ fn overlaid<const D: usize>(
 /// The forces near the slice, as far as they lie in it, at places `spacing` apart [m].
 fn arrows<const D: usize>(
     slice: &FeltSlice,
-    contact: &Contact<'_, D>,
+    contact: &Contacts<'_, D>,
     spacing: f64,
 ) -> Vec<Arrow> {
     let is_seen = |row: &TraceRow<D>| {
         row.contact && side(&slice.plane, slice.near, row.proxy) == Side::Near
     };
     let mut arrows: Vec<Arrow> = Vec::new();
-    let touches = contact.rows.chunk_by(|a, b| is_seen(a) == is_seen(b));
+    let touches =
+        contact.points.iter().flat_map(|rows| rows.chunk_by(|a, b| is_seen(a) == is_seen(b)));
     for touch in touches.filter(|touch| touch.iter().all(|row| is_seen(row))) {
         let tails: Vec<_> =
             touch.iter().map(|row| slice.plane.project(in_space(row.proxy))).collect();

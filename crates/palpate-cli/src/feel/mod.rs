@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate feel`: a servo, a simulated hand, and a report.
+//! `palpate feel`: a servo, a device in a hand, and a report.
 
 mod figure;
+mod held;
 mod nearness;
 mod report;
 mod slices;
@@ -11,13 +12,15 @@ mod slices;
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
+use palpate::devices::profile_named;
 use palpate::haptics::{
-    Bodies, Body, Ending, HandPath, HapticsError, Interpolation, Pace, Probe, Progress,
-    RecordedDevice, Recorder, RunOptions, Servo, ServoOptions, Surface, Tour, run as run_servo,
+    Acceptance, Accepted, Bodies, Body, Ending, Guide, HandPath, HapticsError, Interpolation,
+    Pace, Probe, Progress, Protection, Recorder, RunOptions, Servo, ServoOptions, Surface,
+    Tour, run as run_servo,
 };
 use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
 
-use crate::arguments::FeelOptions;
+use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::input::{self, Named};
 use crate::outcome::{Failure, Outcome};
 use crate::picture::{Dimensions, Drawable};
@@ -38,6 +41,12 @@ const MOST_TICKS: f64 = 1e9;
 
 /// The most contact points: more than all hands in a room have fingers.
 const MOST_CONTACTS: usize = 1000;
+
+/// The contact points of the built-in hand on the built-in gallery: two hands.
+const FINGERS: usize = 10;
+
+/// The device that feels the built-in gallery.
+const SHOWN: &str = "omega";
 
 /// How often the live line is renewed.
 const LIVE_EVERY: Duration = Duration::from_millis(100);
@@ -62,14 +71,29 @@ where
     let servo_options = servo_options(named.tool.as_ref(), options).map_err(Failure::input)?;
     // Before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
-    let paths = paths(scene, options, &servo_options)?;
+    let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
+    let paths = paths(scene, (points, options), &servo_options)?;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
     let contacts = paths.len();
-    let mut device = RecordedDevice::new(paths).map_err(Failure::input)?;
     let mut servo = bodies(scene, options)
         .and_then(|bodies| Servo::new(bodies, contacts, servo_options))
         .map_err(Failure::input)?;
+    let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
+    servo.guide(&guides.map_err(Failure::input)?);
+    let choice = match (&options.device, &options.scene) {
+        (Some(choice), _) => choice.clone(),
+        (None, Some(_)) => DeviceChoice::Recorded,
+        (None, None) => DeviceChoice::Simulated(profile_named(SHOWN).map_err(Failure::input)?),
+    };
+    let map = held::map(scene, &choice)?;
+    let mut device = held::device(&choice, paths, &map).map_err(Failure::input)?;
+    let protection = Protection {
+        map,
+        acceptance: if options.strict { Acceptance::Strict } else { Acceptance::Scaled },
+        ..Protection::new(device.profile().clone())
+    };
+    let accepted = servo.protect(&protection).map_err(Failure::input)?;
 
     let ticks = ticks(duration, options.rate)?;
     let keeps_rows = options.trace.is_some() || options.plot.is_some();
@@ -91,7 +115,8 @@ where
         recorder: keeps_rows.then_some(&mut recorder),
         watch: if shows_line { Some((LIVE_EVERY, &mut show)) } else { None },
     };
-    let outcome = run_servo(&mut servo, &mut device, run_options).map_err(Failure::input)?;
+    let outcome =
+        run_servo(&mut servo, device.as_mut(), run_options).map_err(Failure::input)?;
     if shows_line {
         eprintln!();
     }
@@ -104,11 +129,27 @@ where
     }
     let mut out = std::io::stdout().lock();
     if options.json {
-        writeln!(out, "{}", serde_json::to_string_pretty(&outcome)?)?;
+        let mut json = serde_json::to_value(&outcome)?;
+        json["device"] = device.profile().name.as_ref().into();
+        json["bodies"] = accepted_as_json(scene, &accepted)?;
+        writeln!(out, "{json:#}")?;
     } else {
-        write!(out, "{}", report::text(name, &outcome, &servo))?;
+        write!(out, "{}", report::text(name, &outcome, (&servo, device.profile(), &accepted)))?;
     }
     Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
+}
+
+/// What became of the stiffness and damping of each body.
+fn accepted_as_json<const D: usize>(
+    scene: &BuiltScene<D>,
+    accepted: &[Accepted],
+) -> Result<serde_json::Value, serde_json::Error> {
+    let bodies = scene.bodies.iter().zip(accepted).map(|(body, accepted)| {
+        let mut json = serde_json::to_value(accepted)?;
+        json["name"] = body.name.as_str().into();
+        Ok(json)
+    });
+    bodies.collect()
 }
 
 /// The ticks of a run.
@@ -157,23 +198,23 @@ fn bodies<const D: usize>(
 /// behind the other.
 fn paths<const D: usize>(
     scene: &BuiltScene<D>,
-    options: &FeelOptions,
+    (points, options): (usize, &FeelOptions),
     servo: &ServoOptions,
 ) -> Result<Vec<HandPath<D>>, Failure> {
     if let Some(path) = &options.path {
         return hand_csv::read(path);
     }
-    if options.contacts > MOST_CONTACTS {
-        let problem = format!("at most {MOST_CONTACTS} contacts, got {}", options.contacts);
+    if points > MOST_CONTACTS {
+        let problem = format!("at most {MOST_CONTACTS} points, got {points}");
         return Err(Failure::input(problem));
     }
     let duration = options.duration.unwrap_or(DURATION);
-    let lag = LAG * options.contacts.saturating_sub(1) as f64;
+    let lag = LAG * points.saturating_sub(1) as f64;
     let tour = Tour::new(input::bounds(scene)?, duration + lag)
         .and_then(|tour| tour.with_probe_radius(servo.probe.radius()))
         .and_then(|tour| tour.over(&scene.whole))
         .map_err(Failure::input)?;
-    (0..options.contacts)
+    (0..points)
         .map(|contact| {
             let ahead = LAG * contact as f64;
             let times = tour.times().iter().map(|time| time - ahead).collect();

@@ -5,7 +5,10 @@
 
 use std::fmt::Write;
 
-use palpate::haptics::{Body, Distribution, Ending, Progress, RunReport, Servo, Surface};
+use palpate::haptics::{
+    Accepted, Body, DeviceProfile, Distribution, Ending, PassivityReport, Progress, Rule,
+    RunReport, SafetyReport, Servo, Surface,
+};
 
 /// The widest bar of a histogram.
 const BAR: u64 = 40;
@@ -34,9 +37,13 @@ fn file_name(name: &str) -> String {
 }
 
 /// The whole report.
-pub(crate) fn text<const D: usize>(name: &str, report: &RunReport, servo: &Servo<D>) -> String {
+pub(crate) fn text<const D: usize>(
+    name: &str,
+    report: &RunReport,
+    felt: (&Servo<D>, &DeviceProfile, &[Accepted]),
+) -> String {
     let mut out = String::new();
-    write_report(&mut out, name, report, servo).unwrap_or_default();
+    write_report(&mut out, name, report, felt).unwrap_or_default();
     out
 }
 
@@ -44,7 +51,7 @@ fn write_report<const D: usize>(
     out: &mut String,
     name: &str,
     report: &RunReport,
-    servo: &Servo<D>,
+    (servo, profile, accepted): (&Servo<D>, &DeviceProfile, &[Accepted]),
 ) -> std::fmt::Result {
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
@@ -57,6 +64,8 @@ fn write_report<const D: usize>(
         options.max_force,
         1e3 * options.probe.radius(),
     )?;
+    writeln!(out, "  device         {}", profile.name)?;
+    write_accepted(out, accepted)?;
     match &report.ending {
         Ending::Finished => {}
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
@@ -89,6 +98,13 @@ fn write_report<const D: usize>(
             evaluations.budget_spent
         )?;
     }
+    let events = &report.events;
+    writeln!(
+        out,
+        "  events         {} touches, {} slips, {} sticks, {} pops",
+        events.touches, events.slips, events.sticks, events.pops
+    )?;
+    write_safety(out, &report.safety)?;
     if let Some(cost) = &report.cost {
         writeln!(out, "  cost a tick    {}", quantiles(cost))?;
     }
@@ -104,11 +120,82 @@ fn write_report<const D: usize>(
     Ok(())
 }
 
+/// What became of bodies that the device cannot render, and why.
+fn write_accepted(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
+    let scaled = || accepted.iter().filter(|accepted| accepted.factor < 1.0);
+    let Some(softest) = scaled().min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
+        return Ok(());
+    };
+    let condition = softest.rule.map_or("", Rule::condition);
+    let (count, all) = (scaled().count(), accepted.len());
+    writeln!(
+        out,
+        "                 {count} of {all} bodies made softer, at most {:.3} times as stiff: \
+         {condition}",
+        softest.factor
+    )?;
+    if softest.assumed.contains(&"least_damping") {
+        writeln!(out, "                 the device's least damping b is assumed")?;
+    }
+    Ok(())
+}
+
+/// What the safety chains of all points did together.
+fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
+    if safety.is_empty() {
+        return Ok(());
+    }
+    let energy = |of: fn(&PassivityReport) -> f64| -> f64 {
+        1e3 * safety.iter().map(|point| of(&point.passivity)).sum::<f64>()
+    };
+    writeln!(
+        out,
+        "  energy         {:.3} mJ taken from the hand, {:.3} mJ given, {:.3} mJ kept back",
+        energy(|p| p.energy_in),
+        energy(|p| p.energy_out),
+        energy(|p| p.dissipated),
+    )?;
+    let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
+    let stages = [
+        ("passivity", ticks(|point| point.passivity.effect.ticks)),
+        ("force rate", ticks(|point| point.slew.ticks)),
+        ("largest force", ticks(|point| point.force_limit.ticks)),
+        ("lasting force", ticks(|point| point.continuous.effect.ticks)),
+        ("not a number", ticks(|point| point.guard.ticks)),
+        ("ramp", ticks(|point| point.ramp.ticks)),
+        ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
+    ];
+    let acted: Vec<_> = stages
+        .iter()
+        .filter(|(_, ticks)| *ticks > 0)
+        .map(|(stage, ticks)| format!("{stage} {ticks}"))
+        .collect();
+    let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
+    writeln!(out, "  safety, ticks  {acted}")?;
+    writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
+}
+
 /// The numbers of all bodies: one, or from the least to the largest.
 fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
     let least = numbers.clone().fold(f64::INFINITY, f64::min);
     let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
-    if least < largest { format!("{least} to {largest}") } else { least.to_string() }
+    if least < largest {
+        format!("{} to {}", rounded(least), rounded(largest))
+    } else {
+        rounded(least)
+    }
+}
+
+/// A number with four digits that count.
+fn rounded(number: f64) -> String {
+    let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    let unit = 10.0_f64.powi(-digits);
+    let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 fn quantiles(times: &Distribution) -> String {

@@ -287,6 +287,14 @@ impl<const D: usize> SafetyChain<D> {
         self.is_stopped
     }
 
+    /// What the passivity stage saw and did so far.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn passivity(&self) -> PassivityReport {
+        self.passivity.report()
+    }
+
     /// What every stage did so far.
     #[must_use]
     pub fn report(&self) -> SafetyReport {

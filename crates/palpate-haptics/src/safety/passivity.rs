@@ -156,7 +156,7 @@ impl<const D: usize> Passivity<D> {
         report.energy_out += given.max(0.0);
         let net = report.energy_in - report.energy_out;
         report.least_balance = report.least_balance.min(net);
-        report.dissipated += last.wanted.dot(way) - given;
+        report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
         self.balance -= given;
         if last.wanted != Vector::ZERO || wanted != Vector::ZERO {
             let loss = damping * way.dot(way) / period;

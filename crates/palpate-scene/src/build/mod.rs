@@ -35,6 +35,9 @@ pub struct BuiltScene<const D: usize> {
     pub whole: Shape<D>,
     /// The shape of the tool in its own coordinates, if it has one.
     pub tool: Option<Shape<D>>,
+    /// How the tool's device lies in the world: its pose, and metres in the world for each of
+    /// the device; none if the scene does not say.
+    pub workspace: Option<(Pose<D>, f64)>,
 }
 
 /// A body with its shape.
@@ -76,7 +79,8 @@ where
     }
     check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
     check_views(scene, D).map_err(|problem| problem.under("views"))?;
-    Ok(BuiltScene { bodies, whole, tool })
+    let workspace = workspace(scene).map_err(|problem| problem.under("tool"))?;
+    Ok(BuiltScene { bodies, whole, tool, workspace })
 }
 
 fn bodies<'a, const D: usize>(
@@ -119,6 +123,18 @@ where
     Ok(bodies)
 }
 
+/// How the tool's device lies in the world.
+fn workspace<const D: usize>(scene: &Scene) -> Result<Option<(Pose<D>, f64)>, Problem>
+where
+    Turns: Turning<D>,
+{
+    let workspace = scene.tool.as_ref().and_then(|tool| tool.workspace.as_ref());
+    let Some(workspace) = workspace else { return Ok(None) };
+    let pose = workspace.pose.as_ref().map(|pose| pose.built::<D>()).transpose();
+    let pose = pose.map_err(|problem| problem.under("pose").under("workspace"))?;
+    Ok(Some((pose.unwrap_or_else(Pose::identity), workspace.scale)))
+}
+
 fn tool<'a, const D: usize>(
     scene: &'a Scene,
     builder: &mut Builder<'a>,
@@ -129,9 +145,6 @@ where
 {
     let Some(tool) = &scene.tool else { return Ok(None) };
     tool.check(D)?;
-    if let Some(pose) = tool.workspace.as_ref().and_then(|workspace| workspace.pose.as_ref()) {
-        pose.built::<D>().map_err(|problem| problem.under("pose").under("workspace"))?;
-    }
     let shape = tool.shape.as_ref().map(|node| builder.shape(node)).transpose();
     shape.map_err(|problem| problem.under("shape"))
 }

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What the hand holds, and where its workspace lies.
+
+use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
+use palpate::haptics::{HandPath, HapticsError, Interpolation, WorkspaceMap};
+use palpate::scene::BuiltScene;
+
+use crate::arguments::DeviceChoice;
+use crate::input;
+use crate::outcome::Failure;
+
+/// Where the workspace of the device lies: where the scene says, or else, that of a simulated
+/// device, so that it holds the scene.
+pub(super) fn map<const D: usize>(
+    scene: &BuiltScene<D>,
+    choice: &DeviceChoice,
+) -> Result<WorkspaceMap<D>, Failure> {
+    let map = match (scene.workspace, choice) {
+        (Some((pose, scale)), _) => WorkspaceMap::new(pose, scale),
+        (None, DeviceChoice::Simulated(profile)) => {
+            WorkspaceMap::fitting(input::bounds(scene)?, profile.workspace_radius)
+        }
+        (None, _) => return Ok(WorkspaceMap::default()),
+    };
+    map.map_err(Failure::input)
+}
+
+/// The device, with a hand on each path of the world.
+pub(super) fn device<const D: usize>(
+    choice: &DeviceChoice,
+    paths: Vec<HandPath<D>>,
+    map: &WorkspaceMap<D>,
+) -> Result<Box<dyn Device<D> + Send>, HapticsError> {
+    let paths = paths.iter().map(|path| at_device(path, map)).collect::<Result<Vec<_>, _>>()?;
+    Ok(match choice {
+        DeviceChoice::Recorded => Box::new(RecordedDevice::new(paths)?),
+        DeviceChoice::Glove => Box::new(Glove::new(paths)?),
+        DeviceChoice::Simulated(profile) => {
+            let hands = paths.into_iter().map(Hand::new).collect();
+            Box::new(SimulatedDevice::new(profile.clone(), hands)?)
+        }
+    })
+}
+
+/// A path of the world in the coordinates of the device.
+fn at_device<const D: usize>(
+    path: &HandPath<D>,
+    map: &WorkspaceMap<D>,
+) -> Result<HandPath<D>, HapticsError> {
+    let positions = path.positions().iter().map(|point| map.point_to_device(*point)).collect();
+    HandPath::new(path.times().to_vec(), positions, Interpolation::Smooth)
+}
