@@ -121,6 +121,11 @@ Status 1 if the mesh is not watertight, or has triangles without an area.")]
     /// List the devices that can be simulated: limits, sources, what of it is assumed.
     #[command(after_help = "Examples:\n  palpate devices\n  palpate devices --json")]
     Devices(DevicesOptions),
+    /// Measure how late a loop wakes on this machine, and what would help.
+    #[command(
+        after_help = "Examples:\n  palpate jitter\n  palpate jitter --rate 4000 --duration 20 --json"
+    )]
+    Jitter(JitterOptions),
 }
 
 impl Default for Command {
@@ -538,6 +543,20 @@ pub(crate) struct ShapesOptions {
 /// How devices are listed.
 #[derive(Args, Debug)]
 pub(crate) struct DevicesOptions {
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What loop is measured.
+#[derive(Args, Debug)]
+pub(crate) struct JitterOptions {
+    /// Ticks a second, at most 10 kHz [Hz].
+    #[arg(long, default_value_t = 1000.0)]
+    pub(crate) rate: f64,
+    /// How long to measure, all ways to wait together [s].
+    #[arg(long, default_value_t = 5.0)]
+    pub(crate) duration: f64,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -13,6 +13,7 @@ mod feel;
 mod gallery;
 mod hand_csv;
 mod input;
+mod jitter;
 mod mass;
 mod mesh;
 mod outcome;
@@ -20,6 +21,7 @@ mod picture;
 mod plot;
 mod schema;
 mod shapes;
+mod times;
 mod trace;
 
 use std::process::ExitCode;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         Command::Schema => schema::run(),
         Command::Shapes(options) => shapes::run(&options),
         Command::Devices(options) => devices::run(&options),
+        Command::Jitter(options) => jitter::run(&options),
     };
     match result {
         Ok(Outcome::Yes) => ExitCode::SUCCESS,

@@ -572,3 +572,25 @@ fn ten_points_feel_a_flat_scene() {
     ]);
     assert_eq!((&report["points"], &report["ticks"]), (&10.into(), &1000.into()));
 }
+
+#[test]
+fn jitter_measures_every_way_to_wait_and_advises() {
+    let answer = json(&["jitter", "--rate", "4000", "--duration", "0.03", "--json"]);
+    assert_eq!(answer["rate_hz"], 4000.0);
+    let loops = answer["loops"].as_array().unwrap();
+    let is_raised = answer["raised_priority"]["kind"] == "raised";
+    assert_eq!(loops.len(), if is_raised { 6 } else { 3 });
+    let count = if is_raised { 20 } else { 40 };
+    assert!(loops.iter().all(|measured| measured["lateness"]["count"] == count));
+    assert_eq!(loops[1]["waits_by"], "sleep, then spin");
+    assert!(!answer["advice"].as_array().unwrap().is_empty());
+
+    let report = text(&palpate(&["jitter", "--duration", "0.03"]));
+    assert!(report.starts_with("how late a loop of 1000 Hz wakes on this machine\nsleep\n"));
+    assert!(report.contains("p99.9 ") && report.contains("\nadvice\n  - "), "{report}");
+    for bad in [["--rate", "0"], ["--rate", "20000"], ["--duration", "nan"]] {
+        let output = palpate(&["jitter", bad[0], bad[1]]);
+        assert_eq!(status(&output), 2, "{bad:?}");
+        assert!(!errors(&output).is_empty());
+    }
+}

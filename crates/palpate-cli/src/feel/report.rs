@@ -6,12 +6,11 @@
 use std::fmt::Write;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Distribution, Ending, PassivityReport, Progress, Rule,
-    RunReport, SafetyReport, Servo, Surface,
+    Accepted, Body, DeviceProfile, Ending, PassivityReport, Progress, Rule, RunReport,
+    SafetyReport, Servo, Surface,
 };
 
-/// The widest bar of a histogram.
-const BAR: u64 = 40;
+use crate::times::{quantiles, write_histogram};
 
 /// What is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -196,26 +195,4 @@ fn rounded(number: f64) -> String {
     } else {
         text
     }
-}
-
-fn quantiles(times: &Distribution) -> String {
-    let microseconds = |ns: u64| format!("{:.2} µs", 1e-3 * ns as f64);
-    format!(
-        "p50 {}, p99 {}, p99.9 {}, max {}",
-        microseconds(times.p50_ns),
-        microseconds(times.p99_ns),
-        microseconds(times.p999_ns),
-        microseconds(times.max_ns),
-    )
-}
-
-fn write_histogram(out: &mut String, times: &Distribution) -> std::fmt::Result {
-    let most = times.buckets.iter().map(|bucket| bucket.count).max().unwrap_or(1).max(1);
-    for bucket in &times.buckets {
-        // Never no bar for a bucket that is not empty.
-        let length = (bucket.count * BAR).div_ceil(most) as usize;
-        let up_to = bucket.up_to_ns / 1000;
-        writeln!(out, "    up to {up_to:>8} µs {:>8} {}", bucket.count, "█".repeat(length))?;
-    }
-    Ok(())
 }

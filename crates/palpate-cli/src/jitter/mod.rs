@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate jitter`: how late a loop wakes on this machine.
+
+mod advice;
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::time::Duration;
+
+use palpate::haptics::{HapticsError, Lateness, Priority, WallClock, positive, raise_priority};
+use serde_json::{Value, json};
+
+use crate::arguments::JitterOptions;
+use crate::outcome::{Failure, Outcome};
+use crate::times::{quantiles, write_histogram};
+
+/// The fastest loop [Hz]: no servo is faster.
+const MOST_RATE: f64 = 10_000.0;
+
+/// The longest measurement [s]: a working day.
+const MOST_DURATION: f64 = 28_800.0;
+
+/// How a loop waits for its next tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Waiting {
+    Sleep,
+    SleepThenSpin,
+    Spin,
+}
+
+impl Waiting {
+    const ALL: [Self; 3] = [Self::Sleep, Self::SleepThenSpin, Self::Spin];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Sleep => "sleep",
+            Self::SleepThenSpin => "sleep, then spin",
+            Self::Spin => "spin",
+        }
+    }
+
+    fn clock(self) -> WallClock {
+        match self {
+            Self::Sleep => WallClock::spinning_for(Duration::ZERO),
+            Self::SleepThenSpin => WallClock::new(),
+            Self::Spin => WallClock::spinning_for(Duration::MAX),
+        }
+    }
+}
+
+/// A loop that was measured.
+#[derive(Debug)]
+struct Measured {
+    waiting: Waiting,
+    is_raised: bool,
+    lateness: Lateness,
+}
+
+impl Measured {
+    fn title(&self) -> String {
+        let priority = if self.is_raised { ", with a raised priority" } else { "" };
+        format!("{}{priority}", self.waiting.name())
+    }
+}
+
+pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
+    let rate = positive("rate", options.rate, "Hz").map_err(Failure::input)?;
+    let duration = positive("duration", options.duration, "s").map_err(Failure::input)?;
+    if rate > MOST_RATE {
+        return Err(Failure::input(format!("the rate is at most {MOST_RATE} Hz, got {rate}")));
+    }
+    if duration > MOST_DURATION {
+        let problem = format!("the duration is at most {MOST_DURATION} s, got {duration}");
+        return Err(Failure::input(problem));
+    }
+    // Asked in a thread of its own, which is over then.
+    let priority = in_thread(raise_priority);
+    let priorities: &[bool] =
+        if priority == Priority::Raised { &[false, true] } else { &[false] };
+    let share = duration / (priorities.len() * Waiting::ALL.len()) as f64;
+    let mut measured = Vec::new();
+    for is_raised in priorities {
+        for waiting in Waiting::ALL {
+            let lateness = measure(waiting, *is_raised, (rate, share));
+            let lateness = lateness.map_err(Failure::input)?;
+            measured.push(Measured { waiting, is_raised: *is_raised, lateness });
+        }
+    }
+    let advice = advice::advice(&measured, &priority, rate);
+    let mut out = std::io::stdout().lock();
+    if options.json {
+        let described: Vec<_> = measured.iter().map(described).collect();
+        let answer = json!({
+            "rate_hz": rate,
+            "duration_s": duration,
+            "raised_priority": priority,
+            "loops": described,
+            "advice": advice,
+        });
+        writeln!(out, "{answer:#}")?;
+    } else {
+        write!(out, "{}", text(&measured, &priority, &advice, rate))?;
+    }
+    Ok(Outcome::Yes)
+}
+
+fn measure(
+    waiting: Waiting,
+    is_raised: bool,
+    (rate, duration): (f64, f64),
+) -> Result<Lateness, HapticsError> {
+    in_thread(|| {
+        if is_raised {
+            // It was allowed a moment ago.
+            let _ = raise_priority();
+        }
+        Lateness::measure(&mut waiting.clock(), rate, duration)
+    })
+}
+
+/// A priority that is raised is so until its thread ends.
+fn in_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let joined = std::thread::scope(|scope| scope.spawn(work).join());
+    joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+fn described(measured: &Measured) -> Value {
+    json!({
+        "waits_by": measured.waiting.name(),
+        "is_raised": measured.is_raised,
+        "lateness": measured.lateness.times,
+        "missed": measured.lateness.missed,
+    })
+}
+
+fn text(measured: &[Measured], priority: &Priority, advice: &[String], rate: f64) -> String {
+    let mut out = String::new();
+    write_text(&mut out, measured, priority, advice, rate).unwrap_or_default();
+    out
+}
+
+fn write_text(
+    out: &mut String,
+    measured: &[Measured],
+    priority: &Priority,
+    advice: &[String],
+    rate: f64,
+) -> std::fmt::Result {
+    writeln!(out, "how late a loop of {rate} Hz wakes on this machine")?;
+    for loop_measured in measured {
+        let Lateness { times, missed } = &loop_measured.lateness;
+        writeln!(out, "{}", loop_measured.title())?;
+        let Some(times) = times else {
+            writeln!(out, "  no tick: the duration is too short")?;
+            continue;
+        };
+        writeln!(out, "  lateness       {}", quantiles(times))?;
+        write_histogram(out, times)?;
+        writeln!(out, "  missed         {missed} of {} ticks", times.count)?;
+    }
+    if let Priority::Refused { reason } = priority {
+        writeln!(out, "the system does not allow a raised priority: {reason}")?;
+    }
+    writeln!(out, "advice")?;
+    for sentence in advice {
+        writeln!(out, "  - {sentence}")?;
+    }
+    Ok(())
+}
