@@ -6,7 +6,8 @@
 //! A [`Proxy`] follows a device point but cannot enter the shape; a [`Material`] turns the
 //! distance between the two into a force; a [`Servo`] does both for every contact point of a
 //! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
-//! counts, records and reports.
+//! counts, records and reports. A [`ServoThread`] runs the same loop beside a program, whose
+//! [`Control`] changes what is touched and sees what happens, and never makes the servo wait.
 //!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
