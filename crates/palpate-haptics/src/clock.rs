@@ -6,6 +6,8 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::priority::Priority;
+
 /// Time that only moves on.
 ///
 /// The servo loop asks it twice a tick. A test gives one that it moves itself, as a
@@ -22,6 +24,10 @@ pub trait Clock {
 /// oversleeps by 0.1 ms on an idle desktop system; spinning longer would heat a core in vain.
 const SPIN: Duration = Duration::from_micros(200);
 
+/// Likewise with a raised priority, which wakes sooner. Shorter than a period at 10 kHz: Linux
+/// takes the processor for 50 ms from a raised thread that did not sleep for 950 ms.
+const RAISED_SPIN: Duration = Duration::from_micros(70);
+
 /// The monotonic clock of the machine; sleeps, then spins up to the deadline.
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock {
@@ -36,8 +42,15 @@ impl WallClock {
         Self::spinning_for(SPIN)
     }
 
-    /// Likewise, but spins for as long as this: not at all, and it sleeps alone; for longer
-    /// than any wait, and it does not sleep.
+    /// A clock for a thread of this priority: a raised one wakes sooner and spins for the last
+    /// 0.07 ms alone.
+    #[must_use]
+    pub fn suited_to(priority: &Priority) -> Self {
+        Self::spinning_for(if *priority == Priority::Raised { RAISED_SPIN } else { SPIN })
+    }
+
+    /// A clock that starts at zero now, and spins for as long as this before a deadline: not at
+    /// all, and it sleeps alone; for longer than any wait, and it does not sleep.
     ///
     /// ```
     /// use std::time::Duration;

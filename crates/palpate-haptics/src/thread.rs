@@ -123,7 +123,7 @@ impl<const D: usize> ServoThread<D> {
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, HapticsError> {
-        Self::start_on(WallClock::new(), servo, device, options)
+        Self::start_with(WallClock::suited_to, servo, device, options)
     }
 
     /// As [`start`](Self::start), on a clock of the caller's.
@@ -132,7 +132,16 @@ impl<const D: usize> ServoThread<D> {
     ///
     /// As [`start`](Self::start).
     pub fn start_on(
-        mut clock: impl Clock + Send + 'static,
+        clock: impl Clock + Send + 'static,
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        options: ThreadOptions,
+    ) -> Result<Self, HapticsError> {
+        Self::start_with(|_| clock, servo, device, options)
+    }
+
+    fn start_with<C: Clock>(
+        clock: impl FnOnce(&Priority) -> C + Send + 'static,
         mut servo: Servo<D>,
         mut device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
@@ -149,6 +158,7 @@ impl<const D: usize> ServoThread<D> {
         let work = move || {
             let priority =
                 if options.raises_priority { raise_priority() } else { Priority::Normal };
+            let mut clock = clock(&priority);
             let report = ServoLoop::new(&mut servo, &mut *device, points)
                 .handing_off(Some(&mut end))
                 .run(&mut clock, &schedule);

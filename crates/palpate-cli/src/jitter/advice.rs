@@ -15,26 +15,26 @@ const STEADY: f64 = 0.1;
 /// One loop is better than another if its lateness is at most this part of the other's.
 const BETTER: f64 = 0.5;
 
+/// A loop that was away for as long was held back by the system [ns]: Linux does so for 50 ms.
+const HELD_BACK_NS: u64 = 45_000_000;
+
 /// Fewer ticks say nothing of one in a thousand.
 const ENOUGH: u64 = 1000;
 
 /// What to do, in sentences; there is one at least.
 pub(super) fn advice(measured: &[Measured], priority: &Priority, rate: f64) -> Vec<String> {
     let period_ns = 1e9 / rate;
-    let find = |waiting, is_raised| {
-        measured.iter().find_map(|m| {
-            let times = m.lateness.times.as_ref();
-            times.filter(|_| m.waiting == waiting && m.is_raised == is_raised)
-        })
-    };
-    let ways = Waiting::ALL.map(|waiting| find(waiting, false));
-    let [Some(sleep), Some(mixed), Some(spin)] = ways else {
+    let [Some(normal), raised] = [false, true].map(|is_raised| Ways::of(measured, is_raised))
+    else {
         return vec!["measure for longer: there was no tick".to_owned()];
     };
-    let mut advice = vec![way_to_wait([sleep, mixed, spin], period_ns)];
-    advice.push(about_priority(mixed, find(Waiting::SleepThenSpin, true), priority));
+    let is_worth_it = |raised: &Ways<'_>| is_better(raised.mixed.p999_ns, normal.mixed.p999_ns);
+    let mut advice = vec![about_priority(&normal, raised.as_ref(), priority)];
+    // What holds with the priority that is advised.
+    let best = raised.as_ref().filter(|raised| is_worth_it(raised)).unwrap_or(&normal);
+    advice.push(way_to_wait(best, period_ns));
     // Nobody is late who does not sleep, unless the processor is taken away.
-    let taken_ns = spin.max_ns.min(mixed.max_ns);
+    let taken_ns = best.spin.max_ns.min(best.mixed.max_ns);
     if taken_ns as f64 > period_ns {
         advice.push(format!(
             "the processor was taken away for {} from loops that were awake: end other load; \
@@ -42,13 +42,45 @@ pub(super) fn advice(measured: &[Measured], priority: &Priority, rate: f64) -> V
             microseconds(taken_ns),
         ));
     }
-    if sleep.count < ENOUGH {
+    if let Some(held_back_ns) = raised.map(|raised| raised.spin.max_ns)
+        && held_back_ns >= HELD_BACK_NS
+    {
+        advice.push(format!(
+            "never spin alone with a raised priority: the system held the loop back for {}, as \
+             Linux does with one that does not sleep (sched_rt_runtime_us)",
+            microseconds(held_back_ns),
+        ));
+    }
+    if normal.sleep.count < ENOUGH {
         advice.push(format!(
             "measure for longer: {} ticks a loop say little of rare delays",
-            sleep.count,
+            normal.sleep.count,
         ));
     }
     advice
+}
+
+/// Loops of one priority.
+struct Ways<'a> {
+    sleep: &'a Distribution,
+    mixed: &'a Distribution,
+    spin: &'a Distribution,
+    is_raised: bool,
+}
+
+impl<'a> Ways<'a> {
+    fn of(measured: &'a [Measured], is_raised: bool) -> Option<Self> {
+        let find = |waiting| {
+            let is_it = |m: &&Measured| m.waiting == waiting && m.is_raised == is_raised;
+            measured.iter().find(is_it)?.lateness.times.as_ref()
+        };
+        Some(Self {
+            sleep: find(Waiting::Sleep)?,
+            mixed: find(Waiting::SleepThenSpin)?,
+            spin: find(Waiting::Spin)?,
+            is_raised,
+        })
+    }
 }
 
 fn is_better(a_ns: u64, b_ns: u64) -> bool {
@@ -56,37 +88,40 @@ fn is_better(a_ns: u64, b_ns: u64) -> bool {
 }
 
 /// By their 99 %: the least that is steady costs the least power.
-fn way_to_wait([sleep, mixed, spin]: [&Distribution; 3], period_ns: f64) -> String {
+fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
+    let Ways { sleep, mixed, spin, is_raised } = ways;
     let is_steady = |times: &Distribution| times.p99_ns as f64 <= STEADY * period_ns;
     let p99 = |times: &Distribution| microseconds(times.p99_ns);
+    let with = if *is_raised { "with it, " } else { "" };
     if is_steady(sleep) {
-        format!("sleep alone will do: 99 % of the ticks are at most {} late", p99(sleep))
+        let (sleep, mixed) = (p99(sleep), p99(mixed));
+        format!(
+            "{with}sleep alone will do: 99 % of the ticks are at most {sleep} late; {mixed} if \
+             it spins after that, as the servo does"
+        )
     } else if is_steady(mixed) {
         let (from, to) = (p99(sleep), p99(mixed));
-        format!("sleep, then spin, as the servo does: it brings the 99 % from {from} to {to}")
+        format!("{with}sleep, then spin, as the servo does: the 99 % go from {from} to {to}")
     } else if is_steady(spin) || is_better(spin.p99_ns, mixed.p99_ns) {
         let (from, to) = (p99(mixed), p99(spin));
-        format!("spin alone: it brings the 99 % from {from} to {to}, and takes a processor")
+        format!("{with}spin alone: the 99 % go from {from} to {to}, and a processor is taken")
     } else {
         let least = sleep.p99_ns.min(mixed.p99_ns).min(spin.p99_ns);
         format!(
-            "no way to wait is steady here: 1 % of the ticks are more than {} late, of a period \
-             of {}; a lower rate asks for less",
+            "{with}no way to wait is steady here: 1 % of the ticks are more than {} late, of a \
+             period of {}; a lower rate asks for less",
             microseconds(least),
             microseconds(period_ns as u64),
         )
     }
 }
 
-fn about_priority(
-    normal: &Distribution,
-    raised: Option<&Distribution>,
-    priority: &Priority,
-) -> String {
+fn about_priority(normal: &Ways<'_>, raised: Option<&Ways<'_>>, priority: &Priority) -> String {
     match (raised, priority) {
         (Some(raised), _) => {
-            let (from, to) = (microseconds(normal.p999_ns), microseconds(raised.p999_ns));
-            if is_better(raised.p999_ns, normal.p999_ns) {
+            let [from_ns, to_ns] = [normal, raised].map(|ways| ways.mixed.p999_ns);
+            let (from, to) = (microseconds(from_ns), microseconds(to_ns));
+            if is_better(to_ns, from_ns) {
                 format!("raise the priority: it brings the 99.9 % from {from} to {to}")
             } else {
                 format!(
@@ -135,30 +170,29 @@ mod tests {
     #[test]
     fn the_least_way_that_is_steady_is_advised() {
         let refused = Priority::Refused { reason: String::new() };
-        let [sleep, mixed, spin] = Waiting::ALL;
         let of = |us: [u64; 3]| {
-            [(sleep, us[0]), (mixed, us[1]), (spin, us[2])]
-                .map(|(waiting, us)| loop_of(waiting, false, [us, 2 * us, 3 * us]))
+            Waiting::ALL.iter().zip(us).map(|(w, us)| loop_of(*w, false, [us, 2 * us, 3 * us]))
         };
-        said(&of([90, 5, 5]), &refused, &["sleep alone", "allow"]);
-        said(&of([150, 5, 5]), &refused, &["sleep, then spin", "allow"]);
-        said(&of([300, 150, 20]), &refused, &["spin alone", "allow"]);
-        said(&of([300, 200, 190]), &refused, &["no way", "allow"]);
+        let of = |us| of(us).collect::<Vec<_>>();
+        said(&of([90, 5, 5]), &refused, &["allow", "sleep alone"]);
+        said(&of([150, 5, 5]), &refused, &["allow", "sleep, then spin"]);
+        said(&of([300, 150, 20]), &refused, &["allow", "spin alone"]);
+        said(&of([300, 200, 190]), &refused, &["allow", "no way"]);
     }
 
     #[test]
     fn priority_and_load_are_judged_by_what_they_did() {
-        let [sleep, mixed, spin] = Waiting::ALL;
-        let normal = |max| {
-            [sleep, mixed, spin].map(|waiting| loop_of(waiting, false, [150 / 2, 900, max]))
-        };
-        let with = |p999, max| {
-            let raised = loop_of(mixed, true, [50, p999, 950]);
-            normal(max).into_iter().chain([raised]).collect::<Vec<_>>()
-        };
-        said(&with(100, 950), &Priority::Raised, &["sleep alone", "raise the priority"]);
-        let words = ["sleep alone", "a raised priority changes little", "the processor was"];
-        said(&with(800, 2000), &Priority::Raised, &words);
+        let of = |is_raised, us: [u64; 3]| Waiting::ALL.map(|w| loop_of(w, is_raised, us));
+        let both = |normal, raised| [of(false, normal), of(true, raised)].concat();
+        let raised = Priority::Raised;
+        let words = ["raise the priority", "with it, sleep alone"];
+        said(&both([500, 900, 2000], [50, 100, 950]), &raised, &words);
+        let words = ["a raised priority changes little", "sleep alone", "the processor was"];
+        said(&both([75, 900, 2000], [50, 800, 950]), &raised, &words);
+        let mut held_back = both([75, 900, 950], [50, 100, 950]);
+        held_back[5] = loop_of(Waiting::Spin, true, [1, 60, 50_000]);
+        let words = ["raise the priority", "with it, sleep alone", "never spin alone"];
+        said(&held_back, &raised, &words);
     }
 
     #[test]

@@ -41,17 +41,18 @@ impl Waiting {
         }
     }
 
-    fn clock(self) -> WallClock {
+    /// A loop that sleeps, then spins, does so as a servo of that priority.
+    fn clock(self, priority: &Priority) -> WallClock {
         match self {
             Self::Sleep => WallClock::spinning_for(Duration::ZERO),
-            Self::SleepThenSpin => WallClock::new(),
+            Self::SleepThenSpin => WallClock::suited_to(priority),
             Self::Spin => WallClock::spinning_for(Duration::MAX),
         }
     }
 }
 
 /// A loop that was measured.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Measured {
     waiting: Waiting,
     is_raised: bool,
@@ -112,11 +113,8 @@ fn measure(
     (rate, duration): (f64, f64),
 ) -> Result<Lateness, HapticsError> {
     in_thread(|| {
-        if is_raised {
-            // It was allowed a moment ago.
-            let _ = raise_priority();
-        }
-        Lateness::measure(&mut waiting.clock(), rate, duration)
+        let priority = if is_raised { raise_priority() } else { Priority::Normal };
+        Lateness::measure(&mut waiting.clock(&priority), rate, duration)
     })
 }
 
