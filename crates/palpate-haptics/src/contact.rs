@@ -17,8 +17,8 @@ use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
-/// this part: 0.0006 degrees, a thousandth of what a hand can tell.
-const AT_REST: f64 = 1e-5;
+/// this part: 0.002 degrees, a few thousandths of what a hand can tell.
+const AT_REST: f64 = 3e-5;
 
 /// A move longer than this many times what is certain from the surface is made through the
 /// air: up, along and down again.
