@@ -181,6 +181,9 @@ pub(crate) struct FeelOptions {
     /// Write every tick to a CSV file.
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
+    /// Write what all contact points vibrate like to a WAV file.
+    #[arg(long, value_name = "WAV")]
+    pub(crate) wav: Option<PathBuf>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.
     #[arg(long, value_name = "PICTURE")]
     pub(crate) plot: Option<PathBuf>,

@@ -559,6 +559,47 @@ fn feel_follows_a_hand_of_several_points() {
 }
 
 #[test]
+fn a_glove_feels_what_it_vibrates_like() {
+    let folder = Folder::new();
+    let wav = folder.name("touch.wav");
+    let report = json(&[
+        "feel",
+        "--device",
+        "glove",
+        "--duration",
+        "1",
+        "--fast",
+        "--wav",
+        &wav,
+        "--json",
+    ]);
+    assert_eq!((&report["points"], &report["largest_force"]), (&10.into(), &0.0.into()));
+    let bytes = std::fs::read(&wav).unwrap();
+    // A header of 44 bytes, and 8000 samples of two bytes for each second.
+    assert_eq!(&bytes[..4], b"RIFF");
+    let seconds = report["duration"].as_f64().unwrap();
+    assert_eq!(bytes.len(), 44 + 2 * (8000.0 * seconds) as usize);
+    assert!(bytes[44..].iter().any(|byte| *byte != 0), "silence");
+}
+
+#[test]
+fn a_device_is_simulated_with_its_limits() {
+    let arguments = ["feel", "--device", "simulated:touch", "--points", "2", "--duration", "1"];
+    let report = json(&[&arguments[..], &["--fast", "--json"]].concat());
+    assert_eq!(report["device"], "Phantom Touch");
+    assert!(report["largest_force"].as_f64().unwrap() <= 3.3);
+    assert_eq!(report["safety"].as_array().unwrap().len(), 2);
+    // 0.2 N·s/m do not bear the gallery as it is.
+    assert!(report["bodies"][0]["factor"].as_f64().unwrap() < 1.0);
+    assert_eq!(report["bodies"][0]["rule"], "passivity");
+    let strict = palpate(&[&arguments[..], &["--fast", "--strict"]].concat());
+    assert_eq!(status(&strict), 2);
+    assert!(errors(&strict).contains("break K ≤ 2 (b − |B|) / T"), "{}", errors(&strict));
+    let unknown = palpate(&["feel", "--device", "simulated:nothing"]);
+    assert!(errors(&unknown).contains("omega"), "{}", errors(&unknown));
+}
+
+#[test]
 fn ten_points_feel_a_flat_scene() {
     let report = json(&[
         "feel",

@@ -107,8 +107,16 @@ impl<const D: usize> Body<D> {
         self.surface = self.surface.scaled(factor);
     }
 
-    pub(crate) fn body_from_world(&self) -> &Pose<D> {
-        &self.body_from_world
+    /// A vector of the world in the body's coordinates.
+    #[inline]
+    pub(crate) fn vector_in_body(&self, v: Vector<f64, D>) -> Vector<f64, D> {
+        if self.is_placed { self.body_from_world.transform_vector(v) } else { v }
+    }
+
+    /// A vector of the body's coordinates in the world.
+    #[inline]
+    pub(crate) fn vector_in_world(&self, v: Vector<f64, D>) -> Vector<f64, D> {
+        if self.is_placed { self.world_from_body.transform_vector(v) } else { v }
     }
 
     /// Whether it moved in this tick.
@@ -149,12 +157,7 @@ impl<const D: usize> Body<D> {
     #[inline]
     pub(crate) fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let (distance, gradient) = self.shape.distance_gradient(self.in_body(p));
-        let gradient = if self.is_placed {
-            self.world_from_body.transform_vector(gradient)
-        } else {
-            gradient
-        };
-        (distance, gradient)
+        (distance, self.vector_in_world(gradient))
     }
 
     fn place(&mut self, world_from_body: Pose<D>) {

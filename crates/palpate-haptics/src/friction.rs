@@ -16,7 +16,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::contact::{Rest, slide};
+use crate::contact::{Rest, Seen, slide};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 
@@ -43,17 +43,17 @@ pub(crate) enum Hold {
 /// evaluations.
 pub(crate) fn drag<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (start, normal): (Sample<D>, Vector<f64, D>),
+    (start, seen): (Sample<D>, Seen<D>),
     (device, motion): (Point<D>, f64),
     (friction, hold): (Friction, Hold),
 ) -> (Rest<D>, Hold) {
     let free = |sampler: &mut Sampler<'_, D>| {
-        (slide(sampler, start, normal, (device, motion)), Hold::None)
+        (slide(sampler, start, seen, (device, motion)), Hold::None)
     };
     if start.gradient.is_none() || friction.fixed <= 0.0 {
         return free(sampler);
     }
-    let (normal, gap) = sampler.tangent(&start, normal);
+    let (normal, gap) = sampler.tangent(&start, seen.normal);
     let stretch = start.point - device;
     let height = stretch.dot(normal);
     let depth = height - gap;
@@ -67,19 +67,22 @@ pub(crate) fn drag<const D: usize>(
     else {
         return (stuck, Hold::Stick);
     };
-    let rest = slide(sampler, start, normal, (goal, motion));
+    let rest = slide(sampler, start, seen, (goal, motion));
     let pull = rest.sample.point - goal;
     let along = pull - rest.normal * pull.dot(rest.normal);
     if !rest.contact || along.norm() <= ONE_WALL * pull.norm() {
         return (rest, Hold::Slip);
     }
     // A crease: all its walls together press with what keeps a proxy without friction there.
-    let rest = slide(sampler, start, normal, (device, motion));
+    let rest = slide(sampler, start, seen, (device, motion));
     let depth = (rest.sample.point - device).norm();
     let way = start.point - rest.sample.point;
     match held_back(device, way, depth, (most, friction.slipping)) {
         None => (stuck, Hold::Stick),
-        Some(goal) => (slide(sampler, rest.sample, rest.normal, (goal, motion)), Hold::Slip),
+        Some(goal) => {
+            let seen = Seen { normal: rest.normal, before: None };
+            (slide(sampler, rest.sample, seen, (goal, motion)), Hold::Slip)
+        }
     }
 }
 

@@ -38,6 +38,13 @@ impl<const D: usize> HalfSpace<D> {
     pub(crate) fn height(&self, q: Point<D>) -> f64 {
         self.normal.dot(q - self.point)
     }
+
+    /// The point of it closest to `x`.
+    #[inline]
+    pub(crate) fn closest(&self, x: Point<D>) -> Point<D> {
+        let depth = -self.height(x);
+        if depth > 0.0 { x + self.normal * depth } else { x }
+    }
 }
 
 /// The point closest to `x` in all of `half_spaces`; `None` if they have no point in common

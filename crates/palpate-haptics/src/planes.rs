@@ -33,12 +33,35 @@ struct Tangent<const D: usize> {
 /// convex neighbour would be no constraint any more and is dropped.
 #[derive(Debug)]
 pub(crate) struct Planes<const D: usize> {
-    tangents: [Option<Tangent<D>>; CAPACITY],
+    tangents: [Tangent<D>; CAPACITY],
+    count: usize,
 }
 
 impl<const D: usize> Planes<D> {
     pub(crate) fn new() -> Self {
-        Self { tangents: [None; CAPACITY] }
+        let half_space = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
+        let none = Tangent { half_space, foot: Vector::ZERO, sunk: 0.0 };
+        Self { tangents: [none; CAPACITY], count: 0 }
+    }
+
+    fn known(&self) -> &[Tangent<D>] {
+        self.tangents.get(..self.count).unwrap_or(&[])
+    }
+
+    /// Changes each plane, and keeps those of which `keep` says so.
+    fn retain(&mut self, mut keep: impl FnMut(&mut Tangent<D>) -> bool) {
+        let mut kept = 0;
+        for i in 0..self.count {
+            let Some(tangent) = self.tangents.get_mut(i) else { break };
+            if keep(tangent) {
+                let tangent = *tangent;
+                if let Some(place) = self.tangents.get_mut(kept) {
+                    *place = tangent;
+                }
+                kept += 1;
+            }
+        }
+        self.count = kept;
     }
 
     /// Learns that the offset surface is `gap` [m] below `seen_from` along the unit `normal`.
@@ -50,36 +73,36 @@ impl<const D: usize> Planes<D> {
     /// by the angle between the normals (see [`LEFT_BEHIND`]).
     pub(crate) fn learn(&mut self, seen_from: Point<D>, normal: Vector<f64, D>, gap: f64) {
         let foot = seen_from - normal * gap;
-        for slot in &mut self.tangents {
-            let Some(tangent) = slot else { continue };
+        self.retain(|tangent| {
             let turn = (tangent.half_space.normal - normal).norm();
             let excess = gap - tangent.half_space.height(seen_from);
             let way = (foot - tangent.foot).norm();
             // Written so that NaN drops the plane.
-            if turn > SAME_NORMAL && excess <= LEFT_BEHIND * turn * way {
+            let stays = turn > SAME_NORMAL && excess <= LEFT_BEHIND * turn * way;
+            if stays {
                 let sunk = excess.max(0.0);
                 tangent.half_space.point -= tangent.half_space.normal * sunk;
                 tangent.sunk += sunk;
-            } else {
-                *slot = None;
             }
-        }
-        let half_space = HalfSpace { point: foot, normal };
-        let tangent = Tangent { half_space, foot, sunk: 0.0 };
-        match self.tangents.iter_mut().find(|slot| slot.is_none()) {
-            Some(slot) => *slot = Some(tangent),
+            stays
+        });
+        let tangent =
+            Tangent { half_space: HalfSpace { point: foot, normal }, foot, sunk: 0.0 };
+        match self.tangents.get_mut(self.count) {
+            Some(place) => {
+                *place = tangent;
+                self.count += 1;
+            }
             None => self.replace_loosest(tangent),
         }
     }
 
     /// Puts `tangent` in the place of the plane farthest below its foot.
     fn replace_loosest(&mut self, tangent: Tangent<D>) {
-        let height = |slot: &Option<Tangent<D>>| {
-            slot.map_or(f64::INFINITY, |t| t.half_space.height(tangent.foot))
-        };
+        let height = |t: &Tangent<D>| t.half_space.height(tangent.foot);
         let loosest = self.tangents.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
-        if let Some(slot) = loosest {
-            *slot = Some(tangent);
+        if let Some(place) = loosest {
+            *place = tangent;
         }
     }
 
@@ -87,32 +110,28 @@ impl<const D: usize> Planes<D> {
     ///
     /// They are guesses: good enough to go by, not to rest on.
     pub(crate) fn forget_sunk(&mut self, limit: f64) -> bool {
-        let mut forgot = false;
-        for slot in &mut self.tangents {
-            if slot.is_some_and(|tangent| tangent.sunk > limit) {
-                *slot = None;
-                forgot = true;
-            }
-        }
-        forgot
+        let before = self.count;
+        self.retain(|tangent| tangent.sunk <= limit);
+        self.count < before
     }
 
     /// The unit vector that leads away from all planes, the mean of their normals; `None` if
     /// they face each other.
     pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
-        let normals = self.tangents.iter().flatten().map(|t| t.half_space.normal);
+        let normals = self.known().iter().map(|t| t.half_space.normal);
         normals.fold(Vector::ZERO, |sum, normal| sum + normal).normalized()
     }
 
     /// The point closest to `x` above all planes; `None` if they leave no room.
     pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
+        if let [tangent] = self.known() {
+            return Some(tangent.half_space.closest(x));
+        }
         let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];
-        let mut count = 0;
-        for (place, tangent) in half_spaces.iter_mut().zip(self.tangents.iter().flatten()) {
+        for (place, tangent) in half_spaces.iter_mut().zip(self.known()) {
             *place = tangent.half_space;
-            count += 1;
         }
-        half_spaces.get(..count).and_then(|known| closest_point(x, known))
+        half_spaces.get(..self.count).and_then(|known| closest_point(x, known))
     }
 }

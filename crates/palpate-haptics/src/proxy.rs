@@ -17,7 +17,7 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Rest, slide};
+use crate::contact::{Rest, Seen, slide};
 use crate::error::{HapticsError, not_negative};
 use crate::friction::{Hold, drag};
 use crate::nearby::{Nearby, Pierced};
@@ -153,6 +153,8 @@ pub struct Proxy<const D: usize> {
     /// The device point of the last tick [m].
     device: Point<D>,
     normal: Vector<f64, D>,
+    /// Where it touched in the tick before the last, and the normal there.
+    before: Option<(Point<D>, Vector<f64, D>)>,
     contact: bool,
     hold: Hold,
     pierced: Pierced,
@@ -170,6 +172,7 @@ impl<const D: usize> Proxy<D> {
             is_stale: false,
             device: Vector::ZERO,
             normal,
+            before: None,
             contact: false,
             hold: Hold::None,
             pierced: Pierced::default(),
@@ -261,6 +264,13 @@ impl<const D: usize> Proxy<D> {
         };
         let goal = sampler.within_region(device);
         let (rest, hold) = self.pursue(&mut sampler, start, (goal, moved));
+        let stays = self.contact && rest.contact && !placed && !nearby.has_moved();
+        // A proxy that sticks says nothing new of the surface.
+        if !stays {
+            self.before = None;
+        } else if rest.sample.point != start.point {
+            self.before = Some((start.point, self.normal));
+        }
         self.at = Some(rest.sample);
         self.normal = rest.normal;
         self.contact = rest.contact;
@@ -374,11 +384,12 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / length)
             } else {
-                let from = (here, self.normal);
+                let before = self.before.filter(|_| was_held);
+                let seen = Seen { normal: self.normal, before };
                 let friction = self.friction(sampler, &here, device).filter(|_| was_held);
                 return match friction {
-                    Some(friction) => drag(sampler, from, (device, moved), friction),
-                    None => (slide(sampler, from.0, from.1, (device, moved)), Hold::None),
+                    Some(friction) => drag(sampler, (here, seen), (device, moved), friction),
+                    None => (slide(sampler, here, seen, (device, moved)), Hold::None),
                 };
             };
             was_held = false;

@@ -510,9 +510,9 @@ impl<const D: usize> ContactPoint<D> {
         let stretch = following.proxy - touch.device;
         let (surface, level) = (body.surface(), self.proxy.level(following.body));
         let in_body = body.in_body(following.proxy);
-        let turned = |v: Vector<f64, D>| body.body_from_world().transform_vector(v);
-        let force = surface.force(level, turned(stretch), turned(touch.velocity), in_body);
-        let force = body.world_from_body().transform_vector(force);
+        let (pull, velocity) =
+            (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
+        let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
         let held = surface.strata.force(level, stretch.norm());
         let pop = surface.strata.top(level).and_then(|top| top.pop_through);
         if pop.is_some_and(|pop| held > pop.force) && self.proxy.pierce(following.body) {

@@ -36,13 +36,20 @@ pub struct WorkspaceMap<const D: usize> {
     world_from_device: Pose<D>,
     device_from_world: Pose<D>,
     scale: f64,
+    /// Whether it changes nothing.
+    is_identity: bool,
 }
 
 impl<const D: usize> Default for WorkspaceMap<D> {
     /// The world as the device sees it.
     fn default() -> Self {
         let identity = Pose::identity();
-        Self { world_from_device: identity, device_from_world: identity, scale: 1.0 }
+        Self {
+            world_from_device: identity,
+            device_from_world: identity,
+            scale: 1.0,
+            is_identity: true,
+        }
     }
 }
 
@@ -67,6 +74,7 @@ impl<const D: usize> WorkspaceMap<D> {
                 world_from_device,
                 device_from_world: world_from_device.inverse(),
                 scale,
+                is_identity: scale == 1.0 && world_from_device == Pose::identity(),
             }),
         }
     }
@@ -128,6 +136,9 @@ impl<const D: usize> WorkspaceMap<D> {
     /// A contact point at the device as one in the world. Real-time.
     #[must_use]
     pub fn state_to_world(&self, state: PointState<D>) -> PointState<D> {
+        if self.is_identity {
+            return state;
+        }
         PointState {
             position: self.point_to_world(state.position),
             velocity: self.velocity_to_world(state.velocity),
@@ -137,13 +148,13 @@ impl<const D: usize> WorkspaceMap<D> {
     /// A force of the world as one at the device, of the same size [N]. Real-time.
     #[must_use]
     pub fn force_to_device(&self, force: Vector<f64, D>) -> Vector<f64, D> {
-        self.device_from_world.transform_vector(force)
+        if self.is_identity { force } else { self.device_from_world.transform_vector(force) }
     }
 
     /// A force at the device as one in the world, of the same size [N]. Real-time.
     #[must_use]
     pub fn force_to_world(&self, force: Vector<f64, D>) -> Vector<f64, D> {
-        self.world_from_device.transform_vector(force)
+        if self.is_identity { force } else { self.world_from_device.transform_vector(force) }
     }
 
     /// What a stiffness of the world is at the device [N/m]: `s` times as much.

@@ -67,7 +67,7 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
             let [touch] = servo.step(&[state]) else { return };
             let began = touch.contact && !touching;
             touching = touch.contact;
-            let cue = Cue::of_touch(touch, state.velocity, began);
+            let cue = Cue::of_touch(touch, began);
             let felt = mapping.feel(&Cue { wavelength: Some(1e-3), impact, ..cue });
             taps += u32::from(felt.tap.is_some());
             let tones = voice.step(&felt);
@@ -102,12 +102,12 @@ fn a_cue_is_what_the_touch_is() {
     // The probe has a radius of 2 mm: 1 mm below where it rests.
     let state = PointState { position: Vector([0.0, 0.501]), velocity: Vector([0.25, -0.125]) };
     let [touch] = servo.step(&[state]) else { panic!("one point") };
-    let cue = Cue::of_touch(touch, state.velocity, true);
+    let cue = Cue::of_touch(touch, true);
     assert!((cue.depth - 1e-3).abs() < 1e-7);
     // 500 N/m and 1 N·s/m.
     assert!((cue.normal_force - 0.625).abs() < 1e-4);
     assert!((cue.normal_speed - 0.125).abs() < 1e-4 && (cue.slide_speed - 0.25).abs() < 1e-4);
     assert!(cue.began);
     let [free] = servo.step(&[PointState::at_rest(Vector([0.0, 0.6]))]) else { panic!() };
-    assert_eq!(Cue::of_touch(free, Vector([1.0, 1.0]), false), Cue::default());
+    assert_eq!(Cue::of_touch(free, false), Cue::default());
 }

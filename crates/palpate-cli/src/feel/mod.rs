@@ -8,6 +8,7 @@ mod held;
 mod nearness;
 mod report;
 mod slices;
+mod vibration;
 
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
@@ -96,10 +97,11 @@ where
     let accepted = servo.protect(&protection).map_err(Failure::input)?;
 
     let ticks = ticks(duration, options.rate)?;
-    let keeps_rows = options.trace.is_some() || options.plot.is_some();
+    let keeps_rows = options.trace.is_some() || options.plot.is_some() || options.wav.is_some();
     let rows = ticks * contacts as f64;
     if keeps_rows && rows > MOST_ROWS {
-        let problem = format!("--trace and --plot keep {MOST_ROWS} rows at most, not {rows}");
+        let problem =
+            format!("--trace, --plot and --wav keep {MOST_ROWS} rows at most, not {rows}");
         return Err(Failure::input(problem));
     }
     let mut recorder =
@@ -123,6 +125,9 @@ where
 
     if let Some(path) = &options.trace {
         trace::write(&recorder, path)?;
+    }
+    if let Some(path) = &options.wav {
+        vibration::write(scene, &recorder, options.rate, path)?;
     }
     if let Some(path) = &options.plot {
         figure::draw(scene, &recorder, &report::title(name, &outcome), path)?;

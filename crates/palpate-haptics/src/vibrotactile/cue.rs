@@ -9,8 +9,6 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::Vector;
-
 use super::threshold::perceptual_weight;
 use crate::error::{HapticsError, not_negative, positive};
 use crate::servo::Touch;
@@ -56,23 +54,20 @@ pub struct Cue {
 }
 
 impl Cue {
-    /// What a touch is in a tick in which the device point moves at `velocity` [m/s], on a
-    /// smooth and mute surface. `began`: there was no contact in the tick before.
+    /// What a touch is on a smooth and mute surface; also where the device gives no force.
+    /// `began`: there was no contact in the tick before.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
-    pub fn of_touch<const D: usize>(
-        touch: &Touch<D>,
-        velocity: Vector<f64, D>,
-        began: bool,
-    ) -> Self {
+    pub fn of_touch<const D: usize>(touch: &Touch<D>, began: bool) -> Self {
         if !touch.contact {
             return Self::default();
         }
+        let velocity = touch.velocity;
         let outward = velocity.dot(touch.normal);
         Self {
             depth: touch.depth(),
-            normal_force: touch.force.dot(touch.normal),
+            normal_force: touch.wanted.dot(touch.normal),
             normal_speed: -outward,
             slide_speed: (velocity - touch.normal * outward).norm(),
             wavelength: None,

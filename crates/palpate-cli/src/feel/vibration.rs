@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a run vibrates like, as a WAV file: what fingers without force feedback are given.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use palpate::haptics::vibrotactile::{
+    Cue, Mapping, MappingOptions, Sensation, Synthesiser, Tap, write_wav,
+};
+use palpate::haptics::{Recorder, TraceRow};
+use palpate::scene::BuiltScene;
+
+use crate::outcome::Failure;
+
+/// [Hz]; the skin feels nothing above 1 kHz.
+const SAMPLE_RATE: u32 = 8000;
+
+/// Writes the vibration of all contact points of a run at `rate` [Hz] together.
+pub(super) fn write<const D: usize>(
+    scene: &BuiltScene<D>,
+    recorder: &Recorder<D>,
+    rate: f64,
+    path: &Path,
+) -> Result<(), Failure> {
+    let points = recorder.rows().iter().map(|row| row.point).max().map_or(0, |last| last + 1);
+    let points = points as usize;
+    let mapping = Mapping::new(MappingOptions::default()).map_err(Failure::input)?;
+    let mut synthesiser = Synthesiser::new(&mapping, f64::from(SAMPLE_RATE), points.max(1))
+        .map_err(Failure::input)?;
+    let mut samples = Vec::new();
+    let mut last: Option<&[TraceRow<D>]> = None;
+    let mut sensations = vec![Sensation::default(); points];
+    for tick in recorder.rows().chunks_exact(points.max(1)) {
+        for (i, row) in tick.iter().enumerate() {
+            let cue = cue(scene, row, last.and_then(|last| last.get(i)), rate);
+            sensations[i] = mapping.feel(&cue);
+        }
+        // As many samples as there are until the tick ends, whatever the rate.
+        let end = ((tick[0].time_s + 1.0 / rate) * f64::from(SAMPLE_RATE)).round() as usize;
+        let start = samples.len();
+        samples.resize(end.max(start), 0.0);
+        synthesiser.render(&sensations, &mut samples[start..]);
+        last = Some(tick);
+    }
+    let file = File::create(path).map_err(|error| Failure::file(path, error))?;
+    write_wav(BufWriter::new(file), SAMPLE_RATE, samples)
+        .map_err(|error| Failure::file(path, error))
+}
+
+/// What a contact point meets in a tick.
+fn cue<const D: usize>(
+    scene: &BuiltScene<D>,
+    row: &TraceRow<D>,
+    last: Option<&TraceRow<D>>,
+    rate: f64,
+) -> Cue {
+    let Some(body) = scene.bodies.get(row.body as usize).filter(|_| row.contact) else {
+        return Cue::default();
+    };
+    let velocity = last.map_or(row.device * 0.0, |last| (row.device - last.device) * rate);
+    let outward = velocity.dot(row.normal);
+    Cue {
+        depth: (row.proxy - row.device).norm(),
+        normal_force: row.wanted.dot(row.normal),
+        normal_speed: -outward,
+        slide_speed: (velocity - row.normal * outward).norm(),
+        wavelength: body.material.texture.as_ref().map(|texture| texture.wavelength),
+        impact: body.material.impact.as_ref().map(Tap::from_data),
+        began: last.is_some_and(|last| !last.contact),
+    }
+}
