@@ -56,3 +56,8 @@ impl Folder {
         self.name(name)
     }
 }
+
+/// The words of a picture.
+pub(crate) fn words(svg: &str) -> Vec<&str> {
+    svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate feel`, `devices` and `jitter`.
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+mod common;
+
+use common::{Folder, errors, json, palpate, status, text, words};
+
+const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+  "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
+
+#[test]
+fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
+    let all = json(&["devices", "--json"]);
+    let all = all.as_array().unwrap();
+    assert_eq!(all.len(), palpate::devices::PROFILES.len());
+    let omega = all.iter().find(|device| device["name"] == "omega").unwrap();
+    let force = serde_json::json!({ "value": 12.0, "unit": "N", "assumed": false });
+    assert_eq!(omega["max_force"], force);
+    assert_eq!(omega["least_damping"]["assumed"], true);
+    assert!(omega["source"].as_str().unwrap().contains("CHAI3D 3.3.0"));
+    let table = text(&palpate(&["devices"]));
+    let row = table.lines().find(|line| line.starts_with("omega ")).unwrap();
+    let cells: Vec<_> = row.split_whitespace().collect();
+    assert_eq!(cells[1..5], ["12", "~12", "~6000", "5000"]);
+    assert!(table.contains("\nomega: Force Dimension omega; source: "));
+    assert!(table.ends_with(&format!("{} devices\n", all.len())));
+}
+
+/// The built-in scene, felt without waiting for the clock, twice the same.
+#[test]
+fn feel_reports_traces_and_draws() {
+    let folder = Folder::new();
+    let (trace, plot) = (folder.name("trace.csv"), folder.name("feel.svg"));
+    let arguments =
+        ["feel", "--fast", "--duration", "2", "--json", "--trace", &trace, "--plot", &plot];
+    let report = json(&arguments);
+    assert_eq!(report["ticks"], 2000);
+    assert_eq!(report["ending"]["kind"], "finished");
+    assert!(report["contact_time"].as_f64().unwrap() > 0.1);
+    assert!(report["largest_force"].as_f64().unwrap() <= 3.3);
+    assert!(report["cost"]["p50_ns"].as_u64().unwrap() > 0);
+    let rows = std::fs::read_to_string(&trace).unwrap();
+    // Ten fingers.
+    assert_eq!(rows.lines().count(), 20_001);
+    assert_eq!(
+        rows.lines().next().unwrap(),
+        "time_s,point,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,\
+         wanted_x_n,wanted_y_n,wanted_z_n,force_x_n,force_y_n,force_z_n,\
+         normal_x,normal_y,normal_z,contact,body,slipping,taken_j,given_j,kept_j,\
+         evaluations,cost_ns,lateness_ns"
+    );
+    assert!(std::fs::read_to_string(&plot).unwrap().starts_with("<svg"));
+    let again = json(&arguments);
+    for key in ["ticks", "contact_time", "largest_force", "largest_depth", "evaluations"] {
+        assert_eq!(report[key], again[key], "{key}");
+    }
+}
+
+/// The last body of the gallery has a bore that is narrower at its top, where a proxy may stay
+/// behind.
+#[test]
+fn no_proxy_is_left_behind_in_the_gallery() {
+    for duration in ["10", "11"] {
+        let report = json(&["feel", "--fast", "--duration", duration, "--json"]);
+        let depth = report["largest_depth"].as_f64().unwrap();
+        // Pressed to 3/4 of a probe of 3 mm, and held back by friction before edges.
+        assert!(depth < 0.006, "{depth} m deep in {duration} s");
+    }
+}
+
+#[test]
+fn a_scene_in_space_is_drawn_on_two_slices_and_says_so() {
+    let folder = Folder::new();
+    let plot = folder.name("cup.svg");
+    json(&["feel", "scenes/cup.json", "--fast", "--json", "--plot", &plot]);
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    let has = |start: &str| words.iter().any(|word| word.starts_with(start));
+    assert!(has("From above: slice at y = 0.0"), "{words:?}");
+    assert!(has("From the front: slice at z = ") || has("From the side: slice at x = "));
+    assert!(has("bound outside, exact inside. Bold: within 5 mm of the slice; thin: in front"));
+    for once in ["inside", "behind the slice", "in front of the slice", "proxy", "hand"] {
+        assert_eq!(words.iter().filter(|word| **word == once).count(), 1, "{once}");
+    }
+}
+
+#[test]
+fn a_scene_in_the_plane_is_drawn_once() {
+    let folder = Folder::new();
+    let plot = folder.name("star.svg");
+    json(&["feel", "scenes/memoir_star.json", "--fast", "--json", "--plot", &plot]);
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    assert!(words.contains(&"bound outside, bound inside") && words.contains(&"proxy"));
+    assert!(!words.iter().any(|word| word.contains("slice")), "{words:?}");
+}
+
+#[test]
+fn feel_follows_a_hand_of_several_points() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let hand = folder.write(
+        "hand.csv",
+        "time_s,point,x_m,y_m,z_m\n0,0,0,0.6,0\n0,1,0.6,0,0\n1,0,0,0.499,0\n1,1,0.499,0,0\n",
+    );
+    let arguments = [
+        "feel",
+        &scene,
+        "--path",
+        &hand,
+        "--fast",
+        "--stiffness",
+        "1000",
+        "--damping",
+        "0",
+        "--json",
+    ];
+    let report = json(&arguments);
+    assert_eq!(report["points"], 2);
+    // A probe of 2 mm on a ball pressed by 1 mm: 3 mm deep.
+    assert!((report["largest_depth"].as_f64().unwrap() - 0.003).abs() < 1e-4);
+    assert!((report["largest_force"].as_f64().unwrap() - 3.0).abs() < 0.1);
+    let bad = folder.write("bad.csv", "time_s,x_m,y_m,z_m\n0,0,0,0\n0,0,0,1\n");
+    assert_eq!(status(&palpate(&["feel", &scene, "--path", &bad])), 2);
+    assert_eq!(status(&palpate(&["feel", &scene, "--rate", "-5", "--fast"])), 2);
+    for contacts in ["0", "1000000000"] {
+        assert_eq!(status(&palpate(&["feel", &scene, "--contacts", contacts, "--fast"])), 2);
+    }
+    for huge in ["1e300", "1e9", "nan", "-1"] {
+        assert_eq!(
+            status(&palpate(&["feel", &scene, "--duration", huge, "--fast"])),
+            2,
+            "{huge}"
+        );
+    }
+}
+
+#[test]
+fn a_glove_feels_what_it_vibrates_like() {
+    let folder = Folder::new();
+    let wav = folder.name("touch.wav");
+    let report = json(&[
+        "feel",
+        "--device",
+        "glove",
+        "--duration",
+        "1",
+        "--fast",
+        "--wav",
+        &wav,
+        "--json",
+    ]);
+    assert_eq!((&report["points"], &report["largest_force"]), (&10.into(), &0.0.into()));
+    let bytes = std::fs::read(&wav).unwrap();
+    // A header of 44 bytes, and 8000 samples of two bytes for each second.
+    assert_eq!(&bytes[..4], b"RIFF");
+    let seconds = report["duration"].as_f64().unwrap();
+    assert_eq!(bytes.len(), 44 + 2 * (8000.0 * seconds) as usize);
+    assert!(bytes[44..].iter().any(|byte| *byte != 0), "silence");
+}
+
+#[test]
+fn a_device_is_simulated_with_its_limits() {
+    let arguments = ["feel", "--device", "simulated:touch", "--points", "2", "--duration", "1"];
+    let report = json(&[&arguments[..], &["--fast", "--json"]].concat());
+    assert_eq!(report["device"], "Phantom Touch");
+    assert!(report["largest_force"].as_f64().unwrap() <= 3.3);
+    assert_eq!(report["safety"].as_array().unwrap().len(), 2);
+    // 0.2 N·s/m do not bear the gallery as it is.
+    assert!(report["bodies"][0]["factor"].as_f64().unwrap() < 1.0);
+    assert_eq!(report["bodies"][0]["rule"], "passivity");
+    let strict = palpate(&[&arguments[..], &["--fast", "--strict"]].concat());
+    assert_eq!(status(&strict), 2);
+    assert!(errors(&strict).contains("break K ≤ 2 (b − |B|) / T"), "{}", errors(&strict));
+    let unknown = palpate(&["feel", "--device", "simulated:nothing"]);
+    assert!(errors(&unknown).contains("omega"), "{}", errors(&unknown));
+}
+
+#[test]
+fn ten_points_feel_a_flat_scene() {
+    let report = json(&[
+        "feel",
+        "scenes/wrench.json",
+        "--contacts",
+        "10",
+        "--duration",
+        "1",
+        "--fast",
+        "--json",
+    ]);
+    assert_eq!((&report["points"], &report["ticks"]), (&10.into(), &1000.into()));
+}
+
+#[test]
+fn jitter_measures_every_way_to_wait_and_advises() {
+    let answer = json(&["jitter", "--rate", "4000", "--duration", "0.03", "--json"]);
+    assert_eq!(answer["rate_hz"], 4000.0);
+    let loops = answer["loops"].as_array().unwrap();
+    let is_raised = answer["raised_priority"]["kind"] == "raised";
+    assert_eq!(loops.len(), if is_raised { 6 } else { 3 });
+    let count = if is_raised { 20 } else { 40 };
+    assert!(loops.iter().all(|measured| measured["lateness"]["count"] == count));
+    assert_eq!(loops[1]["waits_by"], "sleep, then spin");
+    assert!(!answer["advice"].as_array().unwrap().is_empty());
+
+    let report = text(&palpate(&["jitter", "--duration", "0.03"]));
+    assert!(report.starts_with("how late a loop of 1000 Hz wakes on this machine\nsleep\n"));
+    assert!(report.contains("p99.9 ") && report.contains("\nadvice\n  - "), "{report}");
+    for bad in [["--rate", "0"], ["--rate", "20000"], ["--duration", "nan"]] {
+        let output = palpate(&["jitter", bad[0], bad[1]]);
+        assert_eq!(status(&output), 2, "{bad:?}");
+        assert!(!errors(&output).is_empty());
+    }
+}
