@@ -76,6 +76,7 @@ mod sampler;
 mod servo;
 mod statistics;
 mod surface;
+mod tool;
 mod tour;
 pub mod vibrotactile;
 
@@ -97,4 +98,5 @@ pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use servo::{Servo, ServoOptions, Touch};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
+pub use tool::{MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch};
 pub use tour::Tour;

@@ -1,0 +1,375 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What is known of a shell's points: how far they are from the bodies, and for how long that
+//! answers.
+//!
+//! A rigid motion that moves the tool's origin by `v` and turns it by `ω` moves a point `ρ` from
+//! the origin by at most `‖v‖ + ‖ω‖ρ`. So a cluster whose least gap was `g` touches nothing
+//! before that sum has grown by `g / L`, and is not asked again until then (Mirtich,
+//! "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3; for shells,
+//! Johnson, Willemsen and Cohen, "Six degree-of-freedom haptic rendering using spatialized normal
+//! cone search", 2005, keep what is near likewise).
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{BLOCK, Block, Gradients, Point, Pose, Vector};
+
+use super::shell::{Cluster, Shell};
+use super::twist::Twist;
+use crate::nearby::{Nearby, Pierced};
+
+/// A point of the shell, when it was last looked at. World coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<const D: usize> {
+    /// Its centre [m].
+    pub(super) centre: Point<D>,
+    /// The field less the point's radius [m].
+    pub(super) gap: f64,
+    pub(super) gradient: Vector<f64, D>,
+    pub(super) body: u32,
+}
+
+/// When a cluster was looked at.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    /// At which pose.
+    stamp: u64,
+    /// The reading of the clock before which it touches nothing.
+    free_until: f64,
+}
+
+impl Look {
+    const NONE: Self = Self { stamp: 0, free_until: f64::NEG_INFINITY };
+}
+
+/// How far the tool went and turned so far; grows only.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clock {
+    way: f64,
+    turn: f64,
+}
+
+impl Clock {
+    /// How far a point `arm` from the origin may have gone.
+    fn at(&self, arm: f64) -> f64 {
+        self.way + self.turn * arm
+    }
+}
+
+/// What is known of a shell.
+#[derive(Clone, Debug)]
+pub(super) struct Scan<const D: usize> {
+    points: Vec<Seen<D>>,
+    looks: Vec<Look>,
+    clock: Clock,
+    /// Of the present pose.
+    stamp: u64,
+    /// Clusters to look at now.
+    due: Vec<u32>,
+    /// Levels that are still looked at in this tick.
+    levels: usize,
+    budget: u32,
+    evaluations: u32,
+}
+
+impl<const D: usize> Scan<D> {
+    pub(super) fn new(shell: &Shell<D>) -> Self {
+        let zero = Vector::ZERO;
+        let nothing = Seen { centre: zero, gap: f64::NEG_INFINITY, gradient: zero, body: 0 };
+        Self {
+            points: vec![nothing; shell.points().len()],
+            looks: vec![Look::NONE; shell.clusters.len()],
+            clock: Clock::default(),
+            stamp: 1,
+            due: Vec::with_capacity(shell.clusters.len()),
+            levels: shell.levels.len(),
+            budget: 0,
+            evaluations: 0,
+        }
+    }
+
+    /// A new tick: all levels, and a budget.
+    pub(super) fn begin(&mut self, shell: &Shell<D>, budget: u32) {
+        (self.levels, self.budget, self.evaluations) = (shell.levels.len(), budget, 0);
+    }
+
+    /// The bodies are other ones, or elsewhere: nothing is known any more.
+    pub(super) fn forget(&mut self) {
+        self.looks.fill(Look::NONE);
+        self.stamp += 1;
+    }
+
+    /// The tool is elsewhere.
+    pub(super) fn moved(&mut self, twist: &Twist<D>) {
+        self.clock.way += twist.linear.norm();
+        self.clock.turn += twist.angular.norm();
+        self.stamp += 1;
+    }
+
+    /// Evaluations in this tick.
+    pub(super) fn evaluations(&self) -> u32 {
+        self.evaluations
+    }
+
+    /// How many levels are looked at in this tick.
+    pub(super) fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// Evaluations that are left in this tick.
+    pub(super) fn left(&self) -> u32 {
+        self.budget.saturating_sub(self.evaluations)
+    }
+
+    /// Counts evaluations.
+    pub(super) fn spend(&mut self, evaluations: u32) {
+        self.evaluations += evaluations;
+    }
+
+    /// What is known of a point.
+    pub(super) fn point(&self, number: u32) -> Option<&Seen<D>> {
+        self.points.get(number as usize)
+    }
+
+    /// Looks at all clusters that the tool at `pose` could touch with in a motion like `twist`;
+    /// at those of fewer levels if there are more than `share` of what the budget has left
+    /// allow. `false` if it does not allow the first level.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn look(
+        &mut self,
+        shell: &Shell<D>,
+        nearby: &Nearby<'_, D>,
+        pose: &Pose<D>,
+        (twist, share): (&Twist<D>, f64),
+    ) -> bool {
+        self.due.clear();
+        let left = f64::from(self.left());
+        let (mut count, mut is_enough) = (0, true);
+        for (index, (cluster, look)) in (0..).zip(shell.clusters.iter().zip(&self.looks)) {
+            if cluster.level >= self.levels {
+                break;
+            }
+            let remaining = look.free_until - self.clock.at(cluster.arm);
+            if look.stamp == self.stamp || remaining > twist.way(cluster.arm) {
+                continue;
+            }
+            let size = cluster.members.len();
+            let allowed = if cluster.level == 0 { left } else { left * share };
+            if (count + size) as f64 > allowed {
+                self.levels = cluster.level;
+                is_enough = cluster.level > 0;
+                break;
+            }
+            count += size;
+            self.due.push(index);
+        }
+        self.evaluate(shell, nearby, pose);
+        is_enough
+    }
+
+    /// Looks at the clusters that are due.
+    fn evaluate(&mut self, shell: &Shell<D>, nearby: &Nearby<'_, D>, pose: &Pose<D>) {
+        let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
+        let due = std::mem::take(&mut self.due);
+        let members = due.iter().filter_map(|cluster| shell.clusters.get(*cluster as usize));
+        let mut numbers = members.clone().flat_map(|cluster| shell.members(cluster));
+        let mut batch = Batch::new();
+        loop {
+            batch.gather(shell, pose, &mut numbers);
+            if batch.count == 0 {
+                break;
+            }
+            batch.ask(nearby);
+            self.evaluations += batch.count as u32;
+            for (number, seen) in batch.results() {
+                if let Some(point) = self.points.get_mut(number as usize) {
+                    *point = *seen;
+                }
+            }
+        }
+        for (index, cluster) in due.iter().zip(members) {
+            let gaps = shell.members(cluster).filter_map(|i| self.points.get(i as usize));
+            // Written so that NaN touches.
+            let least =
+                gaps.fold(
+                    f64::INFINITY,
+                    |least, point| {
+                        if point.gap >= least { least } else { point.gap }
+                    },
+                );
+            let free_until = self.clock.at(cluster.arm) + least / lipschitz;
+            if let Some(look) = self.looks.get_mut(*index as usize) {
+                *look = Look { stamp: self.stamp, free_until };
+            }
+        }
+        self.due = due;
+    }
+
+    /// The clusters that were looked at where the tool is.
+    fn seen_clusters<'a>(&'a self, shell: &'a Shell<D>) -> impl Iterator<Item = &'a Cluster> {
+        let known = shell.clusters.iter().zip(&self.looks);
+        known.filter(|(_, look)| look.stamp == self.stamp).map(|(cluster, _)| cluster)
+    }
+
+    /// The points that were looked at where the tool is, with their numbers.
+    pub(super) fn seen<'a>(
+        &'a self,
+        shell: &'a Shell<D>,
+    ) -> impl Iterator<Item = (u32, &'a Seen<D>)> {
+        let numbers = self.seen_clusters(shell).flat_map(|cluster| shell.members(cluster));
+        numbers.filter_map(|i| Some((i, self.points.get(i as usize)?)))
+    }
+
+    /// The least gap of what was looked at where the tool is [m].
+    pub(super) fn least_gap(&self, shell: &Shell<D>) -> f64 {
+        // Written so that NaN is the least.
+        self.seen(shell).fold(
+            f64::INFINITY,
+            |least, (_, point)| {
+                if point.gap >= least { least } else { point.gap }
+            },
+        )
+    }
+
+    /// The part of a motion that those clusters allow which were not looked at here.
+    pub(super) fn free_part(&self, shell: &Shell<D>, twist: &Twist<D>) -> f64 {
+        let mut part = 1.0_f64;
+        for (cluster, look) in shell.clusters.iter().zip(&self.looks) {
+            if cluster.level >= self.levels || look.stamp == self.stamp {
+                continue;
+            }
+            let remaining = (look.free_until - self.clock.at(cluster.arm)).max(0.0);
+            let way = twist.way(cluster.arm);
+            if way > remaining {
+                part = part.min(remaining / way);
+            }
+        }
+        part
+    }
+
+    /// How many points are known to touch nothing they should not, where the tool is.
+    pub(super) fn known(&self, shell: &Shell<D>) -> u32 {
+        let known = shell.clusters.iter().zip(&self.looks).filter(|(cluster, look)| {
+            look.stamp == self.stamp || look.free_until >= self.clock.at(cluster.arm)
+        });
+        known.map(|(cluster, _)| cluster.members.len() as u32).sum()
+    }
+}
+
+impl<const D: usize> Shell<D> {
+    /// The numbers of the points of a cluster.
+    fn members(&self, cluster: &Cluster) -> impl Iterator<Item = u32> + '_ {
+        self.order.get(cluster.members.clone()).unwrap_or(&[]).iter().copied()
+    }
+}
+
+/// Points that are looked at together.
+struct Batch<const D: usize> {
+    count: usize,
+    numbers: [u32; BLOCK],
+    radii: [f64; BLOCK],
+    seen: [Seen<D>; BLOCK],
+    block: Block<f64, D, BLOCK>,
+    answers: Gradients<f64, D, BLOCK>,
+    /// Which points are asked of a body.
+    lanes: [usize; BLOCK],
+}
+
+impl<const D: usize> Batch<D> {
+    fn new() -> Self {
+        let nothing = Seen { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
+        Self {
+            count: 0,
+            numbers: [0; BLOCK],
+            radii: [0.0; BLOCK],
+            seen: [nothing; BLOCK],
+            block: Block::zero(),
+            answers: Gradients::zero(),
+            lanes: [0; BLOCK],
+        }
+    }
+
+    /// Takes the next points.
+    fn gather(
+        &mut self,
+        shell: &Shell<D>,
+        pose: &Pose<D>,
+        numbers: &mut impl Iterator<Item = u32>,
+    ) {
+        self.count = 0;
+        let places = self.numbers.iter_mut().zip(&mut self.radii).zip(&mut self.seen);
+        // The places first: a number that finds none would be lost.
+        for (((number, radius), seen), next) in places.zip(numbers) {
+            let Some(point) = shell.points().get(next as usize) else { continue };
+            (*number, *radius) = (next, point.radius);
+            seen.centre = pose.transform_point(point.centre);
+            self.count += 1;
+        }
+    }
+
+    /// Asks all that is near: as [`Nearby::gradient`], in blocks.
+    fn ask(&mut self, nearby: &Nearby<'_, D>) {
+        for seen in self.seen.iter_mut().take(self.count) {
+            let way = seen.centre - nearby.centre;
+            seen.gap = nearby.horizon - way.norm();
+            seen.gradient = -way.normalized().unwrap_or(Vector::ZERO);
+            seen.body = 0;
+        }
+        for (index, body) in nearby.all() {
+            let mut asked = 0;
+            let points = self.seen.iter().take(self.count).enumerate();
+            for (lane, seen) in points {
+                // Written so that NaN is looked at.
+                if body.above_ball(seen.centre) >= seen.gap {
+                    continue;
+                }
+                self.block.set(asked, body.in_body(seen.centre));
+                if let Some(place) = self.lanes.get_mut(asked) {
+                    *place = lane;
+                }
+                asked += 1;
+            }
+            if asked == 0 {
+                continue;
+            }
+            body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            let turn = body.world_from_body();
+            for (answer, lane) in self.lanes.iter().take(asked).enumerate() {
+                let Some(seen) = self.seen.get_mut(*lane) else { continue };
+                let distance = self.answers.distance.get(answer);
+                let above = body.above_ball(seen.centre);
+                let beyond =
+                    body.region.is_some_and(|r| (seen.centre - r.centre).norm() > r.radius);
+                let (gap, gradient) = if (body.is_below_ball || beyond) && above > distance {
+                    let outwards = body.ball.map(|ball| seen.centre - ball.centre);
+                    (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
+                } else {
+                    let gradient = self.answers.gradient.get(answer);
+                    (distance, turn.transform_vector(gradient))
+                };
+                // Written so that NaN stays.
+                if !(gap >= seen.gap) && !seen.gap.is_nan() {
+                    (seen.gap, seen.gradient, seen.body) = (gap, gradient, index);
+                }
+            }
+        }
+        for (seen, radius) in self.seen.iter_mut().zip(&self.radii).take(self.count) {
+            seen.gap -= radius;
+        }
+    }
+
+    fn results(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
+        self.numbers.iter().copied().zip(&self.seen).take(self.count)
+    }
+}
+
+/// The field at a point less a radius [m], as the shell sees it.
+pub(super) fn gap_at<const D: usize>(
+    nearby: &Nearby<'_, D>,
+    point: Point<D>,
+    radius: f64,
+) -> f64 {
+    nearby.distance(point, &Pierced::default()).0 - radius
+}

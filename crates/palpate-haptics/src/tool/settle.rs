@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Where a tool comes to rest: as close to the device as the bodies let it.
+//!
+//! The *closeness* of two poses is the energy of the spring between them, `‖v‖² + ℓ²‖ω‖²` with
+//! the length `ℓ` whose square is angular over linear stiffness. Each turn looks at the points
+//! that could touch, replaces the bodies there by their tangent planes, and goes to the closest
+//! pose that all planes allow: the quasi-statics of Ortega, Redon and Coquillart, "A six
+//! degree-of-freedom god-object method for haptic display of rigid bodies with surface
+//! properties" (2007), with positions for accelerations, until it stays. On the way no point may
+//! dip deeper than a skin, which evaluations prove as for a [`Proxy`](crate::Proxy); at rest
+//! none may be inside.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Pose, Vector};
+
+use super::closest::{Closest, FREEDOMS, Row, closest};
+use super::scan::{Scan, Seen, gap_at};
+use super::shell::Shell;
+use super::twist::{Twist, cross, in_space};
+use crate::nearby::Nearby;
+
+/// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
+const MOST_TURNS: usize = 10;
+
+/// What the first look may take of the budget, and each further one of what is left.
+const FIRST_SHARE: f64 = 0.25;
+const SHARE: f64 = 0.5;
+
+/// The tool rests where the next motion is below this many tolerances.
+const AT_REST: f64 = 1.0;
+
+/// Constraints are satisfied up to this part of the tolerance.
+const SLACK: f64 = 1e-3;
+
+/// Below this part of the Lipschitz constant a gradient says nothing about the surface.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// The most that one turn turns the tool among contacts [rad]: their planes turn with it.
+const MOST_ANGLE: f64 = 0.3;
+
+/// A motion that values at its start prove for this part of it needs no evaluations on the way.
+const WORTH_GOING: f64 = 0.25;
+
+/// Evaluations on the way of a point at most.
+const MOST_STEPS: u32 = 64;
+
+/// A point met the surface where this part of the skin, or less, is left of it.
+const MET: f64 = 0.25;
+
+/// What a tool lives with in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths {
+    /// How long one radian is [m]: ℓ.
+    pub(super) unit: f64,
+    /// How deep a point may rest [m].
+    pub(super) tolerance: f64,
+    /// How deep a point may dip on its way [m].
+    pub(super) skin: f64,
+}
+
+/// A point that pushes the tool. World coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push<const D: usize> {
+    pub(super) point: u32,
+    pub(super) centre: Point<D>,
+    /// The unit normal of the body, pointing out.
+    pub(super) normal: Vector<f64, D>,
+    /// The distance from the ball to the body, to first order [m].
+    pub(super) gap: f64,
+    pub(super) body: u32,
+    /// Its force over the stiffness [m].
+    pub(super) push: f64,
+}
+
+/// Where a tool rests.
+#[derive(Clone, Debug)]
+pub(super) struct Rest<const D: usize> {
+    pub(super) pose: Pose<D>,
+    /// What pushes it there.
+    pub(super) pushes: Vec<Push<D>>,
+    /// Points known to be outside.
+    pub(super) known: u32,
+    /// `true` if every point that was looked at is outside.
+    pub(super) is_outside: bool,
+    /// How far from the goal, squared [m²].
+    energy: f64,
+}
+
+impl<const D: usize> Rest<D> {
+    pub(super) fn new() -> Self {
+        Self {
+            pose: Pose::identity(),
+            pushes: Vec::with_capacity(FREEDOMS),
+            known: 0,
+            is_outside: false,
+            energy: f64::INFINITY,
+        }
+    }
+}
+
+/// Room for a tick.
+#[derive(Clone, Debug)]
+pub(super) struct Settler<const D: usize> {
+    rows: Vec<Row>,
+    /// Of which point each row is.
+    numbers: Vec<u32>,
+    pub(super) rest: Rest<D>,
+}
+
+impl<const D: usize> Settler<D> {
+    pub(super) fn new(points: usize) -> Self {
+        let (rows, numbers) = (Vec::with_capacity(points), Vec::with_capacity(points));
+        Self { rows, numbers, rest: Rest::new() }
+    }
+
+    /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) says where it came to.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_TURNS`] turns,
+    /// and the evaluations that `scan` has left.
+    pub(super) fn settle(
+        &mut self,
+        (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
+        (start, goal): (Pose<D>, Pose<D>),
+        lengths: Lengths,
+    ) {
+        let (slack, still) = (SLACK * lengths.tolerance, AT_REST * lengths.tolerance);
+        let mut pose = start;
+        self.rest.pushes.clear();
+        self.rest.energy = f64::INFINITY;
+        self.rest.is_outside = false;
+        for turn in 0..MOST_TURNS {
+            let wish = Twist::between(&pose, &goal);
+            let share = if turn == 0 { FIRST_SHARE } else { SHARE };
+            if !scan.look(shell, nearby, &pose, (&wish, share)) {
+                break;
+            }
+            let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
+            self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
+            let found = closest(wish.stacked(lengths.unit), &self.rows, slack);
+            if is_outside {
+                self.keep(scan, (&pose, &wish, lengths.unit), &found, scan.known(shell));
+            }
+            let is_free = found.held().next().is_none();
+            let twist =
+                if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
+            // Written so that NaN rests.
+            let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { still };
+            if !goes_on || turn + 1 == MOST_TURNS {
+                break;
+            }
+            let part = sweep((shell, scan, nearby), &pose, &twist, lengths.skin, is_free);
+            scan.moved(&twist.part(part));
+            if is_free && part >= 1.0 {
+                pose = goal;
+                if self.rows.is_empty() {
+                    // Nothing that could touch: proven free, without another look.
+                    self.keep(
+                        scan,
+                        (&pose, &Twist::between(&pose, &goal), 1.0),
+                        &found,
+                        scan.known(shell),
+                    );
+                    break;
+                }
+            } else {
+                pose = twist.part(part).moved(&pose);
+            }
+        }
+        if self.rest.is_outside {
+            if self.rest.pose != pose {
+                scan.moved(&Twist::between(&pose, &self.rest.pose));
+            }
+        } else {
+            self.rest.pose = pose;
+            self.rest.known = 0;
+        }
+    }
+
+    /// The tangent planes of all points that the wish could bring to the surface.
+    fn make_rows(
+        &mut self,
+        shell: &Shell<D>,
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        (pose, wish, lengths): (&Pose<D>, &Twist<D>, Lengths),
+    ) {
+        self.rows.clear();
+        self.numbers.clear();
+        let lipschitz = nearby.lipschitz();
+        let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
+        for (number, seen) in scan.seen(shell) {
+            let arm = seen.centre - pose.translation;
+            if seen.gap > lipschitz * (linear + angular * arm.norm()) {
+                continue;
+            }
+            let slope = seen.gradient.norm();
+            // Written so that NaN is left out.
+            if slope > LEAST_SLOPE * lipschitz && self.rows.len() < self.rows.capacity() {
+                let normal = seen.gradient * (1.0 / slope);
+                let along = stacked_along(arm, normal, lengths.unit);
+                self.rows.push(Row { along, least: -seen.gap / slope });
+                self.numbers.push(number);
+            }
+        }
+    }
+
+    /// Keeps a pose that is outside if it is the closest so far.
+    fn keep(
+        &mut self,
+        scan: &Scan<D>,
+        (pose, wish, unit): (&Pose<D>, &Twist<D>, f64),
+        found: &Closest,
+        known: u32,
+    ) {
+        let energy = wish.stacked(unit).iter().map(|x| x * x).sum();
+        // Written so that NaN is no closer.
+        if !(energy < self.rest.energy) {
+            return;
+        }
+        (self.rest.pose, self.rest.energy) = (*pose, energy);
+        (self.rest.known, self.rest.is_outside) = (known, true);
+        self.rest.pushes.clear();
+        for held in found.held() {
+            let number = self.numbers.get(held.row).copied();
+            let Some((point, seen)) = number.and_then(|n| Some((n, scan.point(n)?))) else {
+                continue;
+            };
+            if held.push <= 0.0 || self.rest.pushes.len() == self.rest.pushes.capacity() {
+                continue;
+            }
+            let Seen { centre, body, .. } = *seen;
+            let slope = seen.gradient.norm();
+            let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
+            let push = held.push;
+            self.rest.pushes.push(Push { point, centre, normal, gap, body, push });
+        }
+    }
+}
+
+/// How a motion of the tool moves a point `arm` from its origin along `normal`, as a row.
+pub(super) fn stacked_along<const D: usize>(
+    arm: Point<D>,
+    normal: Vector<f64, D>,
+    unit: f64,
+) -> [f64; FREEDOMS] {
+    let [x, y, z] = in_space(normal).0;
+    let [a, b, c] = (cross(in_space(arm), in_space(normal)) * (1.0 / unit)).0;
+    [x, y, z, a, b, c]
+}
+
+/// The part of a motion on which no point dips deeper than the skin.
+///
+/// A value `g` at a point proves that nothing within `(g + s) / L` of it is as deep as the skin
+/// `s`; where that does not cover the way of a point, it is asked further on, like a ray.
+fn sweep<const D: usize>(
+    (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
+    pose: &Pose<D>,
+    twist: &Twist<D>,
+    skin: f64,
+    is_free: bool,
+) -> f64 {
+    let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
+    // To half a skin; from below, half of the way to a whole one.
+    let room = |gap: f64| (gap + 0.5 * skin).max(0.5 * (gap + skin)) / lipschitz;
+    let mut whole = scan.free_part(shell, twist);
+    let angle = twist.angular.norm();
+    if !is_free && angle > MOST_ANGLE {
+        whole = whole.min(MOST_ANGLE / angle);
+    }
+    let (linear, mut proven) = (twist.linear.norm(), whole);
+    let way = |seen: &Seen<D>| linear + angle * (seen.centre - pose.translation).norm();
+    // Points that are deeper than a skin already are on their way out.
+    let swept = |seen: &Seen<D>| seen.gap > -skin;
+    for (_, seen) in scan.seen(shell).filter(|(_, seen)| swept(seen)) {
+        let (way, room) = (way(seen), room(seen.gap));
+        if way * proven > room {
+            proven = room / way;
+        }
+    }
+    if proven >= WORTH_GOING * whole {
+        return proven;
+    }
+    let (mut part, mut left) = (whole, scan.left());
+    for (number, seen) in scan.seen(shell).filter(|(_, seen)| swept(seen)) {
+        let way = way(seen);
+        let Some(point) = shell.points().get(number as usize) else { continue };
+        let mut at = room(seen.gap) / way;
+        for step in 0..=MOST_STEPS {
+            // Written so that NaN, of no way, is through.
+            if !(at < part) {
+                break;
+            }
+            let Some(less) = left.checked_sub(1).filter(|_| step < MOST_STEPS) else {
+                part = at;
+                break;
+            };
+            left = less;
+            let centre = twist.part(at).moved(pose).transform_point(point.centre);
+            let gap = gap_at(nearby, centre, point.radius);
+            // Written so that NaN is met.
+            if !(gap > (MET - 1.0) * skin) {
+                part = at;
+                break;
+            }
+            at += room(gap) / way;
+        }
+    }
+    scan.spend(scan.left() - left);
+    part.max(proven)
+}
