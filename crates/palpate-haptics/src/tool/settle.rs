@@ -25,6 +25,10 @@ use crate::nearby::Nearby;
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
 const MOST_TURNS: usize = 10;
 
+/// In these last turns, a tool that is not outside goes straight out instead of on: where it
+/// turns much, each turn ends a little inside.
+const LAST_TURNS: usize = 3;
+
 /// What the first look may take of the budget, and each further one of what is left.
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
@@ -139,11 +143,13 @@ impl<const D: usize> Settler<D> {
             }
             let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
             self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
-            let found = closest(wish.stacked(lengths.unit), &self.rows, slack);
+            let goes_out = !is_outside && turn + LAST_TURNS >= MOST_TURNS;
+            let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
+            let found = closest(target, &self.rows, slack);
             if is_outside {
                 self.keep(scan, (&pose, &wish, lengths.unit), &found, scan.known(shell));
             }
-            let is_free = found.held().next().is_none();
+            let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
             // Written so that NaN rests.

@@ -13,6 +13,10 @@ const CHOICE: f64 = 4.0;
 /// Parts of an element's edge at most.
 const MOST_PARTS: f64 = 512.0;
 
+/// A sample is farther than another if it is by this factor: rounding decides no order, so
+/// tools of all sizes have the same points.
+const MORE: f64 = 1.0 + 1e-9;
+
 /// The farthest that a point of a triangle is from its corners, in longest edges: 1/√3, in an
 /// equilateral one.
 const FROM_CORNERS: f64 = 0.577_350_27;
@@ -135,14 +139,14 @@ pub(super) fn farthest_first<const D: usize>(
     for round in 0..=count {
         let mut farthest = (0.0, None);
         for (p, away) in samples.iter().zip(&away) {
-            if *away > farthest.0 || farthest.1.is_none() {
+            if *away > farthest.0 * MORE || farthest.1.is_none() {
                 farthest = (*away, Some(*p));
             }
         }
         if round > 0
             && let Some(last) = chosen.last_mut()
         {
-            last.1 = farthest.0;
+            last.1 = farthest.0 * MORE;
         }
         let Some(point) = farthest.1.filter(|_| round == 0 || farthest.0 > 0.0) else { break };
         if round == count {
@@ -165,9 +169,8 @@ mod tests {
     fn the_farthest_come_first() {
         let samples: Vec<_> = (0..=8).map(|i| Vector([f64::from(i), 0.0])).collect();
         let order = farthest_first(&samples, 5);
-        let expected = [(0.0, 8.0), (8.0, 4.0), (4.0, 2.0), (2.0, 2.0), (6.0, 1.0)]
-            .map(|(x, away)| (Vector([x, 0.0]), away));
-        assert_eq!(order, expected);
+        let expected = [(0.0, 8.0), (8.0, 4.0), (4.0, 2.0), (2.0, 2.0), (6.0, 1.0)];
+        assert_eq!(order, expected.map(|(x, away)| (Vector([x, 0.0]), away * MORE)));
         assert_eq!(farthest_first(&samples, 100).len(), 9);
     }
 
