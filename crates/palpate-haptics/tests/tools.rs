@@ -9,7 +9,7 @@ mod common;
 use common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, EventKind, Shell, Surface, Tool, ToolOptions, ToolState, ToolTouch,
+    Bodies, EventKind, Material, Shell, Surface, Tool, ToolOptions, ToolState, ToolTouch,
 };
 use palpate_mesh::{Mesh, Outline, TriangleMesh};
 
@@ -333,4 +333,55 @@ fn a_device_that_is_nowhere_touches_nothing() {
     let touch = tool.step(&mut bodies, &at([f64::NAN, 0.05, 0.0]));
     assert_eq!((touch.contact, touch.force), (false, Vector::ZERO));
     assert!(tool.step(&mut bodies, &at([0.0, 0.05, 0.0])).contact);
+}
+
+/// A flat box on rough ground.
+fn rough(shape: &Shape<3>) -> (Bodies<3>, Tool<3>) {
+    let material = Material {
+        static_friction: 0.5,
+        dynamic_friction: 0.25,
+        damping: 0.0,
+        ..Material::default()
+    };
+    let bodies = body(shape, Surface::new(&material).unwrap());
+    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();
+    (
+        bodies,
+        Tool::new(shell, ToolOptions { angular_stiffness: Some(5.0), ..springs() }).unwrap(),
+    )
+}
+
+#[test]
+fn a_box_sticks_within_its_cone_and_never_creeps() {
+    let (mut bodies, mut tool) = rough(&half_space([0.0, 1.0, 0.0], 0.0));
+    tool.step(&mut bodies, &at([0.0, 0.03, 0.0]));
+    let pressed = tool.step(&mut bodies, &at([0.0, 0.016, 0.0])).clone();
+    for tick in 0..1000 {
+        // Less than half of the depth to the side, and a little round.
+        let t = 0.01 * f64::from(tick);
+        let place = [0.0015 * t.sin(), 0.016, 0.0005 * (1.7 * t).cos()];
+        let state = turned([0.0, 1.0, 0.0], 0.001 * (0.6 * t).sin(), place);
+        let touch = tool.step(&mut bodies, &state);
+        assert!(touch.contact && !touch.is_slipping, "{tick}");
+        assert_eq!(touch.pose, pressed.pose);
+        assert!((touch.force[0] + STIFFNESS * place[0]).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_box_that_slips_is_held_back_by_coulomb() {
+    let (mut bodies, mut tool) = rough(&half_space([0.0, 1.0, 0.0], 0.0));
+    tool.step(&mut bodies, &at([0.0, 0.03, 0.0]));
+    tool.step(&mut bodies, &at([0.0, 0.016, 0.0]));
+    for tick in 1..500 {
+        let x = 1e-4 * f64::from(tick);
+        let touch = tool.step(&mut bodies, &at([x, 0.016, 0.0]));
+        let [along, up, across] = touch.force.0;
+        assert!((up - 0.004 * STIFFNESS).abs() < 1e-9, "{tick} {up}");
+        assert!(across.abs() < 1e-9);
+        // It sticks to μ = 0.5, then slips with 0.25.
+        let expected = if touch.is_slipping { 0.25 * up } else { STIFFNESS * x };
+        assert!((along + expected).abs() < 1e-6, "{tick}: {along} {expected}");
+        assert_eq!(touch.is_slipping, x > 0.5 * 0.004 + 1e-9, "{tick}");
+    }
 }

@@ -12,6 +12,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod closest;
+mod friction;
 mod scan;
 mod settle;
 #[allow(clippy::indexing_slicing, reason = "made at set-up")]
@@ -41,6 +42,10 @@ const FEW: usize = 5;
 /// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
 const WAYS: f64 = 4.0;
 
+/// The skin of points without a radius, as a part of the tool's reach. Larger slides faster;
+/// walls thinner than two skins would not hold the tool.
+const SKIN: f64 = 1e-3;
+
 /// Events of a tool in a tick at most: a leave and a touch.
 const MOST_EVENTS: usize = 2;
 
@@ -68,8 +73,8 @@ const MOST_EVENTS: usize = 2;
 /// # What is promised
 ///
 /// - *Nothing is crossed.* On its way no point of the shell that is looked at dips deeper than
-///   its radius, or, without one, than 5e-5 of the size of the scene; at rest its ball is
-///   outside up to 1e-9 of that size.
+///   its radius, or, without one, than 1e-3 of the tool's reach; at rest its ball is outside
+///   up to 1e-9 of the size of the scene.
 /// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
 ///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].
 ///
@@ -241,7 +246,8 @@ impl<const D: usize> Tool<D> {
         let place = (*nearby, Pierced::default());
         let sampler = Sampler::new(place, self.radius, 0, (extent, way.max(reach)));
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
-        Lengths { unit, tolerance: sampler.tolerance(), skin: sampler.skin() }
+        let skin = sampler.skin().max(SKIN * reach);
+        Lengths { unit, tolerance: sampler.tolerance(), skin }
     }
 
     /// What is felt.
@@ -252,6 +258,7 @@ impl<const D: usize> Tool<D> {
         touch.device = device.pose;
         touch.pose = rest.pose;
         touch.contact = rest.is_outside && !rest.pushes.is_empty();
+        touch.is_slipping = touch.contact && self.settler.is_slipping;
         touch.is_covered = !rest.is_outside;
         touch.evaluations = self.scan.evaluations();
         touch.points_known = rest.known;

@@ -17,6 +17,7 @@
 use palpate_field::{Point, Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
+use super::friction::{Hold, MOST_AROUND};
 use super::scan::{Scan, Seen, gap_at};
 use super::shell::Shell;
 use super::twist::{Twist, cross, in_space};
@@ -51,8 +52,11 @@ const WORTH_GOING: f64 = 0.25;
 /// Evaluations on the way of a point at most.
 const MOST_STEPS: u32 = 64;
 
-/// A point met the surface where this part of the skin, or less, is left of it.
-const MET: f64 = 0.25;
+/// On the way of a point, values prove that it does not dip deeper than this part of a skin.
+const DIPS: f64 = 0.75;
+
+/// A way whose steps would be below this part of a skin is not free.
+const MET: f64 = 0.125;
 
 /// What a tool lives with in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +67,13 @@ pub(super) struct Lengths {
     pub(super) tolerance: f64,
     /// How deep a point may dip on its way [m].
     pub(super) skin: f64,
+}
+
+impl Lengths {
+    /// How much a constraint may be violated by [m].
+    pub(super) fn slack(&self) -> f64 {
+        SLACK * self.tolerance
+    }
 }
 
 /// A point that pushes the tool. World coordinates.
@@ -108,16 +119,31 @@ impl<const D: usize> Rest<D> {
 /// Room for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
-    rows: Vec<Row>,
-    /// Of which point each row is.
+    pub(super) rows: Vec<Row>,
+    /// Of which point each of the first rows is; those after them are of cones of friction.
     numbers: Vec<u32>,
+    /// How many rows there are without those of friction.
+    pub(super) plain: usize,
+    /// Points that pushed in the tick before.
+    pub(super) held: Vec<u32>,
+    /// Contacts with friction.
+    pub(super) cones: Vec<Push<D>>,
+    /// `true` if the tool moved against friction.
+    pub(super) is_slipping: bool,
     pub(super) rest: Rest<D>,
 }
 
 impl<const D: usize> Settler<D> {
     pub(super) fn new(points: usize) -> Self {
-        let (rows, numbers) = (Vec::with_capacity(points), Vec::with_capacity(points));
-        Self { rows, numbers, rest: Rest::new() }
+        Self {
+            rows: Vec::with_capacity(points + FREEDOMS * MOST_AROUND),
+            numbers: Vec::with_capacity(points),
+            plain: 0,
+            held: Vec::with_capacity(FREEDOMS),
+            cones: Vec::with_capacity(FREEDOMS),
+            is_slipping: false,
+            rest: Rest::new(),
+        }
     }
 
     /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) says where it came to.
@@ -130,22 +156,45 @@ impl<const D: usize> Settler<D> {
         (start, goal): (Pose<D>, Pose<D>),
         lengths: Lengths,
     ) {
-        let (slack, still) = (SLACK * lengths.tolerance, AT_REST * lengths.tolerance);
-        let mut pose = start;
+        let still = AT_REST * lengths.tolerance;
+        let (mut pose, mut goal) = (start, goal);
+        self.held.clear();
+        self.held.extend(self.rest.pushes.iter().map(|push| push.point));
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
         for turn in 0..MOST_TURNS {
-            let wish = Twist::between(&pose, &goal);
+            let mut wish = Twist::between(&pose, &goal);
             let share = if turn == 0 { FIRST_SHARE } else { SHARE };
             if !scan.look(shell, nearby, &pose, (&wish, share)) {
                 break;
             }
             let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
             self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
+            if turn == 0 && is_outside {
+                match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
+                    Hold::None => self.is_slipping = false,
+                    Hold::Stick => {
+                        self.is_slipping = false;
+                        (self.rest.pose, self.rest.is_outside) = (pose, true);
+                        self.rest.known = scan.known(shell);
+                        return;
+                    }
+                    Hold::Slip(held_back) => {
+                        self.is_slipping = true;
+                        goal = held_back;
+                        wish = Twist::between(&pose, &goal);
+                        if !scan.look(shell, nearby, &pose, (&wish, SHARE)) {
+                            break;
+                        }
+                        self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
+                    }
+                }
+                self.rows.truncate(self.plain);
+            }
             let goes_out = !is_outside && turn + LAST_TURNS >= MOST_TURNS;
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
-            let found = closest(target, &self.rows, slack);
+            let found = closest(target, &self.rows, lengths.slack());
             if is_outside {
                 self.keep(scan, (&pose, &wish, lengths.unit), &found, scan.known(shell));
             }
@@ -204,13 +253,14 @@ impl<const D: usize> Settler<D> {
             }
             let slope = seen.gradient.norm();
             // Written so that NaN is left out.
-            if slope > LEAST_SLOPE * lipschitz && self.rows.len() < self.rows.capacity() {
+            if slope > LEAST_SLOPE * lipschitz && self.numbers.len() < self.numbers.capacity() {
                 let normal = seen.gradient * (1.0 / slope);
                 let along = stacked_along(arm, normal, lengths.unit);
                 self.rows.push(Row { along, least: -seen.gap / slope });
                 self.numbers.push(number);
             }
         }
+        self.plain = self.rows.len();
     }
 
     /// Keeps a pose that is outside if it is the closest so far.
@@ -260,7 +310,8 @@ pub(super) fn stacked_along<const D: usize>(
 /// The part of a motion on which no point dips deeper than the skin.
 ///
 /// A value `g` at a point proves that nothing within `(g + s) / L` of it is as deep as the skin
-/// `s`; where that does not cover the way of a point, it is asked further on, like a ray.
+/// `s`, before it and behind; where that does not cover the way of a point, it is asked further
+/// on, like a ray, and halfway where two answers leave a hole.
 fn sweep<const D: usize>(
     (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
     pose: &Pose<D>,
@@ -293,25 +344,30 @@ fn sweep<const D: usize>(
     for (number, seen) in scan.seen(shell).filter(|(_, seen)| swept(seen)) {
         let way = way(seen);
         let Some(point) = shell.points().get(number as usize) else { continue };
-        let mut at = room(seen.gap) / way;
-        for step in 0..=MOST_STEPS {
+        let covers = |gap: f64| (gap + DIPS * skin) / lipschitz / way;
+        let mut covered = room(seen.gap) / way;
+        let mut step = covered;
+        for steps in 0..=MOST_STEPS {
             // Written so that NaN, of no way, is through.
-            if !(at < part) {
+            if !(covered < part) {
                 break;
             }
-            let Some(less) = left.checked_sub(1).filter(|_| step < MOST_STEPS) else {
-                part = at;
+            let Some(less) = left.checked_sub(1).filter(|_| steps < MOST_STEPS) else {
+                part = covered;
                 break;
             };
             left = less;
+            let at = (covered + step).min(part);
             let centre = twist.part(at).moved(pose).transform_point(point.centre);
-            let gap = gap_at(nearby, centre, point.radius);
-            // Written so that NaN is met.
-            if !(gap > (MET - 1.0) * skin) {
-                part = at;
+            let covers = covers(gap_at(nearby, centre, point.radius));
+            if at - covers <= covered {
+                (covered, step) = (at + covers, covers);
+            } else if step * way * lipschitz > MET * skin {
+                step *= 0.5;
+            } else {
+                part = covered;
                 break;
             }
-            at += room(gap) / way;
         }
     }
     scan.spend(scan.left() - left);

@@ -146,6 +146,9 @@ pub struct ToolTouch<const D: usize> {
     pub body: Option<u32>,
     /// The contacts that push, at most six: from the tool (a) to a body (b).
     pub contacts: Vec<Contact<D>>,
+    /// `true` if the tool moves along the bodies against friction; `false` if friction holds it,
+    /// or there is none.
+    pub is_slipping: bool,
     /// `true` if the tool is in the bodies and did not get out in this tick: it touches
     /// nothing.
     pub is_covered: bool,
@@ -176,6 +179,7 @@ impl<const D: usize> ToolTouch<D> {
             contact: false,
             body: None,
             contacts: Vec::with_capacity(FREEDOMS),
+            is_slipping: false,
             is_covered: false,
             points: points as u32,
             points_known: 0,

@@ -73,7 +73,7 @@ pub(super) fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
 }
 
 /// The first coordinates of a vector of space.
-fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
+pub(super) fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
     Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
 }
 
