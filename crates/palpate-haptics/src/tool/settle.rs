@@ -17,7 +17,7 @@
 use palpate_field::{Point, Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
-use super::friction::{Hold, MOST_AROUND};
+use super::friction::{Cone, Hold, MOST_AROUND};
 use super::scan::{Scan, Seen, gap_at};
 use super::shell::Shell;
 use super::twist::{Twist, cross, in_space};
@@ -127,7 +127,7 @@ pub(super) struct Settler<const D: usize> {
     /// Points that pushed in the tick before.
     pub(super) held: Vec<u32>,
     /// Contacts with friction.
-    pub(super) cones: Vec<Push<D>>,
+    pub(super) cones: Vec<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
     pub(super) rest: Rest<D>,

@@ -54,6 +54,11 @@ impl<const D: usize> Twist<D> {
         self.linear.norm() + self.angular.norm() * arm
     }
 
+    /// How a point `arm` from the origin goes, to first order [m].
+    pub(super) fn of_point(&self, arm: Vector<f64, D>) -> Vector<f64, D> {
+        self.linear + in_place(cross(self.angular, in_space(arm)))
+    }
+
     /// As one vector, with angles as lengths: one radian is `unit` [m].
     pub(super) fn stacked(&self, unit: f64) -> [f64; 6] {
         let ([x, y, z], [a, b, c]) = (in_space(self.linear).0, (self.angular * unit).0);
