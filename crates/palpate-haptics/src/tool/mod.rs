@@ -42,6 +42,9 @@ const FEW: usize = 5;
 /// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
 const WAYS: f64 = 4.0;
 
+/// How far points of the tool are likely to go in a tick, in motions of the device.
+const LIKELY: f64 = 3.0;
+
 /// The skin of points without a radius, as a part of the tool's reach. Larger slides faster;
 /// walls thinner than two skins would not hold the tool.
 const SKIN: f64 = 1e-3;
@@ -220,7 +223,8 @@ impl<const D: usize> Tool<D> {
         if nearby.has_moved() {
             self.scan.forget();
         }
-        let lengths = self.lengths(&nearby, &start, &motion);
+        let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
+        let lengths = self.lengths(&nearby, &start, (&motion, moved));
         self.scan.begin(&self.shell, self.options.budget);
         let parts = (&self.shell, &mut self.scan, &nearby);
         self.settler.settle(parts, (start, device.pose), lengths);
@@ -239,7 +243,12 @@ impl<const D: usize> Tool<D> {
     }
 
     /// The lengths that follow from bodies, tool and motion.
-    fn lengths(&self, nearby: &Nearby<'_, D>, start: &Pose<D>, motion: &Twist<D>) -> Lengths {
+    fn lengths(
+        &self,
+        nearby: &Nearby<'_, D>,
+        start: &Pose<D>,
+        (motion, moved): (&Twist<D>, f64),
+    ) -> Lengths {
         let reach = self.shell.reach();
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
@@ -247,7 +256,8 @@ impl<const D: usize> Tool<D> {
         let sampler = Sampler::new(place, self.radius, 0, (extent, way.max(reach)));
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);
-        Lengths { unit, tolerance: sampler.tolerance(), skin }
+        let horizon = LIKELY * moved + skin;
+        Lengths { unit, tolerance: sampler.tolerance(), skin, horizon }
     }
 
     /// What is felt.

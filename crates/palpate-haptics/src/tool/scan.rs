@@ -132,8 +132,8 @@ impl<const D: usize> Scan<D> {
         self.points.get(number as usize)
     }
 
-    /// Looks at all clusters that the tool at `pose` could touch with in a motion like `twist`;
-    /// at those of fewer levels if there are more than `share` of what the budget has left
+    /// Looks at all clusters that the tool at `pose` could touch with in a motion like `twist`
+    /// that moves no point by more than `horizon` [m]; at those of fewer levels if there are more than `share` of what the budget has left
     /// allow. `false` if it does not allow the first level.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -142,7 +142,7 @@ impl<const D: usize> Scan<D> {
         shell: &Shell<D>,
         nearby: &Nearby<'_, D>,
         pose: &Pose<D>,
-        (twist, share): (&Twist<D>, f64),
+        (twist, horizon, share): (&Twist<D>, f64, f64),
     ) -> bool {
         self.due.clear();
         let left = f64::from(self.left());
@@ -152,7 +152,7 @@ impl<const D: usize> Scan<D> {
                 break;
             }
             let remaining = look.free_until - self.clock.at(cluster.arm);
-            if look.stamp == self.stamp || remaining > twist.way(cluster.arm) {
+            if look.stamp == self.stamp || remaining > twist.way(cluster.arm).min(horizon) {
                 continue;
             }
             let size = cluster.members.len();

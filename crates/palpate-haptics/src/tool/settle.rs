@@ -34,8 +34,12 @@ const LAST_TURNS: usize = 3;
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
 
-/// The tool rests where the next motion is below this many tolerances.
-const AT_REST: f64 = 1.0;
+/// The tool rests where the next motion is below this part of the way to the device: a force
+/// that is wrong by as much of itself, which no hand feels.
+const AT_REST: f64 = 1e-5;
+
+/// A turn that was cut short looks this many times as far as the one before.
+const FARTHER: f64 = 4.0;
 
 /// Constraints are satisfied up to this part of the tolerance.
 const SLACK: f64 = 1e-3;
@@ -67,6 +71,9 @@ pub(super) struct Lengths {
     pub(super) tolerance: f64,
     /// How deep a point may dip on its way [m].
     pub(super) skin: f64,
+    /// How far points are likely to move in this tick [m]: what is farther from the bodies is
+    /// looked at only if they do.
+    pub(super) horizon: f64,
 }
 
 impl Lengths {
@@ -156,7 +163,7 @@ impl<const D: usize> Settler<D> {
         (start, goal): (Pose<D>, Pose<D>),
         lengths: Lengths,
     ) {
-        let still = AT_REST * lengths.tolerance;
+        let mut horizon = lengths.horizon;
         let (mut pose, mut goal) = (start, goal);
         self.held.clear();
         self.held.extend(self.rest.pushes.iter().map(|push| push.point));
@@ -166,11 +173,11 @@ impl<const D: usize> Settler<D> {
         for turn in 0..MOST_TURNS {
             let mut wish = Twist::between(&pose, &goal);
             let share = if turn == 0 { FIRST_SHARE } else { SHARE };
-            if !scan.look(shell, nearby, &pose, (&wish, share)) {
+            if !scan.look(shell, nearby, &pose, (&wish, horizon, share)) {
                 break;
             }
             let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
-            self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
+            self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
             if turn == 0 && is_outside {
                 match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
                     Hold::None => self.is_slipping = false,
@@ -184,10 +191,10 @@ impl<const D: usize> Settler<D> {
                         self.is_slipping = true;
                         goal = held_back;
                         wish = Twist::between(&pose, &goal);
-                        if !scan.look(shell, nearby, &pose, (&wish, SHARE)) {
+                        if !scan.look(shell, nearby, &pose, (&wish, horizon, SHARE)) {
                             break;
                         }
-                        self.make_rows(shell, scan, nearby, (&pose, &wish, lengths));
+                        self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
                     }
                 }
                 self.rows.truncate(self.plain);
@@ -201,16 +208,18 @@ impl<const D: usize> Settler<D> {
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
+            let still = (AT_REST * wish.way(shell.reach)).max(lengths.tolerance);
             // Written so that NaN rests.
             let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { still };
             if !goes_on || turn + 1 == MOST_TURNS {
                 break;
             }
+            let is_all = horizon >= wish.way(shell.reach);
             let part = sweep((shell, scan, nearby), &pose, &twist, lengths.skin, is_free);
             scan.moved(&twist.part(part));
             if is_free && part >= 1.0 {
                 pose = goal;
-                if self.rows.is_empty() {
+                if is_all && self.rows.is_empty() {
                     // Nothing that could touch: proven free, without another look.
                     self.keep(
                         scan,
@@ -222,6 +231,9 @@ impl<const D: usize> Settler<D> {
                 }
             } else {
                 pose = twist.part(part).moved(&pose);
+            }
+            if part < 1.0 {
+                horizon *= FARTHER;
             }
         }
         if self.rest.is_outside {
@@ -240,7 +252,7 @@ impl<const D: usize> Settler<D> {
         shell: &Shell<D>,
         scan: &Scan<D>,
         nearby: &Nearby<'_, D>,
-        (pose, wish, lengths): (&Pose<D>, &Twist<D>, Lengths),
+        (pose, wish, horizon, lengths): (&Pose<D>, &Twist<D>, f64, Lengths),
     ) {
         self.rows.clear();
         self.numbers.clear();
@@ -248,7 +260,7 @@ impl<const D: usize> Settler<D> {
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
         for (number, seen) in scan.seen(shell) {
             let arm = seen.centre - pose.translation;
-            if seen.gap > lipschitz * (linear + angular * arm.norm()) {
+            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(horizon) {
                 continue;
             }
             let slope = seen.gradient.norm();
