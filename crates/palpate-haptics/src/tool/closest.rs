@@ -82,8 +82,7 @@ impl Closest {
                 f64::INFINITY
             };
             let step = whole.min(most);
-            // Written so that NaN fails.
-            if !(step < f64::INFINITY) {
+            if step.is_nan() || step == f64::INFINITY {
                 return false;
             }
             push += step;
@@ -182,6 +181,7 @@ fn add(to: &mut [f64; FREEDOMS], factor: f64, other: &[f64; FREEDOMS]) {
 }
 
 #[cfg(test)]
+#[allow(clippy::indexing_slicing, clippy::unwrap_used, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::cases::cases;

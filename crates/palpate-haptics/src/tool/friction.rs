@@ -81,8 +81,9 @@ impl<const D: usize> Settler<D> {
         }
         let away = wish.stacked(lengths.unit);
         let found = self.solve((pose, away), lengths, self.is_slipping);
+        let moves = length(&found.motion);
         // Written so that NaN sticks.
-        if !(length(&found.motion) > (STUCK * length(&away)).max(lengths.tolerance)) {
+        if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
             self.list_pushes(&found);
             return Hold::Stick;
         }

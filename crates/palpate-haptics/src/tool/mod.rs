@@ -11,6 +11,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod batch;
 mod closest;
 mod friction;
 mod scan;
@@ -19,6 +20,7 @@ mod settle;
 mod shell;
 mod spread;
 mod state;
+mod sweep;
 mod twist;
 
 use palpate_field::{Pose, Vector};

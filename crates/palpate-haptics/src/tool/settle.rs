@@ -16,9 +16,10 @@
 
 use palpate_field::{Point, Pose, Vector};
 
+use super::batch::Seen;
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::friction::{Cone, Hold, MOST_AROUND};
-use super::scan::{Scan, Seen, gap_at};
+use super::scan::Scan;
 use super::shell::Shell;
 use super::twist::{Twist, cross, in_space};
 use crate::nearby::Nearby;
@@ -49,18 +50,6 @@ const LEAST_SLOPE: f64 = 0.1;
 
 /// The most that one turn turns the tool among contacts [rad]: their planes turn with it.
 const MOST_ANGLE: f64 = 0.3;
-
-/// A motion that values at its start prove for this part of it needs no evaluations on the way.
-const WORTH_GOING: f64 = 0.25;
-
-/// Evaluations on the way of a point at most.
-const MOST_STEPS: u32 = 64;
-
-/// On the way of a point, values prove that it does not dip deeper than this part of a skin.
-const DIPS: f64 = 0.75;
-
-/// A way whose steps would be below this part of a skin is not free.
-const MET: f64 = 0.125;
 
 /// What a tool lives with in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -215,7 +204,9 @@ impl<const D: usize> Settler<D> {
                 break;
             }
             let is_all = horizon >= wish.way(shell.reach);
-            let part = sweep((shell, scan, nearby), &pose, &twist, lengths.skin, is_free);
+            let most = if is_free { 1.0 } else { twist.part_up_to(MOST_ANGLE) };
+            let way = (&pose, &twist);
+            let part = scan.sweep((shell, nearby), way, lengths.skin, most);
             scan.moved(&twist.part(part));
             if is_free && part >= 1.0 {
                 pose = goal;
@@ -283,9 +274,8 @@ impl<const D: usize> Settler<D> {
         found: &Closest,
         known: u32,
     ) {
-        let energy = wish.stacked(unit).iter().map(|x| x * x).sum();
-        // Written so that NaN is no closer.
-        if !(energy < self.rest.energy) {
+        let energy: f64 = wish.stacked(unit).iter().map(|x| x * x).sum();
+        if energy.is_nan() || energy >= self.rest.energy {
             return;
         }
         (self.rest.pose, self.rest.energy) = (*pose, energy);
@@ -317,71 +307,4 @@ pub(super) fn stacked_along<const D: usize>(
     let [x, y, z] = in_space(normal).0;
     let [a, b, c] = (cross(in_space(arm), in_space(normal)) * (1.0 / unit)).0;
     [x, y, z, a, b, c]
-}
-
-/// The part of a motion on which no point dips deeper than the skin.
-///
-/// A value `g` at a point proves that nothing within `(g + s) / L` of it is as deep as the skin
-/// `s`, before it and behind; where that does not cover the way of a point, it is asked further
-/// on, like a ray, and halfway where two answers leave a hole.
-fn sweep<const D: usize>(
-    (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
-    pose: &Pose<D>,
-    twist: &Twist<D>,
-    skin: f64,
-    is_free: bool,
-) -> f64 {
-    let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
-    // To half a skin; from below, half of the way to a whole one.
-    let room = |gap: f64| (gap + 0.5 * skin).max(0.5 * (gap + skin)) / lipschitz;
-    let mut whole = scan.free_part(shell, twist);
-    let angle = twist.angular.norm();
-    if !is_free && angle > MOST_ANGLE {
-        whole = whole.min(MOST_ANGLE / angle);
-    }
-    let (linear, mut proven) = (twist.linear.norm(), whole);
-    let way = |seen: &Seen<D>| linear + angle * (seen.centre - pose.translation).norm();
-    // Points that are deeper than a skin already are on their way out.
-    let swept = |seen: &Seen<D>| seen.gap > -skin;
-    for (_, seen) in scan.seen(shell).filter(|(_, seen)| swept(seen)) {
-        let (way, room) = (way(seen), room(seen.gap));
-        if way * proven > room {
-            proven = room / way;
-        }
-    }
-    if proven >= WORTH_GOING * whole {
-        return proven;
-    }
-    let (mut part, mut left) = (whole, scan.left());
-    for (number, seen) in scan.seen(shell).filter(|(_, seen)| swept(seen)) {
-        let way = way(seen);
-        let Some(point) = shell.points().get(number as usize) else { continue };
-        let covers = |gap: f64| (gap + DIPS * skin) / lipschitz / way;
-        let mut covered = room(seen.gap) / way;
-        let mut step = covered;
-        for steps in 0..=MOST_STEPS {
-            // Written so that NaN, of no way, is through.
-            if !(covered < part) {
-                break;
-            }
-            let Some(less) = left.checked_sub(1).filter(|_| steps < MOST_STEPS) else {
-                part = covered;
-                break;
-            };
-            left = less;
-            let at = (covered + step).min(part);
-            let centre = twist.part(at).moved(pose).transform_point(point.centre);
-            let covers = covers(gap_at(nearby, centre, point.radius));
-            if at - covers <= covered {
-                (covered, step) = (at + covers, covers);
-            } else if step * way * lipschitz > MET * skin {
-                step *= 0.5;
-            } else {
-                part = covered;
-                break;
-            }
-        }
-    }
-    scan.spend(scan.left() - left);
-    part.max(proven)
 }

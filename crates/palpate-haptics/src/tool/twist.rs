@@ -38,6 +38,12 @@ impl<const D: usize> Twist<D> {
         Self { linear: self.linear * part, angular: self.angular * part }
     }
 
+    /// The part of the motion that turns by an angle [rad] at most.
+    pub(super) fn part_up_to(&self, most: f64) -> f64 {
+        let angle = self.angular.norm();
+        if angle > most { most / angle } else { 1.0 }
+    }
+
     /// A pose after the motion.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
