@@ -39,7 +39,8 @@ pub(super) fn ticks(
         states.push(state(&shell, shape, (tick, *place))?);
     }
     let mut fastest = vec![u64::MAX; TICKS];
-    let (mut evaluations, mut contacts, mut degraded) = (0_u64, 0_u64, 0_u64);
+    let (mut evaluations, mut contacts) = (0_u64, 0_u64);
+    let (mut touching, mut degraded) = (0_u64, 0_u64);
     for pass in 0..PASSES {
         let mut bodies = bodies(shape)?;
         let mut tool = Tool::new(shell.clone(), options())?;
@@ -51,7 +52,8 @@ pub(super) fn ticks(
             fastest[tick] = fastest[tick].min(nanoseconds);
             if pass == 0 {
                 evaluations += u64::from(touch.evaluations);
-                contacts += u64::from(touch.contact);
+                contacts += touch.contacts.len() as u64;
+                touching += u64::from(touch.contact);
                 degraded += u64::from(touch.is_degraded);
             }
         }
@@ -63,6 +65,7 @@ pub(super) fn ticks(
     rows.insert(format!("{key}.max_ns"), at(1.0));
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
     rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
+    rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);
     rows.insert(format!("{key}.degraded"), degraded as f64 / TICKS as f64);
     Ok(())
 }

@@ -22,6 +22,7 @@ pub(super) struct Seen<const D: usize> {
 }
 
 /// Points that are looked at together.
+#[derive(Clone, Debug)]
 pub(super) struct Batch<const D: usize> {
     pub(super) count: usize,
     numbers: [u32; BLOCK],
@@ -34,9 +35,9 @@ pub(super) struct Batch<const D: usize> {
 }
 
 impl<const D: usize> Batch<D> {
-    pub(super) fn new() -> Self {
+    pub(super) fn boxed() -> Box<Self> {
         let nothing = Seen { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
-        Self {
+        Box::new(Self {
             count: 0,
             numbers: [0; BLOCK],
             radii: [0.0; BLOCK],
@@ -44,7 +45,7 @@ impl<const D: usize> Batch<D> {
             block: Block::zero(),
             answers: Gradients::zero(),
             lanes: [0; BLOCK],
-        }
+        })
     }
 
     /// Takes the next points.
@@ -70,7 +71,11 @@ impl<const D: usize> Batch<D> {
         for seen in self.seen.iter_mut().take(self.count) {
             let way = seen.centre - nearby.centre;
             seen.gap = nearby.horizon - way.norm();
-            seen.gradient = -way.normalized().unwrap_or(Vector::ZERO);
+            seen.gradient = if nearby.horizon < f64::INFINITY {
+                -way.normalized().unwrap_or(Vector::ZERO)
+            } else {
+                Vector::ZERO
+            };
             seen.body = 0;
         }
         for (index, body) in nearby.all() {

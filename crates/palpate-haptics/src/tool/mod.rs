@@ -47,6 +47,10 @@ const WAYS: f64 = 4.0;
 /// How far points of the tool are likely to go in a tick, in motions of the device.
 const LIKELY: f64 = 3.0;
 
+/// The tool rests where the next motion is below this part of the device's in this tick: what is
+/// left of it is made up for in the next, and none where the hand rests.
+const AT_REST: f64 = 1e-3;
+
 /// The skin of points without a radius, as a part of the tool's reach. Larger slides faster;
 /// walls thinner than two skins would not hold the tool.
 const SKIN: f64 = 1e-3;
@@ -259,7 +263,9 @@ impl<const D: usize> Tool<D> {
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);
         let horizon = LIKELY * moved + skin;
-        Lengths { unit, tolerance: sampler.tolerance(), skin, horizon }
+        let tolerance = sampler.tolerance();
+        let still = (AT_REST * moved).max(tolerance);
+        Lengths { unit, tolerance, still, skin, horizon }
     }
 
     /// What is felt.

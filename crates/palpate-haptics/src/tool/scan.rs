@@ -64,6 +64,7 @@ pub(super) struct Scan<const D: usize> {
     evaluations: u32,
     /// Points that are followed on their way.
     pub(super) marches: Vec<March>,
+    pub(super) batch: Box<Batch<D>>,
 }
 
 impl<const D: usize> Scan<D> {
@@ -80,6 +81,7 @@ impl<const D: usize> Scan<D> {
             budget: 0,
             evaluations: 0,
             marches: Vec::with_capacity(shell.points().len()),
+            batch: Batch::boxed(),
         }
     }
 
@@ -169,7 +171,7 @@ impl<const D: usize> Scan<D> {
         let due = std::mem::take(&mut self.due);
         let members = due.iter().filter_map(|cluster| shell.clusters.get(*cluster as usize));
         let mut numbers = members.clone().flat_map(|cluster| shell.members(cluster));
-        let mut batch = Batch::new();
+        let batch = &mut *self.batch;
         loop {
             batch.gather(shell, pose, &mut numbers);
             if batch.count == 0 {

@@ -25,7 +25,7 @@ use super::twist::{Twist, cross, in_space};
 use crate::nearby::Nearby;
 
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
-const MOST_TURNS: usize = 10;
+const MOST_TURNS: usize = 8;
 
 /// In these last turns, a tool that is not outside goes straight out instead of on: where it
 /// turns much, each turn ends a little inside.
@@ -34,10 +34,6 @@ const LAST_TURNS: usize = 3;
 /// What the first look may take of the budget, and each further one of what is left.
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
-
-/// The tool rests where the next motion is below this part of the way to the device: a force
-/// that is wrong by as much of itself, which no hand feels.
-const AT_REST: f64 = 1e-5;
 
 /// A turn that was cut short looks this many times as far as the one before.
 const FARTHER: f64 = 4.0;
@@ -58,6 +54,8 @@ pub(super) struct Lengths {
     pub(super) unit: f64,
     /// How deep a point may rest [m].
     pub(super) tolerance: f64,
+    /// The tool rests where the next motion is less [m].
+    pub(super) still: f64,
     /// How deep a point may dip on its way [m].
     pub(super) skin: f64,
     /// How far points are likely to move in this tick [m]: what is farther from the bodies is
@@ -197,9 +195,8 @@ impl<const D: usize> Settler<D> {
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
-            let still = (AT_REST * wish.way(shell.reach)).max(lengths.tolerance);
             // Written so that NaN rests.
-            let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { still };
+            let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { lengths.still };
             if !goes_on || turn + 1 == MOST_TURNS {
                 break;
             }

@@ -13,7 +13,6 @@
 
 use palpate_field::Pose;
 
-use super::batch::Batch;
 use super::scan::Scan;
 use super::shell::Shell;
 use super::twist::Twist;
@@ -92,7 +91,6 @@ impl<const D: usize> Scan<D> {
         let proven = |marches: &[March]| {
             marches.iter().fold(whole, |least, march| least.min(march.covered))
         };
-        let mut batch = Batch::new();
         let mut step = proven(marches);
         for _ in 0..MOST_STEPS {
             let covered = proven(marches);
@@ -108,6 +106,7 @@ impl<const D: usize> Scan<D> {
             }
             self.spend(count);
             let there = twist.part(at).moved(pose);
+            let batch = &mut *self.batch;
             let (mut next, mut has_hole, mut is_met) = (f64::INFINITY, false, false);
             let mut done = 0;
             while let Some(rest) = marches.get_mut(done..) {
