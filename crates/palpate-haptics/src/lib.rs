@@ -8,6 +8,9 @@
 //! [`Device`], a thousand times a second and more; [`run`] is the loop around it, which paces,
 //! counts, records and reports.
 //!
+//! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
+//! by a spring, and bodies stop it.
+//!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
 //! into vibration.

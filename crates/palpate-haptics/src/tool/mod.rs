@@ -33,7 +33,7 @@ use crate::guide::limit::{Motion, damped};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
 use scan::Scan;
-use settle::{Lengths, Settler};
+use settle::{Lengths, Push, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{ToolOptions, ToolState, ToolTouch};
 use twist::{Twist, cross, in_space};
@@ -81,11 +81,16 @@ const MOST_EVENTS: usize = 2;
 ///
 /// # What is promised
 ///
-/// - *Nothing is crossed.* On its way no point of the shell that is looked at dips deeper than
+/// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is looked at dips deeper than
 ///   its radius, or, without one, than 1e-3 of the tool's reach; at rest its ball is outside
 ///   up to 1e-9 of the size of the scene.
+/// - *It lags, if it must.* A tick takes eight turns at most, and stops where the next motion is
+///   below a thousandth of the device's; the next tick goes on from there.
 /// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
 ///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].
+///
+/// A body that moves is not followed on its way: it pushes the tool out from where it is after
+/// the tick. So it should move less in a tick than half of what it is thick.
 ///
 /// # Examples
 ///
@@ -244,7 +249,7 @@ impl<const D: usize> Tool<D> {
         }
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
-        self.write_touch(&nearby, device, &before);
+        self.write_touch(device, &before);
         self.react(&nearby, reactions);
     }
 
@@ -269,7 +274,7 @@ impl<const D: usize> Tool<D> {
     }
 
     /// What is felt.
-    fn write_touch(&mut self, nearby: &Nearby<'_, D>, device: &ToolState<D>, before: &Pose<D>) {
+    fn write_touch(&mut self, device: &ToolState<D>, before: &Pose<D>) {
         let (rest, options) = (&self.settler.rest, &self.options);
         let touch = &mut self.touch;
         let was = touch.body.filter(|_| touch.contact);
@@ -337,7 +342,7 @@ impl<const D: usize> Tool<D> {
                 self.events.push(Event { body, ..none });
             }
             if let (Some(body), Some((push, _))) = (is, hardest) {
-                let speed = speed_at(nearby, push, device);
+                let speed = speed_at(push, device);
                 self.events.push(Event { body, kind: EventKind::Touch { speed }, ..none });
             }
         }
@@ -383,14 +388,8 @@ fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
 }
 
 /// How fast the device brings a contact to its body, along the normal [m/s].
-fn speed_at<const D: usize>(
-    nearby: &Nearby<'_, D>,
-    push: &settle::Push<D>,
-    device: &ToolState<D>,
-) -> f64 {
+fn speed_at<const D: usize>(push: &Push<D>, device: &ToolState<D>) -> f64 {
     let arm = in_space(push.centre - device.pose.translation);
-    let turning = cross(device.angular_velocity, arm);
-    let velocity = in_space(device.velocity) + turning;
-    let _ = nearby;
+    let velocity = in_space(device.velocity) + cross(device.angular_velocity, arm);
     (-velocity.dot(in_space(push.normal))).max(0.0)
 }
