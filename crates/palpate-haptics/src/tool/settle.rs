@@ -25,7 +25,7 @@ use super::twist::{Twist, cross, in_space};
 use crate::nearby::Nearby;
 
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
-const MOST_TURNS: usize = 8;
+const MOST_TURNS: usize = 7;
 
 /// In these last turns, a tool that is not outside goes straight out instead of on: where it
 /// turns much, each turn ends a little inside.
@@ -35,7 +35,7 @@ const LAST_TURNS: usize = 3;
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
 
-/// A turn that was cut short looks this many times as far as the one before.
+/// After a turn that was cut short by its horizon, the next looks this many times as far.
 const FARTHER: f64 = 4.0;
 
 /// Constraints are satisfied up to this part of the tolerance.
@@ -220,7 +220,7 @@ impl<const D: usize> Settler<D> {
             } else {
                 pose = twist.part(part).moved(&pose);
             }
-            if part < 1.0 {
+            if part < 1.0 && twist.part(part).way(shell.reach) > 0.5 * horizon {
                 horizon *= FARTHER;
             }
         }
