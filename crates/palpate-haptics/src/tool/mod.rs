@@ -84,7 +84,7 @@ const MOST_EVENTS: usize = 2;
 /// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is looked at dips deeper than
 ///   its radius, or, without one, than 1e-3 of the tool's reach; at rest its ball is outside
 ///   up to 1e-9 of the size of the scene.
-/// - *It lags, if it must.* A tick takes seven turns at most, and stops where the next motion is
+/// - *It lags, if it must.* A tick takes six turns at most, and stops where the next motion is
 ///   below a thousandth of the device's; the next tick goes on from there.
 /// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
 ///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].

@@ -25,7 +25,7 @@ use super::twist::{Twist, cross, in_space};
 use crate::nearby::Nearby;
 
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
-const MOST_TURNS: usize = 7;
+const MOST_TURNS: usize = 6;
 
 /// In these last turns, a tool that is not outside goes straight out instead of on: where it
 /// turns much, each turn ends a little inside.
