@@ -72,18 +72,19 @@ const MOST_EVENTS: usize = 2;
 /// about the tool's origin are those of spring and damper,
 ///
 /// ```text
-/// F = −K v − B (v̇_device − v̇_tool)        τ = −κ ω − β (ω_device − ω_tool)
+/// F = −K v − B (u_device − u_tool)        τ = −κ ω − β (Ω_device − Ω_tool)
 /// ```
 ///
-/// where the damper acts in contact alone and never makes the hand be pulled in. The stiffness
-/// of a body's [`Surface`](crate::Surface) is not part of it: rigid bodies meet, and the
-/// coupling yields.
+/// with the velocities `u` [m/s] and `Ω` [rad/s] that the device says, and those of the tool from
+/// its last two poses; the damper acts in contact alone and never makes the hand be pulled in. The
+/// stiffness of a body's [`Surface`](crate::Surface) is not part of it: rigid bodies meet, and
+/// the coupling yields. Its friction is.
 ///
 /// # What is promised
 ///
-/// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is looked at dips deeper than
-///   its radius, or, without one, than 1e-3 of the tool's reach; at rest its ball is outside
-///   up to 1e-9 of the size of the scene.
+/// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is
+///   looked at dips deeper than its radius, or, without one, than 1e-3 of the tool's reach; at
+///   rest its ball is outside up to 1e-9 of the size of the scene.
 /// - *It lags, if it must.* A tick takes six turns at most, and stops where the next motion is
 ///   below a thousandth of the device's; the next tick goes on from there.
 /// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
@@ -103,7 +104,7 @@ const MOST_EVENTS: usize = 2;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
 /// let mut bodies = Bodies::from(ground);
-/// let options = ToolOptions { stiffness: 500.0, ..ToolOptions::default() };
+/// let options = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
 /// let mut tool = Tool::new(Shell::ball(0.0625)?, options)?;
 /// let at = |y| ToolState::at_rest(Pose::translation(Vector([0.0, y, 0.0])));
 /// tool.step(&mut bodies, &at(0.1));

@@ -102,7 +102,7 @@ pub(super) fn of_field<const D: usize>(
             2.0 * others.map(|(_, half)| 2.0 * half).product::<f64>()
         })
         .sum();
-    let cell = (faces / (CHOICE * count as f64)).powf(1.0 / (D as f64 - 1.0));
+    let cell = libm::pow(faces / (CHOICE * count as f64), 1.0 / (D as f64 - 1.0));
     let cells: [usize; D] = half.0.map(|half| (2.0 * half / cell).ceil().max(1.0) as usize);
     let diagonal = cell * (D as f64).sqrt();
     let near = 0.5 * diagonal * shape.promise().lipschitz;
