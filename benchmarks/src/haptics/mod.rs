@@ -9,6 +9,7 @@
 //! the same path; what counts of a tick is the fastest pass, since all do the same work.
 
 mod orbit;
+mod tool;
 
 use std::error::Error;
 use std::hint::black_box;
@@ -52,6 +53,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     ticks("tick.union_1000", &thousand, 1, &mut rows)?;
     ticks("tick.ten_fingers_S3", &s3, 10, &mut rows)?;
     ticks("tick.24_points_union_1000", &thousand, 24, &mut rows)?;
+    tool::ticks("tick.tool_1000_points_S3", &s3, &mut rows)?;
     Ok(rows)
 }
 

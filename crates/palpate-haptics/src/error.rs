@@ -116,6 +116,9 @@ pub enum HapticsError {
         /// How many it has.
         count: usize,
     },
+    /// A tool has no surface to sample.
+    #[error("a tool needs a bounded surface, and none was found")]
+    NothingToTouchWith,
     /// A tour finds nothing to touch in its box.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,

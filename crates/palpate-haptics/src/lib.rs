@@ -9,6 +9,9 @@
 //! counts, records and reports. A [`ServoThread`] runs the same loop beside a program, whose
 //! [`Control`] changes what is touched and sees what happens, and never makes the servo wait.
 //!
+//! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
+//! by a spring, and bodies stop it.
+//!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
 //! into vibration.
@@ -85,6 +88,7 @@ mod servo_loop;
 mod statistics;
 mod surface;
 mod thread;
+mod tool;
 mod tour;
 mod velocity;
 pub mod vibrotactile;
@@ -119,6 +123,7 @@ pub use servo::{Servo, ServoOptions, Touch};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use thread::{EndedThread, ServoThread, ThreadOptions};
+pub use tool::{MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch};
 pub use tour::Tour;
 pub use velocity::VelocityEstimator;
 pub use workspace::WorkspaceMap;

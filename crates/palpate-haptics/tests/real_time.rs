@@ -8,10 +8,10 @@ mod common;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use common::{ball, cuboid, torus};
-use palpate_field::{Pose, Shape, Vector};
+use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, HandoffOptions, PointState, Progress, Servo, ServoOptions, Surface, Tour,
-    handoff,
+    Bodies, Body, HandoffOptions, Material, PointState, Progress, Servo, ServoOptions, Shell,
+    Surface, Tool, ToolOptions, ToolState, Tour, handoff,
 };
 
 /// Aborts on an allocation where none is allowed.
@@ -90,4 +90,32 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
     assert!(control.latest().unwrap().events_lost > 0);
     assert_no_alloc(|| end.finish());
     assert!(control.has_ended());
+}
+
+#[test]
+fn a_step_of_a_tool_allocates_and_frees_nothing() {
+    let rough = Surface::new(&Material::default()).unwrap();
+    let bodies = (0..6).map(|i| {
+        let place = Pose::translation(Vector([0.05 * f64::from(i), 0.0, 0.0]));
+        Body::new(ball(0.04), rough.clone()).unwrap().at(place).unwrap()
+    });
+    let mut bodies = Bodies::new(bodies.collect()).unwrap();
+    let shell = Shell::from_field(&torus(0.03, 0.01), 700, 0.0).unwrap();
+    let options = ToolOptions { budget: 4000, ..ToolOptions::default() };
+    let mut tool = Tool::new(shell, options).unwrap();
+    let mut touched = 0;
+    for tick in 0..3000 {
+        let t = f64::from(tick) * 1e-3;
+        let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, 0.2]), 2.0 * t).unwrap();
+        let height = if tick % 500 == 0 { f64::NAN } else { 0.05 + 0.03 * (5.0 * t).sin() };
+        let state = ToolState::at_rest(Pose::new(turn, Vector([0.1 * t, height, 0.0])));
+        let lift = Vector([0.1, 0.01 * (7.0 * t).sin(), 0.0]);
+        assert_no_alloc(|| {
+            bodies.set_pose(2, Pose::translation(lift));
+            let touch = tool.step(&mut bodies, &state);
+            assert!(touch.evaluations <= 4000 && touch.force.is_finite());
+            touched += u32::from(touch.contact);
+        });
+    }
+    assert!(touched > 1000, "{touched}");
 }

@@ -11,11 +11,11 @@ use crate::limit::limited;
 
 /// The two parts of a force [N].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion<const D: usize> {
+pub(crate) struct Motion<const D: usize> {
     /// What depends on the position alone.
-    pub(super) spring: Vector<f64, D>,
+    pub(crate) spring: Vector<f64, D>,
     /// What takes energy from the motion.
-    pub(super) damper: Vector<f64, D>,
+    pub(crate) damper: Vector<f64, D>,
 }
 
 /// The sum of both, at most `max_force`: the spring limited on its own, then as much of the
@@ -25,7 +25,7 @@ pub(super) struct Motion<const D: usize> {
 /// in slowly and let out fast, it would give back more than it took.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(super) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vector<f64, D> {
+pub(crate) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vector<f64, D> {
     let spring = limited(motion.spring, max_force);
     let damper = motion.damper;
     let whole = spring + damper;

@@ -10,7 +10,7 @@
 
 mod curve;
 mod from_data;
-mod limit;
+pub(crate) mod limit;
 mod slope;
 mod target;
 mod well;

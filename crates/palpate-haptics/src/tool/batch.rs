@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Points of a shell that are looked at together: as [`Nearby`] does one by one, in blocks.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{BLOCK, Block, Gradients, Point, Pose, Vector};
+
+use super::shell::Shell;
+use crate::nearby::Nearby;
+
+/// A point of the shell, when it was last looked at. World coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<const D: usize> {
+    /// Its centre [m].
+    pub(super) centre: Point<D>,
+    /// The field less the point's radius [m].
+    pub(super) gap: f64,
+    pub(super) gradient: Vector<f64, D>,
+    pub(super) body: u32,
+}
+
+/// Points that are looked at together.
+#[derive(Clone, Debug)]
+pub(super) struct Batch<const D: usize> {
+    pub(super) count: usize,
+    numbers: [u32; BLOCK],
+    radii: [f64; BLOCK],
+    seen: [Seen<D>; BLOCK],
+    block: Block<f64, D, BLOCK>,
+    answers: Gradients<f64, D, BLOCK>,
+    /// Which points are asked of a body.
+    lanes: [usize; BLOCK],
+}
+
+impl<const D: usize> Batch<D> {
+    pub(super) fn boxed() -> Box<Self> {
+        let nothing = Seen { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
+        Box::new(Self {
+            count: 0,
+            numbers: [0; BLOCK],
+            radii: [0.0; BLOCK],
+            seen: [nothing; BLOCK],
+            block: Block::zero(),
+            answers: Gradients::zero(),
+            lanes: [0; BLOCK],
+        })
+    }
+
+    /// Takes the next points.
+    pub(super) fn gather(
+        &mut self,
+        shell: &Shell<D>,
+        pose: &Pose<D>,
+        numbers: &mut impl Iterator<Item = u32>,
+    ) {
+        self.count = 0;
+        let places = self.numbers.iter_mut().zip(&mut self.radii).zip(&mut self.seen);
+        // The places first: a number that finds none would be lost.
+        for (((number, radius), seen), next) in places.zip(numbers) {
+            let Some(point) = shell.points().get(next as usize) else { continue };
+            (*number, *radius) = (next, point.radius);
+            seen.centre = pose.transform_point(point.centre);
+            self.count += 1;
+        }
+    }
+
+    /// Asks all that is near: as [`Nearby::gradient`], in blocks.
+    pub(super) fn ask(&mut self, nearby: &Nearby<'_, D>) {
+        for seen in self.seen.iter_mut().take(self.count) {
+            let way = seen.centre - nearby.centre;
+            seen.gap = nearby.horizon - way.norm();
+            seen.gradient = if nearby.horizon < f64::INFINITY {
+                -way.normalized().unwrap_or(Vector::ZERO)
+            } else {
+                Vector::ZERO
+            };
+            seen.body = 0;
+        }
+        for (index, body) in nearby.all() {
+            let mut asked = 0;
+            let points = self.seen.iter().take(self.count).enumerate();
+            for (lane, seen) in points {
+                // Written so that NaN is looked at.
+                if body.above_ball(seen.centre) >= seen.gap {
+                    continue;
+                }
+                self.block.set(asked, body.in_body(seen.centre));
+                if let Some(place) = self.lanes.get_mut(asked) {
+                    *place = lane;
+                }
+                asked += 1;
+            }
+            if asked == 0 {
+                continue;
+            }
+            body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            let turn = body.world_from_body();
+            for (answer, lane) in self.lanes.iter().take(asked).enumerate() {
+                let Some(seen) = self.seen.get_mut(*lane) else { continue };
+                let distance = self.answers.distance.get(answer);
+                let above = body.above_ball(seen.centre);
+                let beyond =
+                    body.region.is_some_and(|r| (seen.centre - r.centre).norm() > r.radius);
+                let (gap, gradient) = if (body.is_below_ball || beyond) && above > distance {
+                    let outwards = body.ball.map(|ball| seen.centre - ball.centre);
+                    (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
+                } else {
+                    let gradient = self.answers.gradient.get(answer);
+                    (distance, turn.transform_vector(gradient))
+                };
+                // Written so that NaN stays.
+                if gap.is_nan() || gap < seen.gap {
+                    (seen.gap, seen.gradient, seen.body) = (gap, gradient, index);
+                }
+            }
+        }
+        for (seen, radius) in self.seen.iter_mut().zip(&self.radii).take(self.count) {
+            seen.gap -= radius;
+        }
+    }
+
+    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
+        self.numbers.iter().copied().zip(&self.seen).take(self.count)
+    }
+}

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Coulomb friction of a tool: it sticks, or the device is held back.
+//!
+//! A contact pushes with any force in its cone, spanned by `n + μ t` for unit vectors `t` along
+//! the surface: two in the plane, eight in space. The tool sticks if forces of the cones of the
+//! contacts that held it balance the coupling, which is to say that the closest motion with
+//! `(n + μ t)·Δ ≥ −gap` for all of them, contacts as rows of a rigid motion, is none (Stewart
+//! and Trinkle 1996; as a convex problem Anitescu, "Optimization-based simulation of nonsmooth
+//! rigid multibody dynamics", 2006). Where it is not, that problem would lift the tool off the
+//! surface as it slips; so only its friction is kept, as a part of what contacts push without
+//! that lift: it holds back the pose that the tool, without friction, then goes to. For one contact this is the friction cone of a
+//! [`Proxy`](crate::Proxy). A tool that sticks does not move at all, so it never creeps.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use palpate_field::{Pose, Vector};
+
+use super::closest::{Closest, FREEDOMS, Row, closest};
+use super::scan::Scan;
+use super::settle::{Lengths, Push, Settler, stacked_along};
+use super::twist::{Twist, cross, in_place, in_space};
+use crate::nearby::Nearby;
+use crate::surface::Friction;
+
+/// Directions along a surface, as parts of two that are square to one another.
+const AROUND: [(f64, f64); MOST_AROUND] = [
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (0.0, 1.0),
+    (0.0, -1.0),
+    (FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+    (-FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+    (FRAC_1_SQRT_2, -FRAC_1_SQRT_2),
+    (-FRAC_1_SQRT_2, -FRAC_1_SQRT_2),
+];
+
+/// How many of them there are in space.
+pub(super) const MOST_AROUND: usize = 8;
+
+/// The tool sticks if it would move by this part of the way to the device or less: above what
+/// rounding leaves of a balance.
+const STUCK: f64 = 1e-9;
+
+/// What friction does in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Hold<const D: usize> {
+    /// There is none.
+    None,
+    /// The tool stays where it is.
+    Stick,
+    /// The tool goes to another goal.
+    Slip(Pose<D>),
+}
+
+/// A contact with friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cone<const D: usize> {
+    push: Push<D>,
+    friction: Friction,
+    /// Along the surface.
+    sides: [Vector<f64, D>; 2],
+}
+
+impl<const D: usize> Settler<D> {
+    /// What the friction of the contacts that pushed in the last tick does to a tool at `pose`,
+    /// of which all rows were made for `wish`.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(super) fn hold_back(
+        &mut self,
+        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
+        (pose, wish): (&Pose<D>, &Twist<D>),
+        lengths: Lengths,
+    ) -> Hold<D> {
+        if !self.find_cones((scan, nearby), (pose, wish)) {
+            return Hold::None;
+        }
+        let away = wish.stacked(lengths.unit);
+        let found = self.solve((pose, away), lengths, self.is_slipping);
+        let moves = length(&found.motion);
+        // Written so that NaN sticks.
+        if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
+            self.list_pushes(&found);
+            return Hold::Stick;
+        }
+        let found = self.solve((pose, away), lengths, true);
+        let mut friction = [0.0; FREEDOMS];
+        for held in found.held() {
+            let Some((cone, row)) = self.cone_of(held.row) else { continue };
+            let arm = cone.push.centre - pose.translation;
+            let normal = stacked_along(arm, cone.push.normal, lengths.unit);
+            for ((friction, along), normal) in friction.iter_mut().zip(row.along).zip(normal) {
+                *friction += held.push * (along - normal);
+            }
+        }
+        let pushes = |found: &Closest| found.held().map(|held| held.push).sum::<f64>();
+        self.rows.truncate(self.plain);
+        let flat = closest(sum(away, friction, 1.0), &self.rows, lengths.slack());
+        // Written so that NaN, of no push at all, is none.
+        let part = (pushes(&flat) / pushes(&found)).clamp(0.0, 1.0).max(0.0);
+        let target = sum(away, friction, part);
+        Hold::Slip(Twist::unstacked(target, lengths.unit).moved(pose))
+    }
+
+    /// The cone that a row is of.
+    fn cone_of(&self, row: usize) -> Option<(&Cone<D>, &Row)> {
+        let index = row.checked_sub(self.plain)? / around::<D>();
+        Some((self.cones.get(index)?, self.rows.get(row)?))
+    }
+
+    /// Lists the contacts that held the tool; `false` if none of them has friction.
+    fn find_cones(
+        &mut self,
+        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
+        (pose, wish): (&Pose<D>, &Twist<D>),
+    ) -> bool {
+        self.cones.clear();
+        let mut has_friction = false;
+        for number in self.held.iter().take(FREEDOMS) {
+            let Some(seen) = scan.point(*number) else { continue };
+            let Some(body) = nearby.body(seen.body) else { continue };
+            let slope = seen.gradient.norm();
+            let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
+            if !(normal.is_finite() && gap.is_finite()) {
+                continue;
+            }
+            let friction = body.surface().strata.at(0, 0.0).friction;
+            has_friction |= friction.fixed.max(friction.slipping) > 0.0;
+            let sides = along_surface(normal, wish, seen.centre - pose.translation);
+            let (point, centre, body) = (*number, seen.centre, seen.body);
+            let push = Push { point, centre, normal, gap, body, push: 0.0 };
+            self.cones.push(Cone { push, friction, sides });
+        }
+        has_friction
+    }
+
+    /// The closest motion to the wish with cones of friction.
+    fn solve(
+        &mut self,
+        (pose, wish): (&Pose<D>, [f64; FREEDOMS]),
+        lengths: Lengths,
+        is_slipping: bool,
+    ) -> Closest {
+        self.rows.truncate(self.plain);
+        for cone in &self.cones {
+            let Friction { fixed, slipping } = cone.friction;
+            let friction = if is_slipping { slipping } else { fixed };
+            let Push { centre, normal, gap, .. } = cone.push;
+            let [first, second] = cone.sides;
+            for (a, b) in AROUND.into_iter().take(around::<D>()) {
+                let pushed = normal + (first * a + second * b) * friction;
+                let along = stacked_along(centre - pose.translation, pushed, lengths.unit);
+                self.rows.push(Row { along, least: -gap });
+            }
+        }
+        closest(wish, &self.rows, lengths.slack())
+    }
+
+    /// Notes what pushes the tool that sticks.
+    fn list_pushes(&mut self, found: &Closest) {
+        for held in found.held() {
+            let cone = held.row.checked_sub(self.plain).map(|row| row / around::<D>());
+            if let Some(cone) = cone.and_then(|index| self.cones.get_mut(index)) {
+                cone.push.push += held.push;
+            }
+        }
+        self.rest.pushes.clear();
+        let room = self.rest.pushes.capacity();
+        let pushing = self.cones.iter().map(|cone| cone.push).filter(|push| push.push > 0.0);
+        self.rest.pushes.extend(pushing.take(room));
+    }
+}
+
+/// How many directions along a surface there are.
+fn around<const D: usize>() -> usize {
+    if D == 2 { 2 } else { MOST_AROUND }
+}
+
+/// Two unit vectors along a surface, the first the way that a point goes by its wish; in the
+/// plane the second is none.
+fn along_surface<const D: usize>(
+    normal: Vector<f64, D>,
+    wish: &Twist<D>,
+    arm: Vector<f64, D>,
+) -> [Vector<f64, D>; 2] {
+    let way = wish.of_point(arm);
+    let flat = |v: Vector<f64, D>| (v - normal * v.dot(normal)).normalized();
+    // An axis that is far from the normal.
+    let steepest = |k: usize| normal.0.get(k).copied().unwrap_or(1.0).abs();
+    let axis = (1..D).fold(0, |best, k| if steepest(k) < steepest(best) { k } else { best });
+    let first = flat(way).or_else(|| flat(Vector::unit(axis))).unwrap_or(Vector::ZERO);
+    let second =
+        if D == 2 { Vector::ZERO } else { in_place(cross(in_space(normal), in_space(first))) };
+    [first, second]
+}
+
+fn sum(a: [f64; FREEDOMS], b: [f64; FREEDOMS], part: f64) -> [f64; FREEDOMS] {
+    let mut sum = a;
+    for (sum, b) in sum.iter_mut().zip(b) {
+        *sum += b * part;
+    }
+    sum
+}
+
+fn length(motion: &[f64; FREEDOMS]) -> f64 {
+    motion.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

@@ -1,0 +1,396 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Tools with a shape: felt as a whole, with force and torque.
+//!
+//! The hand holds the device; a spring and a damper in all degrees of freedom, the *virtual
+//! coupling* of Colgate, Stanley and Brown, "Issues in the haptic display of tool use" (1995),
+//! hang a rigid tool on it. The tool has no mass: in each tick it is where spring and contacts
+//! are in balance (Wan and McNeely, "Quasi-static approximation for 6-DoF haptic rendering",
+//! 2003), which is the pose of least spring energy that the bodies allow.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod batch;
+mod closest;
+mod friction;
+mod scan;
+mod settle;
+#[allow(clippy::indexing_slicing, reason = "made at set-up")]
+mod shell;
+mod spread;
+mod state;
+mod sweep;
+mod twist;
+
+use palpate_field::{Pose, Vector};
+use palpate_query::Contact;
+
+use crate::bodies::Bodies;
+use crate::error::{HapticsError, positive};
+use crate::event::{Event, EventKind, Reaction};
+use crate::guide::limit::{Motion, damped};
+use crate::nearby::{Nearby, Pierced};
+use crate::sampler::Sampler;
+use scan::Scan;
+use settle::{Lengths, Push, Settler};
+pub use shell::{MOST_POINTS, Shell, ShellPoint};
+pub use state::{ToolOptions, ToolState, ToolTouch};
+use twist::{Twist, cross, in_space};
+
+/// Bodies fewer than this are all near.
+const FEW: usize = 5;
+
+/// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
+const WAYS: f64 = 4.0;
+
+/// How far points of the tool are likely to go in a tick, in motions of the device.
+const LIKELY: f64 = 3.0;
+
+/// The tool rests where the next motion is below this part of the device's in this tick: what is
+/// left of it is made up for in the next, and none where the hand rests.
+const AT_REST: f64 = 1e-3;
+
+/// The skin of points without a radius, as a part of the tool's reach. Larger slides faster;
+/// walls thinner than two skins would not hold the tool.
+const SKIN: f64 = 1e-3;
+
+/// Events of a tool in a tick at most: a leave and a touch.
+const MOST_EVENTS: usize = 2;
+
+/// A rigid tool that the hand moves, and that bodies stop.
+///
+/// The tool's pose `X` is the one closest to the device's pose `Y` that keeps every point of its
+/// [`Shell`] outside the bodies: the least of the coupling's energy
+///
+/// ```text
+/// E = K/2 ‖v‖² + κ/2 ‖ω‖²
+/// ```
+///
+/// with the way `v` between the origins [m], the rotation `ω` between the axes [rad], and the
+/// stiffness `K` [N/m] and `κ` [N·m/rad] of the coupling. The force on the hand and the torque
+/// about the tool's origin are those of spring and damper,
+///
+/// ```text
+/// F = −K v − B (u_device − u_tool)        τ = −κ ω − β (Ω_device − Ω_tool)
+/// ```
+///
+/// with the velocities `u` [m/s] and `Ω` [rad/s] that the device says, and those of the tool from
+/// its last two poses; the damper acts in contact alone and never makes the hand be pulled in. The
+/// stiffness of a body's [`Surface`](crate::Surface) is not part of it: rigid bodies meet, and
+/// the coupling yields. Its friction is.
+///
+/// # What is promised
+///
+/// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is
+///   looked at dips deeper than its radius, or, without one, than 1e-3 of the tool's reach; at
+///   rest its ball is outside up to 1e-9 of the size of the scene.
+/// - *It lags, if it must.* A tick takes six turns at most, and stops where the next motion is
+///   below a thousandth of the device's; the next tick goes on from there.
+/// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
+///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].
+///
+/// A body that moves is not followed on its way: it pushes the tool out from where it is after
+/// the tick. So it should move less in a tick than half of what it is thick.
+///
+/// # Examples
+///
+/// A ball pressed 2 mm into the ground:
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::HalfSpace};
+/// use palpate_haptics::{Bodies, Shell, Tool, ToolOptions, ToolState};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+/// let mut bodies = Bodies::from(ground);
+/// let options = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
+/// let mut tool = Tool::new(Shell::ball(0.0625)?, options)?;
+/// let at = |y| ToolState::at_rest(Pose::translation(Vector([0.0, y, 0.0])));
+/// tool.step(&mut bodies, &at(0.1));
+/// let touch = tool.step(&mut bodies, &at(0.0625 - 0.002));
+///
+/// assert!((touch.force - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
+/// assert!((touch.pose.translation - Vector([0.0, 0.0625, 0.0])).norm() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tool<const D: usize> {
+    shell: Shell<D>,
+    options: ToolOptions,
+    /// The angular stiffness of the coupling [N·m/rad].
+    angular_stiffness: f64,
+    scan: Scan<D>,
+    settler: Settler<D>,
+    /// Where the tool is; none before the first tick.
+    pose: Option<Pose<D>>,
+    /// The part of the force that is given, in [0, 1].
+    rise: f64,
+    touch: ToolTouch<D>,
+    events: Vec<Event>,
+    tick: u64,
+    /// The least radius of the shell's points [m].
+    radius: f64,
+}
+
+impl<const D: usize> Tool<D> {
+    /// A tool that starts where the device first is.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if a number of the options breaks its rule.
+    pub fn new(shell: Shell<D>, options: ToolOptions) -> Result<Self, HapticsError> {
+        let stiffness = positive("stiffness", options.stiffness, "N/m")?;
+        let natural = 0.5 * stiffness * shell.reach() * shell.reach();
+        let angular_stiffness = options.angular_stiffness.unwrap_or(natural);
+        let angular_stiffness = positive("angular_stiffness", angular_stiffness, "N·m/rad")?;
+        options.check()?;
+        let radii = shell.points().iter().map(|point| point.radius);
+        Ok(Self {
+            angular_stiffness,
+            scan: Scan::new(&shell),
+            settler: Settler::new(shell.points().len()),
+            pose: None,
+            rise: 1.0,
+            touch: ToolTouch::new(shell.points().len()),
+            events: Vec::with_capacity(MOST_EVENTS),
+            tick: 0,
+            radius: radii.fold(f64::INFINITY, f64::min),
+            shell,
+            options,
+        })
+    }
+
+    /// What it touches with.
+    #[must_use]
+    pub fn shell(&self) -> &Shell<D> {
+        &self.shell
+    }
+
+    /// How it hangs on the hand.
+    #[must_use]
+    pub fn options(&self) -> &ToolOptions {
+        &self.options
+    }
+
+    /// The tool after the last tick.
+    #[must_use]
+    pub fn touch(&self) -> &ToolTouch<D> {
+        &self.touch
+    }
+
+    /// What happened in the last tick; the tool counts as contact point 0.
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Forgets what is known of the bodies: the next tick touches other ones.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn forget_bodies(&mut self) {
+        self.scan.forget();
+    }
+
+    /// One tick: moves the tool as far towards `device` as `bodies` let it, and gives the force
+    /// and torque on the hand. [`Bodies::reactions`] then says what was done to each body.
+    ///
+    /// A body that moved pushes the tool out of its way. A tool that does not get out of the
+    /// bodies, since it starts within them or one moved far over it, touches nothing until it
+    /// is out; then its force rises over [`ToolOptions::rise_time`]. A device pose that is not
+    /// finite moves nothing and touches nothing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; at
+    /// most [`ToolOptions::budget`] evaluations.
+    pub fn step(&mut self, bodies: &mut Bodies<D>, device: &ToolState<D>) -> &ToolTouch<D> {
+        self.events.clear();
+        let (mut list, mut reactions) = bodies.take_scratch();
+        if device.is_usable() {
+            self.follow(bodies, (&mut list, &mut reactions), device);
+        } else {
+            self.touch.lose();
+        }
+        bodies.put_back((list, reactions));
+        bodies.settle();
+        self.tick += 1;
+        &self.touch
+    }
+
+    fn follow(
+        &mut self,
+        bodies: &Bodies<D>,
+        (list, reactions): (&mut Vec<u32>, &mut [Reaction<D>]),
+        device: &ToolState<D>,
+    ) {
+        let start = self.pose.unwrap_or(device.pose);
+        let motion = Twist::between(&start, &device.pose);
+        let reach = self.shell.reach();
+        let nearby = if bodies.bodies().len() < FEW {
+            bodies.everything()
+        } else {
+            let way = WAYS * motion.way(reach);
+            bodies.nearby((start.translation, reach + way), list)
+        };
+        if nearby.has_moved() {
+            self.scan.forget();
+        }
+        let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
+        let lengths = self.lengths(&nearby, &start, (&motion, moved));
+        self.scan.begin(&self.shell, self.options.budget);
+        let parts = (&self.shell, &mut self.scan, &nearby);
+        self.settler.settle(parts, (start, device.pose), lengths);
+        let rest = &self.settler.rest;
+        if self.pose.is_none() && rest.pose != device.pose {
+            // It was placed.
+            self.rise = if rest.pushes.is_empty() { 1.0 } else { 0.0 };
+        }
+        if !rest.is_outside {
+            self.rise = 0.0;
+        }
+        let before = self.pose.unwrap_or(rest.pose);
+        self.pose = Some(rest.pose);
+        self.write_touch(device, &before);
+        self.react(&nearby, reactions);
+    }
+
+    /// The lengths that follow from bodies, tool and motion.
+    fn lengths(
+        &self,
+        nearby: &Nearby<'_, D>,
+        start: &Pose<D>,
+        (motion, moved): (&Twist<D>, f64),
+    ) -> Lengths {
+        let reach = self.shell.reach();
+        let way = motion.way(reach);
+        let extent = start.translation.norm() + reach + way;
+        let place = (*nearby, Pierced::default());
+        let sampler = Sampler::new(place, self.radius, 0, (extent, way.max(reach)));
+        let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
+        let skin = sampler.skin().max(SKIN * reach);
+        let horizon = LIKELY * moved + skin;
+        let tolerance = sampler.tolerance();
+        let still = (AT_REST * moved).max(tolerance);
+        Lengths { unit, tolerance, still, skin, horizon }
+    }
+
+    /// What is felt.
+    fn write_touch(&mut self, device: &ToolState<D>, before: &Pose<D>) {
+        let (rest, options) = (&self.settler.rest, &self.options);
+        let touch = &mut self.touch;
+        let was = touch.body.filter(|_| touch.contact);
+        touch.device = device.pose;
+        touch.pose = rest.pose;
+        touch.contact = rest.is_outside && !rest.pushes.is_empty();
+        touch.is_slipping = touch.contact && self.settler.is_slipping;
+        touch.is_covered = !rest.is_outside;
+        touch.evaluations = self.scan.evaluations();
+        touch.points_known = rest.known;
+        let levels = self.scan.levels();
+        let finest = levels.checked_sub(1).and_then(|last| self.shell.levels.get(last));
+        touch.resolution = match finest {
+            Some(end) if rest.is_outside => self.shell.resolution(*end),
+            _ => f64::INFINITY,
+        };
+        touch.is_degraded = levels < self.shell.levels.len();
+        touch.contacts.clear();
+        if touch.contact {
+            for push in &rest.pushes {
+                let point = self.shell.points().get(push.point as usize);
+                let radius = point.map_or(0.0, |point| point.radius);
+                touch.contacts.push(Contact {
+                    point_a: push.centre - push.normal * radius,
+                    point_b: push.centre - push.normal * (radius + push.gap),
+                    normal: -push.normal,
+                    gap: push.gap,
+                    id: u64::from(push.body) << 32 | u64::from(push.point),
+                });
+            }
+        }
+        let hardest = rest.pushes.iter().fold(None, |hardest, push| match hardest {
+            Some((_, most)) if most >= push.push => hardest,
+            _ => Some((push, push.push)),
+        });
+        touch.body = hardest.filter(|_| touch.contact).map(|(push, _)| push.body);
+
+        let stretch = Twist::between(&device.pose, &rest.pose);
+        let moved = Twist::between(before, &rest.pose);
+        touch.velocity = moved.linear * options.rate;
+        let spins = moved.angular * options.rate;
+        (touch.force, touch.torque) = if touch.contact {
+            let force = Motion {
+                spring: stretch.linear * options.stiffness,
+                damper: (device.velocity - touch.velocity) * -options.damping,
+            };
+            let torque = Motion {
+                spring: stretch.angular * self.angular_stiffness,
+                damper: (device.angular_velocity - spins) * -options.angular_damping,
+            };
+            let rise = self.rise;
+            self.rise = (rise + 1.0 / (options.rate * options.rise_time)).min(1.0);
+            let force = damped(&not_pulling(force), options.max_force) * rise;
+            (force, damped(&not_pulling(torque), options.max_torque) * rise)
+        } else {
+            (Vector::ZERO, Vector::ZERO)
+        };
+        if !touch.contact && rest.is_outside {
+            self.rise = 1.0;
+        }
+        let is = touch.body;
+        if was != is {
+            let none = Event { tick: self.tick, point: 0, body: 0, kind: EventKind::Leave };
+            if let Some(body) = was {
+                self.events.push(Event { body, ..none });
+            }
+            if let (Some(body), Some((push, _))) = (is, hardest) {
+                let speed = speed_at(push, device);
+                self.events.push(Event { body, kind: EventKind::Touch { speed }, ..none });
+            }
+        }
+    }
+
+    /// Gives the bodies what the hand gets, the other way: to each what its contacts push, and
+    /// its share of what the damper and the limits change.
+    fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {
+        if !self.touch.contact {
+            return;
+        }
+        let pushes = &self.settler.rest.pushes;
+        let origin = self.touch.pose.translation;
+        let stiffness = self.options.stiffness * self.rise;
+        let mut force = self.touch.force;
+        let mut torque = self.touch.torque;
+        let whole: f64 = pushes.iter().map(|push| push.push).sum();
+        for push in pushes {
+            let pushed = push.normal * (stiffness * push.push);
+            force -= pushed;
+            torque -= cross(in_space(push.centre - origin), in_space(pushed));
+        }
+        for push in pushes {
+            let place = nearby.body(push.body).map(|body| body.world_from_body().translation);
+            let reaction = reactions.get_mut(push.body as usize);
+            let Some((place, reaction)) = place.zip(reaction) else { continue };
+            let share = push.push / whole;
+            reaction.add(push.normal * (-stiffness * push.push), push.centre - place);
+            reaction.add(force * -share, origin - place);
+            reaction.torque -= torque * share;
+        }
+    }
+}
+
+/// The same with a damper that at most takes away what the spring pushes.
+fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
+    let Some(along) = motion.spring.normalized() else {
+        return Motion { damper: Vector::ZERO, ..motion };
+    };
+    let pulls = -(motion.damper.dot(along) + motion.spring.norm());
+    let damper = if pulls > 0.0 { motion.damper + along * pulls } else { motion.damper };
+    Motion { damper, ..motion }
+}
+
+/// How fast the device brings a contact to its body, along the normal [m/s].
+fn speed_at<const D: usize>(push: &Push<D>, device: &ToolState<D>) -> f64 {
+    let arm = in_space(push.centre - device.pose.translation);
+    let velocity = in_space(device.velocity) + cross(device.angular_velocity, arm);
+    (-velocity.dot(in_space(push.normal))).max(0.0)
+}
