@@ -220,7 +220,7 @@ impl<const D: usize> Tool<D> {
     fn follow(
         &mut self,
         bodies: &Bodies<D>,
-        (list, reactions): (&mut Vec<u32>, &mut [Reaction<D>]),
+        (list, reactions): (&mut [u32], &mut [Reaction<D>]),
         device: &ToolState<D>,
     ) {
         let start = self.pose.unwrap_or(device.pose);
