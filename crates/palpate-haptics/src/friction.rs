@@ -24,6 +24,10 @@ use crate::surface::Friction;
 /// of it tells of a crease, of which one wall does not know how hard it is pressed.
 const ONE_WALL: f64 = 1e-3;
 
+/// Part of its way that a proxy goes towards a wall if it was not there before: along a crease
+/// that bends it goes by less.
+const BESIDE: f64 = 0.05;
+
 /// How a surface holds a proxy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Hold {
@@ -73,11 +77,16 @@ pub(crate) fn drag<const D: usize>(
     if !rest.contact || along.norm() <= ONE_WALL * pull.norm() {
         return (rest, Hold::Slip);
     }
-    // A crease: all its walls together press with what keeps a proxy without friction there.
-    let rest = slide(sampler, start, normal, (device, motion));
-    let depth = (rest.sample.point - device).norm();
+    // A crease. It holds a proxy that was in it; one that was beside it, on one wall, slid in.
+    let Some(across) = along.normalized() else { return (rest, Hold::Slip) };
     let way = start.point - rest.sample.point;
-    match held_back(device, way, depth, (most, friction.slipping)) {
+    let beside = way.dot(rest.normal).max(way.dot(across));
+    if beside > sampler.tolerance().max(BESIDE * way.norm()) {
+        return (rest, Hold::Slip);
+    }
+    // All its walls together press with the part of the stretch across it.
+    let pressed = rest.normal * stretch.dot(rest.normal) + across * stretch.dot(across);
+    match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
         None => (stuck, Hold::Stick),
         Some(goal) => (slide(sampler, rest.sample, rest.normal, (goal, motion)), Hold::Slip),
     }

@@ -8,9 +8,7 @@ mod common;
 
 use common::{ball, body, cuboid};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
-use palpate_haptics::{
-    Bodies, Body, PointState, Probe, Servo, ServoOptions, Surface, Touch,
-};
+use palpate_haptics::{Bodies, Body, PointState, Probe, Servo, ServoOptions, Surface, Touch};
 
 const STIFFNESS: f64 = 512.0;
 
