@@ -17,9 +17,13 @@ use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
-/// this part. No hand can tell a thousand times as much; but what is left points against the
-/// motion, and a round of 0.1 m at 3 N would gain 3e-8 J of it if it were 1e-5.
-const AT_REST: f64 = 1e-7;
+/// this part: 0.0006 degrees, a thousandth of what a hand can tell.
+const AT_REST: f64 = 1e-5;
+
+/// It rests when that move is less than this part of the hand's own, too. What is left of it
+/// points against the motion, and slow rounds would gain up to 3e-8 J of it; now it is that
+/// part of what holding a force for a tick errs by.
+const LEFT_TO_GO: f64 = 1e-3;
 
 /// A move longer than this many times what is certain from the surface is made through the
 /// air: up, along and down again.
@@ -169,7 +173,8 @@ impl<const D: usize> Slide<D> {
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
         // up for on a flat wall, which needs one evaluation and no more.
-        let at_rest = sampler.tolerance() + if is_new { 0.0 } else { AT_REST * stretch };
+        let left = if is_new { 0.0 } else { (AT_REST * stretch).min(LEFT_TO_GO * self.motion) };
+        let at_rest = sampler.tolerance() + left;
         if is_outside && (goal - here.point).norm() <= at_rest {
             if !self.planes.forget_sunk(at_rest) {
                 return Turn::Resting;

@@ -106,7 +106,7 @@ fn gains_at_most<const D: usize>(
     bodies: &Bodies<D>,
     ((radius, width), loops): ((f64, f64), u64),
 ) {
-    cases(loops, |u| {
+    cases(2 * loops, |u| {
         let mut servo = servo(bodies.clone(), radius);
         // Down the field to the surface.
         let mut centre: Vector<f64, D> = common::direction(u)? * 0.1;
