@@ -69,3 +69,34 @@ fn on_smooth_shapes_of_the_plane_the_force_is_continuous() {
     is_continuous("a disc", &ball::<2>(0.05), (0.0, 0.05));
     is_continuous("a rectangle", &cuboid([0.05, 0.07]), (0.008, 0.008));
 }
+
+#[test]
+fn a_free_tick_costs_one_evaluation_and_a_sliding_one_at_most_four() {
+    let cup = cuboid([0.08; 3]).difference([ball(0.03)]).unwrap();
+    for shape in [ball(0.05), torus(0.04, 0.015), cuboid([0.06; 3]), cup] {
+        let bodies = body(&shape, Surface::smooth(STIFFNESS, 0.0).unwrap());
+        let mut servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
+        let (mut free, mut sliding) = ((0, 0), (0, 0));
+        for tick in 0..8000 {
+            // Round the shape at 0.2 m/s, in and out of it.
+            let angle = 0.004 * f64::from(tick);
+            let (sin, cos) = angle.sin_cos();
+            let out = Vector([cos, 0.3 * (0.31 * angle).sin(), sin]).normalized().unwrap();
+            let mut device = out * 0.05;
+            for _ in 0..20 {
+                let (distance, gradient) = shape.distance_gradient(device);
+                let level = 0.01 * (0.7 * angle).sin() + 0.009;
+                device -= gradient * (distance - level);
+            }
+            let touch = servo.step(&[PointState::at_rest(device)])[0];
+            let (ticks, evaluations) = if touch.contact { &mut sliding } else { &mut free };
+            *ticks += 1;
+            *evaluations += touch.evaluations;
+        }
+        let mean = |(ticks, evaluations): (u32, u32)| f64::from(evaluations) / f64::from(ticks);
+        assert!(free.0 > 500 && sliding.0 > 500, "{free:?} {sliding:?}");
+        // Past an edge nearby, or away from a surface, a flight takes another look.
+        assert!(mean(free) < 1.05, "{free:?}");
+        assert!(mean(sliding) <= 4.0, "{sliding:?}");
+    }
+}

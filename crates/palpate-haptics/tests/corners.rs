@@ -8,7 +8,7 @@ mod common;
 
 use arbitrary::Unstructured;
 use common::{body, cases, cuboid, direction, unit};
-use palpate_field::{Point, Pose, Shape, Vector};
+use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{Material, PointState, Probe, Servo, ServoOptions, Surface};
 
 /// The radius of the scene [m].

@@ -100,7 +100,7 @@ fn place<const D: usize>(i: usize) -> Point<D> {
 /// Where body `i` is at a tick: every other one goes to and fro.
 pub(crate) fn pose<const D: usize>(i: usize, tick: u32, scale: f64) -> Pose<D> {
     let mut at = place::<D>(i);
-    if i % 2 == 0 {
+    if i.is_multiple_of(2) {
         at[i % D] += 0.01 * wave(f64::from(tick) / 900.0 + 0.1 * i as f64);
     }
     Pose::translation(at * scale)
