@@ -37,6 +37,8 @@ pub struct Body<const D: usize> {
     pub(crate) is_below_ball: bool,
     /// Where something is proven of its field, in the world; everywhere if none.
     pub(crate) region: Option<BoundingBall<D>>,
+    /// The error of its distances in the world.
+    rounding: Rounding,
 }
 
 impl<const D: usize> Body<D> {
@@ -54,6 +56,7 @@ impl<const D: usize> Body<D> {
     fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
         let identity = Pose::identity();
         let is_below_ball = !shape.promise().above_bounds;
+        let rounding = shape.promise().rounding;
         let mut body = Self {
             shape,
             surface,
@@ -65,6 +68,7 @@ impl<const D: usize> Body<D> {
             ball: None,
             is_below_ball,
             region: None,
+            rounding,
         };
         body.find_balls();
         body
@@ -130,10 +134,22 @@ impl<const D: usize> Body<D> {
         self.world_from_body.transform_point(in_body)
     }
 
-    /// A point of the world before and after this tick, as the body sees it.
-    pub(crate) fn way_in_body(&self, point: Point<D>) -> [Point<D>; 2] {
-        [self.world_from_before.inverse(), self.body_from_world]
-            .map(|body_from_world| body_from_world.transform_point(point))
+    /// The way of a point of the world in this tick, from one place to another, as the body
+    /// sees it; none if it stays out of reach of the body by more than `margin` [m].
+    pub(crate) fn way_in_body(
+        &self,
+        [from, to]: [Point<D>; 2],
+        margin: f64,
+    ) -> Option<[Point<D>; 2]> {
+        let from = self.world_from_before.inverse().transform_point(from);
+        let to = self.body_from_world.transform_point(to);
+        let Some(bounds) = self.shape.promise().bounds else { return Some([from, to]) };
+        let (way, to_centre) = (to - from, bounds.ball.centre - from);
+        let part = (way.dot(to_centre) / way.dot(way)).clamp(0.0, 1.0);
+        let nearest = if part > 0.0 { way * part } else { Vector::ZERO };
+        // Written so that NaN is swept.
+        let is_far = (to_centre - nearest).norm() > bounds.ball.radius + margin;
+        (!is_far).then_some([from, to])
     }
 
     /// A point of the world in the body's coordinates.
@@ -145,6 +161,16 @@ impl<const D: usize> Body<D> {
     #[inline]
     pub(crate) fn above_ball(&self, point: Point<D>) -> f64 {
         self.ball.map_or(f64::NEG_INFINITY, |ball| (point - ball.centre).norm() - ball.radius)
+    }
+
+    /// Likewise from all that the ball met on its way in this tick [m].
+    fn above_way(&self, point: Point<D>) -> f64 {
+        let Some(now) = self.ball.filter(|_| self.has_moved) else {
+            return self.above_ball(point);
+        };
+        let before = self.world_from_before.transform_point(self.in_body(now.centre));
+        let all = now.union(&BoundingBall { centre: before, ..now });
+        (point - all.centre).norm() - all.radius
     }
 
     /// Its field at a point of the world [m].
@@ -184,14 +210,19 @@ impl<const D: usize> Body<D> {
         // Distances that are exact or bounds need no constant.
         let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
         self.region = region.map(placed);
-    }
-
-    /// The error of its distances in the world.
-    fn rounding(&self) -> Rounding {
         let far = self.world_from_body.translation.norm();
         let way = if self.is_placed { PLACE_ROUNDINGS } else { 0.0 };
-        let way = Rounding::of_operations(way, far);
-        self.shape.promise().rounding.at(1.0, far).plus(&way)
+        self.rounding = promise.rounding.at(1.0, far).plus(&Rounding::of_operations(way, far));
+    }
+
+    /// The error of its distances at points at most `extent` from the origin [m]; nothing if
+    /// it is farther away than they are: what is far from it need not know how far exactly.
+    #[inline]
+    pub(crate) fn rounding_within(&self, extent: f64) -> f64 {
+        match self.ball {
+            Some(ball) if ball.centre.norm() - ball.radius > 2.0 * extent => 0.0,
+            _ => self.rounding.within(extent),
+        }
     }
 }
 
@@ -231,7 +262,6 @@ pub struct Bodies<const D: usize> {
     /// The radius of the ball that held all bodies at first [m]; none if one has no bounds.
     pub(crate) size: Option<f64>,
     pub(crate) lipschitz: f64,
-    pub(crate) rounding: Rounding,
     pub(crate) has_regions: bool,
     pub(crate) has_moved: bool,
     /// What was done to each in the last tick.
@@ -250,10 +280,8 @@ impl<const D: usize> Bodies<D> {
     pub fn new(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
         let first = bodies.first().ok_or(HapticsError::NoBody)?;
         let mut bounds = first.ball;
-        let mut rounding = first.rounding();
         for body in bodies.iter().skip(1) {
             bounds = bounds.zip(body.ball).map(|(all, ball)| all.union(&ball));
-            rounding = rounding.or(&body.rounding());
         }
         let lipschitz = bodies.iter().map(|body| body.shape.promise().lipschitz);
         // Beyond what is near, the way there bounds the field: it has slope one.
@@ -262,7 +290,7 @@ impl<const D: usize> Bodies<D> {
         let has_regions = bodies.iter().any(|body| body.region.is_some());
         let (reactions, list) = scratch(bodies.len());
         let has_moved = false;
-        Ok(Self { bodies, size, lipschitz, rounding, has_regions, has_moved, reactions, list })
+        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, list })
     }
 
     /// The bodies.
@@ -285,7 +313,6 @@ impl<const D: usize> Bodies<D> {
             return;
         }
         body.place(world_from_body);
-        self.rounding = self.rounding.or(&body.rounding());
         self.has_moved = true;
     }
 
@@ -337,7 +364,7 @@ impl<const D: usize> Bodies<D> {
     ) -> Nearby<'a, D> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(&self.bodies) {
-            let away = body.above_ball(centre);
+            let away = body.above_way(centre);
             match list.get_mut(count) {
                 // Written so that NaN is near.
                 Some(place)
@@ -362,7 +389,6 @@ impl<const D: usize> From<Shape<D>> for Bodies<D> {
         Self {
             size: body.ball.map(|ball| ball.radius),
             lipschitz: promise.lipschitz,
-            rounding: body.rounding(),
             has_regions: body.region.is_some(),
             has_moved: false,
             reactions,

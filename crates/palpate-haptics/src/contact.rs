@@ -17,8 +17,13 @@ use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
-/// this part: 0.002 degrees, a few thousandths of what a hand can tell.
-const AT_REST: f64 = 3e-5;
+/// this part: 0.0006 degrees, a thousandth of what a hand can tell.
+const AT_REST: f64 = 1e-5;
+
+/// It rests when that move is less than this part of the hand's own, too. What is left of it
+/// points against the motion, and slow rounds would gain up to 3e-8 J of it; now it is that
+/// part of what holding a force for a tick errs by.
+const LEFT_TO_GO: f64 = 1e-3;
 
 /// A move longer than this many times what is certain from the surface is made through the
 /// air: up, along and down again.
@@ -55,19 +60,6 @@ const CORNERED_TRUST: f64 = 1e-4;
 /// `1 − 1/8` a step at worst, and a bend that was misjudged throws the proxy no further.
 const MOST_GAIN: f64 = 8.0;
 
-/// The most it is lengthened or shortened by the bend that the tick before saw.
-const MOST_NEW_GAIN: f64 = 1.5;
-
-/// What was seen of the surface before.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<const D: usize> {
-    /// The unit normal where the proxy is, to be used where the field has none.
-    pub(crate) normal: Vector<f64, D>,
-    /// A point of the surface where the proxy was before, and the normal there, which tell how
-    /// the surface bends.
-    pub(crate) before: Option<(Point<D>, Vector<f64, D>)>,
-}
-
 /// Where a tick at a surface ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rest<const D: usize> {
@@ -91,7 +83,7 @@ pub(crate) struct Rest<const D: usize> {
 pub(crate) fn slide<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     start: Sample<D>,
-    Seen { normal, before }: Seen<D>,
+    normal: Vector<f64, D>,
     (device, motion): (Point<D>, f64),
 ) -> Rest<D> {
     let mut slide = Slide {
@@ -101,8 +93,7 @@ pub(crate) fn slide<const D: usize>(
         failed_lifts: 0,
         trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
         motion,
-        last: before,
-        is_first: true,
+        last: None,
     };
     let mut here = start;
     if here.gradient.is_none() {
@@ -127,7 +118,6 @@ pub(crate) fn slide<const D: usize>(
             Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
                 slide.trust *= 0.125;
                 (slide.planes, slide.last) = (Planes::new(), None);
-                slide.is_first = true;
                 slide.failed_lifts = MOST_FAILED_LIFTS;
                 here = slide.best;
             }
@@ -153,8 +143,6 @@ struct Slide<const D: usize> {
     trust: f64,
     /// Where the last tangent plane touched, and its normal.
     last: Option<(Point<D>, Vector<f64, D>)>,
-    /// No plane was seen in this tick.
-    is_first: bool,
 }
 
 enum Turn<const D: usize> {
@@ -174,18 +162,19 @@ impl<const D: usize> Slide<D> {
         device: Point<D>,
     ) -> Turn<D> {
         let (normal, gap) = sampler.tangent(&here, self.normal);
-        let is_new = std::mem::take(&mut self.is_first);
+        let is_new = self.last.is_none();
         self.normal = normal;
         self.planes.learn(here.point, normal, gap);
         let Some(goal) = self.planes.closest(device) else { return Turn::Cornered };
         let foot = here.point - normal * gap;
-        let mut goal = self.over_the_bend(foot, normal, (goal, device), is_new);
+        let mut goal = self.over_the_bend(foot, normal, goal, device);
 
         let stretch = (device - here.point).norm();
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
         // up for on a flat wall, which needs one evaluation and no more.
-        let at_rest = sampler.tolerance() + if is_new { 0.0 } else { AT_REST * stretch };
+        let left = if is_new { 0.0 } else { (AT_REST * stretch).min(LEFT_TO_GO * self.motion) };
+        let at_rest = sampler.tolerance() + left;
         if is_outside && (goal - here.point).norm() <= at_rest {
             if !self.planes.forget_sunk(at_rest) {
                 return Turn::Resting;
@@ -230,8 +219,8 @@ impl<const D: usize> Slide<D> {
         &mut self,
         foot: Point<D>,
         normal: Vector<f64, D>,
-        (goal, device): (Point<D>, Point<D>),
-        is_new: bool,
+        goal: Point<D>,
+        device: Point<D>,
     ) -> Point<D> {
         let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else {
             return goal;
@@ -243,10 +232,8 @@ impl<const D: usize> Slide<D> {
         let side = goal - foot;
         let is_on_plane = normal.dot(side).abs() <= AT_REST * side.norm();
         let gain = 1.0 / (1.0 - curvature * depth);
-        // What was seen in the tick before is worth less: there may have been an edge between.
-        let trusted = if is_new { 1.0 / MOST_NEW_GAIN..MOST_NEW_GAIN } else { 0.0..MOST_GAIN };
-        if is_on_plane && depth > 0.0 && gain > 0.0 && trusted.start <= gain {
-            foot + side * gain.min(trusted.end)
+        if is_on_plane && depth > 0.0 && gain > 0.0 {
+            foot + side * gain.min(MOST_GAIN)
         } else {
             goal
         }

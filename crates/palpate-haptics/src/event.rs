@@ -86,10 +86,13 @@ pub struct Reaction<const D: usize> {
 impl<const D: usize> Reaction<D> {
     pub(crate) const NONE: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
 
-    /// Adds a force at a place `arm` from the body's origin.
+    /// Adds a force at a place `arm` from the body's origin, if it is finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
+        if !force.is_finite() {
+            return;
+        }
         self.force += force;
         let in_space = |v: Vector<f64, D>| -> [f64; 3] {
             std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0))

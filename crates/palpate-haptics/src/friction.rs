@@ -16,13 +16,17 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::contact::{Rest, Seen, slide};
+use crate::contact::{Rest, slide};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 
 /// Part of the stretch that lies along the surface where one wall alone holds the proxy. More
 /// of it tells of a crease, of which one wall does not know how hard it is pressed.
 const ONE_WALL: f64 = 1e-3;
+
+/// Part of its way that a proxy goes towards a wall if it was not there before: along a crease
+/// that bends it goes by less.
+const BESIDE: f64 = 0.05;
 
 /// How a surface holds a proxy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -43,17 +47,17 @@ pub(crate) enum Hold {
 /// evaluations.
 pub(crate) fn drag<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (start, seen): (Sample<D>, Seen<D>),
+    (start, normal): (Sample<D>, Vector<f64, D>),
     (device, motion): (Point<D>, f64),
     (friction, hold): (Friction, Hold),
 ) -> (Rest<D>, Hold) {
     let free = |sampler: &mut Sampler<'_, D>| {
-        (slide(sampler, start, seen, (device, motion)), Hold::None)
+        (slide(sampler, start, normal, (device, motion)), Hold::None)
     };
     if start.gradient.is_none() || friction.fixed <= 0.0 {
         return free(sampler);
     }
-    let (normal, gap) = sampler.tangent(&start, seen.normal);
+    let (normal, gap) = sampler.tangent(&start, normal);
     let stretch = start.point - device;
     let height = stretch.dot(normal);
     let depth = height - gap;
@@ -67,22 +71,24 @@ pub(crate) fn drag<const D: usize>(
     else {
         return (stuck, Hold::Stick);
     };
-    let rest = slide(sampler, start, seen, (goal, motion));
+    let rest = slide(sampler, start, normal, (goal, motion));
     let pull = rest.sample.point - goal;
     let along = pull - rest.normal * pull.dot(rest.normal);
     if !rest.contact || along.norm() <= ONE_WALL * pull.norm() {
         return (rest, Hold::Slip);
     }
-    // A crease: all its walls together press with what keeps a proxy without friction there.
-    let rest = slide(sampler, start, seen, (device, motion));
-    let depth = (rest.sample.point - device).norm();
+    // A crease. It holds a proxy that was in it; one that was beside it, on one wall, slid in.
+    let Some(across) = along.normalized() else { return (rest, Hold::Slip) };
     let way = start.point - rest.sample.point;
-    match held_back(device, way, depth, (most, friction.slipping)) {
+    let beside = way.dot(rest.normal).max(way.dot(across));
+    if beside > sampler.tolerance().max(BESIDE * way.norm()) {
+        return (rest, Hold::Slip);
+    }
+    // All its walls together press with the part of the stretch across it.
+    let pressed = rest.normal * stretch.dot(rest.normal) + across * stretch.dot(across);
+    match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
         None => (stuck, Hold::Stick),
-        Some(goal) => {
-            let seen = Seen { normal: rest.normal, before: None };
-            (slide(sampler, rest.sample, seen, (goal, motion)), Hold::Slip)
-        }
+        Some(goal) => (slide(sampler, rest.sample, rest.normal, (goal, motion)), Hold::Slip),
     }
 }
 

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Point, Rounding, Vector};
+use palpate_field::{Point, Vector};
 
 use crate::bodies::{Bodies, Body};
 
@@ -100,8 +100,9 @@ impl<'a, const D: usize> Nearby<'a, D> {
         self.bodies.size
     }
 
-    pub(crate) fn rounding(&self) -> &Rounding {
-        &self.bodies.rounding
+    /// The error of the field at points at most `extent` from the origin [m].
+    pub(crate) fn rounding_within(&self, extent: f64) -> f64 {
+        self.all().map(|(_, body)| body.rounding_within(extent)).fold(0.0, f64::max)
     }
 
     /// Whether any body moved in this tick.

@@ -17,7 +17,7 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Rest, Seen, slide};
+use crate::contact::{Rest, slide};
 use crate::error::{HapticsError, not_negative};
 use crate::friction::{Hold, drag};
 use crate::nearby::{Nearby, Pierced};
@@ -37,6 +37,10 @@ const WORTH_FLYING: f64 = 0.1;
 
 /// A body is met where its next safe step is below this part of a skin.
 const WORTH_ADVANCING: f64 = 0.01;
+
+/// A body that would carry the proxy to a place this many times as far from the origin leaves
+/// it behind: so far away, rounding would hide the walls that are here.
+const FARTHEST_CARRIED: f64 = 1e3;
 
 /// The ball that touches: the proxy's radius, and what a tick may cost.
 ///
@@ -153,8 +157,6 @@ pub struct Proxy<const D: usize> {
     /// The device point of the last tick [m].
     device: Point<D>,
     normal: Vector<f64, D>,
-    /// Where it touched in the tick before the last, and the normal there.
-    before: Option<(Point<D>, Vector<f64, D>)>,
     contact: bool,
     hold: Hold,
     pierced: Pierced,
@@ -172,7 +174,6 @@ impl<const D: usize> Proxy<D> {
             is_stale: false,
             device: Vector::ZERO,
             normal,
-            before: None,
             contact: false,
             hold: Hold::None,
             pierced: Pierced::default(),
@@ -228,22 +229,26 @@ impl<const D: usize> Proxy<D> {
         let last = self.at.map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
-            return Following { contact: false, ..self.following(last, false, 0) };
+            // What moves meanwhile is not where it was when the hand comes back.
+            self.is_stale |= nearby.has_moved();
+            let following = self.following(last, false, 0);
+            // Of bodies that were replaced, the number may be gone.
+            let body = nearby.body(following.body).map_or(0, |_| following.body);
+            return Following { contact: false, body, ..following };
         }
-        let carried = if nearby.has_moved() { self.carried(&nearby, last) } else { last };
+        let carried =
+            if nearby.has_moved() { self.carried(&nearby, [last, device]) } else { last };
         let extent = carried.norm().max(device.norm()) + 2.0 * self.probe.radius;
         let moved = if self.at.is_some() { (device - self.device).norm() } else { 0.0 };
         self.device = device;
         let moved = moved.max((carried - last).norm());
-        let motion = (device - carried).norm().max(moved);
         let Probe { radius, budget } = self.probe;
-        let mut sampler =
-            Sampler::new((nearby, self.pierced), radius, budget, (extent, motion));
+        let mut sampler = Sampler::new((nearby, self.pierced), radius, budget, extent);
 
         self.heal(&mut sampler);
         let mut is_pushed = false;
         if nearby.has_moved() && self.at.is_some() {
-            let pushed = self.pushed(&mut sampler, carried);
+            let pushed = self.pushed(&mut sampler, [last, carried]);
             is_pushed = pushed.is_some();
             let at = pushed.unwrap_or(carried);
             self.at = self.look_again(&mut sampler, at);
@@ -264,13 +269,6 @@ impl<const D: usize> Proxy<D> {
         };
         let goal = sampler.within_region(device);
         let (rest, hold) = self.pursue(&mut sampler, start, (goal, moved));
-        let stays = self.contact && rest.contact && !placed && !nearby.has_moved();
-        // A proxy that sticks says nothing new of the surface.
-        if !stays {
-            self.before = None;
-        } else if rest.sample.point != start.point {
-            self.before = Some((start.point, self.normal));
-        }
         self.at = Some(rest.sample);
         self.normal = rest.normal;
         self.contact = rest.contact;
@@ -290,11 +288,16 @@ impl<const D: usize> Proxy<D> {
         }
     }
 
-    /// Where the body that is touched carries the proxy.
-    fn carried(&mut self, nearby: &Nearby<'_, D>, last: Point<D>) -> Point<D> {
+    /// Where the body that is touched carries the proxy: away from `last`, but not out of the
+    /// neighbourhood of it, the device and the bodies.
+    fn carried(&mut self, nearby: &Nearby<'_, D>, [last, device]: [Point<D>; 2]) -> Point<D> {
         let touched = self.at.filter(|_| self.contact).and_then(|at| nearby.body(at.body));
         let Some(body) = touched.filter(|body| body.has_moved()) else { return last };
         let carried = body.carried(last);
+        let here = last.norm().max(device.norm()).max(nearby.size().unwrap_or(0.0));
+        if carried.norm() > FARTHEST_CARRIED * here {
+            return last;
+        }
         self.normal = body.carried(last + self.normal) - carried;
         carried
     }
@@ -325,17 +328,23 @@ impl<const D: usize> Proxy<D> {
         }
     }
 
-    /// Where bodies that moved push a proxy at `point` to; none if none does.
-    fn pushed(&self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Option<Point<D>> {
+    /// Where other bodies stop a proxy that its body carries from one place to another, or
+    /// push it to; none if it meets none.
+    fn pushed(
+        &self,
+        sampler: &mut Sampler<'_, D>,
+        [from, to]: [Point<D>; 2],
+    ) -> Option<Point<D>> {
         let nearby = *sampler.nearby();
         let touched = self.at.filter(|_| self.contact).map(|at| at.body);
+        let is_carried = from != to;
         let mut pushed = None;
         for (index, body) in nearby.all() {
-            if !body.has_moved() || touched == Some(index) || self.level(index) > 0 {
+            let is_still = !body.has_moved() && !is_carried;
+            if is_still || touched == Some(index) || self.level(index) > 0 {
                 continue;
             }
-            let at = pushed.unwrap_or(point);
-            if let Some(met) = met(sampler, body, at) {
+            if let Some(met) = met(sampler, body, [from, pushed.unwrap_or(to)]) {
                 pushed = Some(met);
             }
         }
@@ -384,12 +393,11 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / length)
             } else {
-                let before = self.before.filter(|_| was_held);
-                let seen = Seen { normal: self.normal, before };
+                let from = (here, self.normal);
                 let friction = self.friction(sampler, &here, device).filter(|_| was_held);
                 return match friction {
-                    Some(friction) => drag(sampler, (here, seen), (device, moved), friction),
-                    None => (slide(sampler, here, seen, (device, moved)), Hold::None),
+                    Some(friction) => drag(sampler, from, (device, moved), friction),
+                    None => (slide(sampler, from.0, from.1, (device, moved)), Hold::None),
                 };
             };
             was_held = false;
@@ -416,18 +424,20 @@ impl<const D: usize> Proxy<D> {
     }
 }
 
-/// Where a body that moved meets a proxy at `point` on its way and takes it to; none if it
-/// does not meet it.
+/// Where a body meets a proxy on its way in this tick, and takes it to; none if it does not
+/// meet it.
 ///
-/// As the body sees it, the proxy moves: along the straight line between where it was and
-/// where it is. Conservative advancement along it (Mirtich 1996) misses nothing; it ends, and
-/// the body takes the proxy along, where it is nearly there.
+/// As the body sees it, the proxy moves along a straight line. Conservative advancement along
+/// it (Mirtich 1996) misses nothing; it ends, and the body takes the proxy along, where it is
+/// nearly there. What stays beside the ball around a body costs no evaluation: twenty bodies
+/// that move would leave none for the one that is touched.
 fn met<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     body: &Body<D>,
-    point: Point<D>,
+    [before, point]: [Point<D>; 2],
 ) -> Option<Point<D>> {
-    let [from, to] = body.way_in_body(point);
+    let margin = sampler.radius() + sampler.skin();
+    let [from, to] = body.way_in_body([before, point], margin)?;
     let way = to - from;
     let length = way.norm();
     let lipschitz = body.shape().promise().lipschitz.max(1.0);

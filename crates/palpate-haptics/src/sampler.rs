@@ -69,16 +69,16 @@ pub(crate) struct Sampler<'a, const D: usize> {
 
 impl<'a, const D: usize> Sampler<'a, D> {
     /// For a probe of `radius` [m] that moves between points at most `extent` [m] from the
-    /// origin and `motion` [m] apart.
+    /// origin.
     pub(crate) fn new(
         (nearby, pierced): (Nearby<'a, D>, Pierced),
         radius: f64,
         budget: u32,
-        (extent, motion): (f64, f64),
+        extent: f64,
     ) -> Self {
         // Bodies without bounds have no size; the place where they are touched has.
-        let size = nearby.size().unwrap_or(motion.max(extent));
-        let rounding = ROUNDINGS * nearby.rounding().within(extent);
+        let size = nearby.size().unwrap_or(extent);
+        let rounding = ROUNDINGS * nearby.rounding_within(extent);
         let tolerance = f64::max(TOLERANCE * size, rounding);
         let skin =
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };

@@ -7,11 +7,12 @@
 mod common;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use common::wild::{bodies, servo, step};
 use common::{ball, cuboid, torus};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, HandoffOptions, Material, PointState, Progress, Servo, ServoOptions, Shell,
-    Surface, Tool, ToolOptions, ToolState, Tour, handoff,
+    Bodies, Body, DeviceProfile, HandoffOptions, Material, PointState, Progress, Protection,
+    Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, Tour, handoff,
 };
 
 /// Aborts on an allocation where none is allowed.
@@ -118,4 +119,43 @@ fn a_step_of_a_tool_allocates_and_frees_nothing() {
         });
     }
     assert!(touched > 1000, "{touched}");
+}
+
+/// Twenty bodies that move, with textures, magnets, layers that give way and rings, guides on
+/// each of 24 points, safety chains and estimated velocities, and scenes swapped in between.
+#[test]
+fn a_step_with_everything_at_once_allocates_and_frees_nothing() {
+    const POINTS: usize = 24;
+    let mut servo = servo::<3>(20, POINTS, 1.0);
+    let profile = DeviceProfile {
+        max_force: 4.0,
+        continuous_force: 1.5,
+        max_force_rate: 2000.0,
+        mass: 0.05,
+        least_damping: 0.3,
+        friction: 0.1,
+        encoder_step: 1e-5,
+        ..DeviceProfile::unlimited("everything")
+    };
+    servo.protect(&Protection::new(profile)).unwrap();
+    let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
+    let mut next = Some(bodies::<3>(20, 1.0));
+    let (mut contacts, mut events) = (0, 0);
+    for tick in 0..3000 {
+        let old = assert_no_alloc(|| {
+            servo.set_late(tick % 97 == 0);
+            if tick % 500 == 250 {
+                servo.stop(tick % 1000 == 250);
+            }
+            step(&mut servo, &mut states, (tick, 1.0));
+            match next.take() {
+                Some(bodies) if tick % 300 == 0 => Some(servo.replace_bodies(bodies)),
+                other => other,
+            }
+        });
+        next = old;
+        contacts += servo.touches().iter().filter(|touch| touch.contact).count();
+        events += servo.events().len();
+    }
+    assert!(contacts > 1000 && events > 50, "{contacts} contacts, {events} events");
 }

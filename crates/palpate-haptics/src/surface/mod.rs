@@ -36,9 +36,11 @@ pub(crate) use strata::{Friction, Strata};
 /// - The damper `B` acts on the approach alone, so it never pulls the hand in. `B` and the
 ///   viscosity `V` are those of the layer at the depth of the hand.
 /// - A texture of kind *height* is the force of the potential `∫ N` at the depth
-///   `‖s‖ + w(p)`, with the height `w` of the wave at the proxy: pushed harder over a crest,
-///   and to the side down its slope (Minsky, "Computational haptics", 1995, chapter 4). One of
-///   kind *displacement* is part of the body's shape, not of its force.
+///   `‖s‖ + w(p) − a`, with the height `w` of the wave of amplitude `a` at the proxy: pushed
+///   harder over a crest, and to the side down its slope (Minsky, "Computational haptics",
+///   1995, chapter 4). The crests are at the surface and the troughs below it, so the force
+///   sets in gently wherever the hand comes in, and over a closed path a flat wall gives no
+///   energy. One of kind *displacement* is part of the body's shape, not of its force.
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
 ///
@@ -174,7 +176,9 @@ impl<const D: usize> Surface<D> {
         let (mut push, mut slope) = (depth, Vector::ZERO);
         if let Some(ripples) = &self.ripples {
             let (height, gradient) = ripples.at(proxy_in_body);
-            push = (depth + height).max(0.0);
+            // Crests above the surface would push at once with all their height where a hand
+            // enters, and take nothing back where it leaves through a trough.
+            push = (depth + height - ripples.height()).max(0.0);
             // Along the surface alone: across it the wave does not change the depth.
             slope = gradient - normal * gradient.dot(normal);
         }

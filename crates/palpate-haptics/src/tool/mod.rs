@@ -265,7 +265,7 @@ impl<const D: usize> Tool<D> {
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
         let place = (*nearby, Pierced::default());
-        let sampler = Sampler::new(place, self.radius, 0, (extent, way.max(reach)));
+        let sampler = Sampler::new(place, self.radius, 0, extent);
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);
         let horizon = LIKELY * moved + skin;

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Trajectories that are the same to the last bit in every build.
+#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
+mod common;
+
+use common::wild::{bodies, servo, step};
+use palpate_field::Vector;
+use palpate_haptics::{DeviceProfile, PointState, Protection, Servo};
+
+const TICKS: u32 = 6000;
+
+/// FNV-1a of every proxy, force and evaluation of a run.
+fn hash<const D: usize>(servo: &mut Servo<D>) -> u64 {
+    let mut states = vec![PointState::at_rest(Vector::ZERO); servo.touches().len()];
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |number: u64| hash = (hash ^ number).wrapping_mul(0x0100_0000_01b3);
+    let count = servo.bodies().bodies().len();
+    for tick in 0..TICKS {
+        step(servo, &mut states, (tick, 1.0));
+        for touch in servo.touches() {
+            for x in touch.proxy.0.iter().chain(&touch.force.0).chain(&touch.normal.0) {
+                // A zero of either sign is the same zero.
+                add((x + 0.0).to_bits());
+            }
+            add(u64::from(touch.evaluations) << 1 | u64::from(touch.contact));
+        }
+        if tick % 1000 == 999 {
+            drop(servo.replace_bodies(bodies(count, 1.0)));
+        }
+    }
+    hash
+}
+
+/// The same behind a device that sees steps.
+fn protected<const D: usize>(mut servo: Servo<D>) -> Servo<D> {
+    let profile = DeviceProfile {
+        max_force: 4.0,
+        continuous_force: 1.5,
+        max_force_rate: 2000.0,
+        mass: 0.05,
+        least_damping: 0.3,
+        friction: 0.1,
+        encoder_step: 1e-5,
+        ..DeviceProfile::unlimited("golden")
+    };
+    servo.protect(&Protection::new(profile)).unwrap();
+    servo
+}
+
+/// Compares with what was; shown as it stands in this file.
+fn is_as_it_was<const N: usize>(hashes: [u64; N], stored: [u64; N]) {
+    assert_eq!(hashes.map(|h| format!("{h:#018x}")), stored.map(|h| format!("{h:#018x}")));
+}
+
+#[test]
+fn in_the_plane_every_bit_is_as_it_was() {
+    let hashes =
+        [hash(&mut servo::<2>(9, 3, 1.0)), hash(&mut protected(servo::<2>(9, 3, 1.0)))];
+    is_as_it_was(hashes, [0x96bc_54eb_6c2d_3f04, 0x7939_9acb_b09b_9301]);
+}
+
+#[test]
+fn in_space_every_bit_is_as_it_was() {
+    let few = hash(&mut servo::<3>(4, 10, 1.0));
+    let many = hash(&mut servo::<3>(20, 3, 1.0));
+    let safe = hash(&mut protected(servo::<3>(20, 3, 1.0)));
+    is_as_it_was(
+        [few, many, safe],
+        [0x5e58_f1cf_bb96_9402, 0x4573_e671_d50e_df69, 0x65b3_5f0c_6771_079d],
+    );
+}
