@@ -123,7 +123,8 @@ pub(crate) fn slide<const D: usize>(
             }
             Turn::Cornered | Turn::Spent => return slide.rest(sampler, device),
         }
-        let closer = (here.point - device).norm() < (slide.best.point - device).norm();
+        let squared = |p: Point<D>| (p - device).dot(p - device);
+        let closer = squared(here.point) < squared(slide.best.point);
         if closer && here.gap >= -sampler.tolerance() {
             slide.best = here;
         }
@@ -230,7 +231,8 @@ impl<const D: usize> Slide<D> {
         // Written so that NaN, a flat surface and a crease keep the goal.
         let curvature = along.dot(normal - last_normal) / along.dot(along);
         let side = goal - foot;
-        let is_on_plane = normal.dot(side).abs() <= AT_REST * side.norm();
+        let off = normal.dot(side);
+        let is_on_plane = off * off <= AT_REST * AT_REST * side.dot(side);
         let gain = 1.0 / (1.0 - curvature * depth);
         if is_on_plane && depth > 0.0 && gain > 0.0 {
             foot + side * gain.min(MOST_GAIN)

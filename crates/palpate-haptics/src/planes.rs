@@ -74,11 +74,13 @@ impl<const D: usize> Planes<D> {
     pub(crate) fn learn(&mut self, seen_from: Point<D>, normal: Vector<f64, D>, gap: f64) {
         let foot = seen_from - normal * gap;
         self.retain(|tangent| {
-            let turn = (tangent.half_space.normal - normal).norm();
+            let turn = tangent.half_space.normal - normal;
             let excess = gap - tangent.half_space.height(seen_from);
-            let way = (foot - tangent.foot).norm();
+            let (turn, way) = (turn.dot(turn), (foot - tangent.foot).dot(foot - tangent.foot));
+            let is_behind =
+                excess > 0.0 && excess * excess > LEFT_BEHIND * LEFT_BEHIND * turn * way;
             // Written so that NaN drops the plane.
-            let stays = turn > SAME_NORMAL && excess <= LEFT_BEHIND * turn * way;
+            let stays = turn > SAME_NORMAL * SAME_NORMAL && !is_behind && !excess.is_nan();
             if stays {
                 let sunk = excess.max(0.0);
                 tangent.half_space.point -= tangent.half_space.normal * sunk;

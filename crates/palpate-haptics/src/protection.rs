@@ -162,6 +162,13 @@ impl<const D: usize> Port<D> {
         self.chain.step(wanted, state)
     }
 
+    /// Lowers the largest force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        self.chain.limit_force(max_force);
+    }
+
     /// Stops or releases the force.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

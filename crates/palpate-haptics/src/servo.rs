@@ -96,7 +96,7 @@ const FEW: usize = 5;
 /// see no horizon.
 const WAYS: f64 = 32.0;
 
-/// Events of a contact point in a tick at most: a touch or a leave, a change of its hold, and
+/// Events of a contact point in a tick at most: a leave, a touch or a change of its hold, and
 /// a layer that gives way.
 const MOST_EVENTS: usize = 3;
 
@@ -297,7 +297,8 @@ impl<const D: usize> Servo<D> {
     /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
     /// where freeing is allowed.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently.
+    /// A contact point that the new bodies cover is placed anew, and its force rises gently. If
+    /// the servo is protected, make them ready for the device first: [`Protection::accept`].
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]
@@ -308,12 +309,15 @@ impl<const D: usize> Servo<D> {
         std::mem::replace(&mut self.bodies, bodies)
     }
 
-    /// Lowers the largest force on a contact point to `max_force` [N]; never raises it.
+    /// Lowers the largest force on a contact point to `max_force` [N]; never raises it. If the
+    /// servo is protected, a larger force falls as fast as the device's forces may change.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         // `min` ignores NaN.
         self.options.max_force = self.options.max_force.min(max_force).max(0.0);
+        let limit = self.options.max_force;
+        self.ports.iter_mut().for_each(|port| port.limit_force(limit));
     }
 
     /// One tick: reads each point's state, moves its proxy, gives its force.
@@ -450,6 +454,7 @@ impl<const D: usize> ContactPoint<D> {
         };
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
+            self.fall_silent(tick, before);
             return (touch, Vector::ZERO, following.placed);
         };
         let guides = self.guides.iter_mut();
@@ -462,13 +467,18 @@ impl<const D: usize> ContactPoint<D> {
             self.tell_changes(tick, &touch, before, body);
             touch.wanted = self.force(tick, &touch, &following, body);
         } else {
-            self.ringing = Ringing::SILENT;
-            if before.contact {
-                tick.tell(before.body, EventKind::Leave);
-            }
-            free += self.pull(tick, &mut touch);
+            self.fall_silent(tick, before);
         }
+        free += self.pull(tick, &mut touch);
         (touch, free, following.placed)
+    }
+
+    /// Nothing is touched any more.
+    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: &Touch<D>) {
+        self.ringing = Ringing::SILENT;
+        if before.contact {
+            tick.tell(before.body, EventKind::Leave);
+        }
     }
 
     /// The part of the force that is given, which rises after a placement.
@@ -490,6 +500,9 @@ impl<const D: usize> ContactPoint<D> {
         body: &Body<D>,
     ) {
         if !before.contact || before.body != touch.body {
+            if before.contact {
+                tick.tell(before.body, EventKind::Leave);
+            }
             let speed = (-touch.velocity.dot(touch.normal)).max(0.0);
             self.ringing = body.surface().ringing(speed, tick.options.rate);
             tick.tell(touch.body, EventKind::Touch { speed });
@@ -523,22 +536,22 @@ impl<const D: usize> ContactPoint<D> {
         force + following.normal * ring
     }
 
-    /// The pull of magnets on a point that touches nothing [N].
+    /// The pull of magnets, but that of the body that is touched, which is zero at its surface
+    /// [N]: down the gradients of their fields, and so that of a potential.
     fn pull(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>) -> Vector<f64, D> {
         let mut force = Vector::ZERO;
         for (index, body) in tick.nearby.all() {
             let Some(magnet) = &body.surface().magnet else { continue };
             let is_far =
                 body.above_ball(touch.device) > magnet.reach + tick.options.probe.radius();
-            if is_far || self.proxy.level(index) > 0 {
+            let is_touched = touch.contact && index == touch.body;
+            if is_far || is_touched || self.proxy.level(index) > 0 {
                 continue;
             }
             touch.evaluations += 1;
             let (distance, gradient) = body.distance_gradient(touch.device);
             let pull = magnet.at(distance - tick.options.probe.radius());
-            if let Some(normal) = gradient.normalized() {
-                force -= normal * pull;
-            }
+            force -= gradient * pull;
         }
         force
     }

@@ -214,3 +214,26 @@ fn a_magnet_pulls_from_outside_alone() {
     }
     assert!((pull(-0.001) - 1.0).abs() < 1e-6);
 }
+
+#[test]
+fn touches_and_leaves_come_in_pairs() {
+    // From one body to the next in one tick, and a reading that is lost, once left no leave.
+    let place = |x: f64| Pose::translation(Vector([x, 0.0, 0.0]));
+    let bodies = [0.0, 0.1].map(|x| Body::new(ball(0.05), rough(512.0)).unwrap().at(place(x)));
+    let bodies = Bodies::new(bodies.into_iter().collect::<Result<_, _>>().unwrap()).unwrap();
+    let mut servo = Servo::new(bodies, 1, options(0.001)).unwrap();
+    let (mut touches, mut leaves) = (0, 0);
+    for tick in 0..4000 {
+        let x = 0.05 + 0.08 * (0.01 * f64::from(tick)).sin();
+        let y = if tick % 700 == 650 { f64::NAN } else { 0.045 };
+        touch(&mut servo, Vector([x, y, 0.0]));
+        for event in servo.events() {
+            touches += u32::from(matches!(event.kind, EventKind::Touch { .. }));
+            leaves += u32::from(event.kind == EventKind::Leave);
+            assert!(touches - leaves <= 1, "tick {tick}: {event:?}");
+        }
+    }
+    touch(&mut servo, Vector([0.0, 0.5, 0.0]));
+    leaves += servo.events().len() as u32;
+    assert!(touches > 5 && touches == leaves, "{touches} touches, {leaves} leaves");
+}

@@ -59,7 +59,7 @@ fn is_as_it_was<const N: usize>(hashes: [u64; N], stored: [u64; N]) {
 fn in_the_plane_every_bit_is_as_it_was() {
     let hashes =
         [hash(&mut servo::<2>(9, 3, 1.0)), hash(&mut protected(servo::<2>(9, 3, 1.0)))];
-    is_as_it_was(hashes, [0x96bc_54eb_6c2d_3f04, 0x7939_9acb_b09b_9301]);
+    is_as_it_was(hashes, [0x4063_ae59_d830_f58c, 0x4171_c634_8ab2_3f34]);
 }
 
 #[test]
@@ -69,6 +69,6 @@ fn in_space_every_bit_is_as_it_was() {
     let safe = hash(&mut protected(servo::<3>(20, 3, 1.0)));
     is_as_it_was(
         [few, many, safe],
-        [0x5e58_f1cf_bb96_9402, 0xc714_1a85_f2cf_c650, 0x0927_769e_e130_0920],
+        [0xeed5_a41c_b8de_0ae1, 0x54df_aef3_476d_3a08, 0x9cb8_516c_7d76_7ad3],
     );
 }

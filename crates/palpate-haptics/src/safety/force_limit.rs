@@ -21,6 +21,14 @@ impl ForceLimit {
         Self { max_force }
     }
 
+    /// Lowers the limit; never raises it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn lower(&mut self, max_force: f64) {
+        // `min` ignores NaN.
+        self.max_force = self.max_force.min(max_force);
+    }
+
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit<const D: usize>(&self, force: Vector<f64, D>) -> Vector<f64, D> {
         limited(force, self.max_force)

@@ -263,6 +263,14 @@ impl<const D: usize> SafetyChain<D> {
         force
     }
 
+    /// Lowers the largest force to `max_force` [N]; never raises it. What is written falls to it
+    /// as fast as forces may change.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn limit_force(&mut self, max_force: f64) {
+        self.force_limit.lower(max_force);
+    }
+
     /// Stops: no force until [`release`](Self::release).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
