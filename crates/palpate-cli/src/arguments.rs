@@ -169,7 +169,8 @@ pub(crate) struct FeelOptions {
     /// Damping of the surface [N·s/m]; that of each body if left out.
     #[arg(long)]
     pub(crate) damping: Option<f64>,
-    /// The largest force on a contact point [N]; the tool's, or 3.3 N, if left out.
+    /// The largest force on a contact point [N]; the tool's, the simulated device's, or 3.3 N,
+    /// if left out.
     #[arg(long)]
     pub(crate) max_force: Option<f64>,
     /// Radius of the ball that touches [m]; the tool's, or 2 mm, if left out.

@@ -69,7 +69,13 @@ where
     Dimensions: Drawable<D>,
 {
     let name = named.name.as_str();
-    let servo_options = servo_options(named.tool.as_ref(), options).map_err(Failure::input)?;
+    let choice = match (&options.device, &options.scene) {
+        (Some(choice), _) => choice.clone(),
+        (None, Some(_)) => DeviceChoice::Recorded,
+        (None, None) => DeviceChoice::Simulated(profile_named(SHOWN).map_err(Failure::input)?),
+    };
+    let servo_options =
+        servo_options(named.tool.as_ref(), (options, &choice)).map_err(Failure::input)?;
     // Before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
@@ -82,11 +88,6 @@ where
         .map_err(Failure::input)?;
     let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
     servo.guide(&guides.map_err(Failure::input)?);
-    let choice = match (&options.device, &options.scene) {
-        (Some(choice), _) => choice.clone(),
-        (None, Some(_)) => DeviceChoice::Recorded,
-        (None, None) => DeviceChoice::Simulated(profile_named(SHOWN).map_err(Failure::input)?),
-    };
     let map = held::map(scene, &choice)?;
     let mut device = held::device(&choice, paths, &map).map_err(Failure::input)?;
     let protection = Protection {
@@ -171,9 +172,14 @@ fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 /// What the command line says, else the scene, else the default.
 fn servo_options(
     tool: Option<&Tool>,
-    options: &FeelOptions,
+    (options, choice): (&FeelOptions, &DeviceChoice),
 ) -> Result<ServoOptions, HapticsError> {
-    let default = ServoOptions::default();
+    let default = match choice {
+        DeviceChoice::Simulated(profile) => {
+            ServoOptions { max_force: profile.max_force, ..ServoOptions::default() }
+        }
+        DeviceChoice::Recorded | DeviceChoice::Glove => ServoOptions::default(),
+    };
     let radius = options.radius.or(tool.map(|tool| tool.radius));
     let max_force = options.max_force.or(tool.and_then(|tool| tool.max_force));
     Ok(ServoOptions {
