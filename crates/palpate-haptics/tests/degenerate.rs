@@ -22,16 +22,8 @@ fn materials() -> Vec<(&'static str, Material)> {
         dynamic_friction: slipping,
         ..base()
     };
-    let layer = |depth: f64, stiffness| Layer {
-        description: None,
-        depth,
-        stiffness: Some(stiffness),
-        damping: None,
-        static_friction: None,
-        dynamic_friction: None,
-        viscosity: None,
-        pop_through: None,
-    };
+    let layer =
+        |depth: f64, stiffness| Layer { depth, stiffness: Some(stiffness), ..Layer::default() };
     let texture = |kind| {
         let (amplitude, wavelength) = (1e-5, 1e-4);
         Some(Texture { description: None, kind, amplitude, wavelength, direction: None })

@@ -193,16 +193,8 @@ fn friction_of_any_strength_takes_and_never_gives() {
 }
 
 fn layered() -> Material {
-    let layer = |depth, stiffness| Layer {
-        description: None,
-        depth,
-        stiffness: Some(stiffness),
-        damping: None,
-        static_friction: None,
-        dynamic_friction: None,
-        viscosity: None,
-        pop_through: None,
-    };
+    let layer =
+        |depth, stiffness| Layer { depth, stiffness: Some(stiffness), ..Layer::default() };
     let layers = vec![layer(0.001, 1500.0), layer(0.003, 50.0), layer(0.003_000_001, 800.0)];
     Material { layers, ..spring() }
 }

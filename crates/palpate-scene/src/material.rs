@@ -122,7 +122,7 @@ fn one_millimetre() -> f64 {
 }
 
 /// What is felt from a depth on: what is left out is as in the layer above.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct Layer {
     /// What it is meant to be.

@@ -176,16 +176,7 @@ fn pop_through(force: f64) -> PopThrough {
 
 /// A layer from a depth [m] on, of a stiffness [N/m].
 fn layer(depth: f64, stiffness: f64) -> Layer {
-    Layer {
-        description: None,
-        depth,
-        stiffness: Some(stiffness),
-        damping: None,
-        static_friction: None,
-        dynamic_friction: None,
-        viscosity: None,
-        pop_through: None,
-    }
+    Layer { depth, stiffness: Some(stiffness), ..Layer::default() }
 }
 
 #[cfg(test)]

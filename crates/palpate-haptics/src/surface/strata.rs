@@ -186,16 +186,8 @@ mod tests {
     use super::*;
 
     fn layered() -> Strata {
-        let layer = |depth, stiffness| Layer {
-            description: None,
-            depth,
-            stiffness: Some(stiffness),
-            damping: None,
-            static_friction: None,
-            dynamic_friction: None,
-            viscosity: None,
-            pop_through: None,
-        };
+        let layer =
+            |depth, stiffness| Layer { depth, stiffness: Some(stiffness), ..Layer::default() };
         let layers = vec![layer(0.25, 16.0), layer(0.5, 2.0)];
         Strata::new(&Material { stiffness: 4.0, layers, ..Material::default() }).unwrap()
     }

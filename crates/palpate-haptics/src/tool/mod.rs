@@ -16,7 +16,7 @@ mod closest;
 mod friction;
 mod scan;
 mod settle;
-#[allow(clippy::indexing_slicing, reason = "made at set-up")]
+#[allow(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
 mod shell;
 mod spread;
 mod state;
