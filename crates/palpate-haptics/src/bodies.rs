@@ -322,11 +322,10 @@ impl<const D: usize> Bodies<D> {
         &self.reactions
     }
 
-    /// Room for a tick: the numbers of what is near, and what is done to each body.
+    /// Room for a tick: the numbers of what is near, and what was done to each body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn take_scratch(&mut self) -> (Box<[u32]>, Vec<Reaction<D>>) {
-        self.reactions.fill(Reaction::NONE);
         (std::mem::take(&mut self.list), std::mem::take(&mut self.reactions))
     }
 

@@ -60,6 +60,7 @@ mod bodies;
 mod cases;
 mod clock;
 mod contact;
+mod contact_point;
 mod device;
 mod error;
 mod event;
@@ -96,6 +97,7 @@ mod workspace;
 
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
+pub use contact_point::Touch;
 pub use device::{Device, DeviceLost, DeviceProfile, PointState};
 pub use error::{HapticsError, not_negative, positive};
 pub use event::{Event, EventCounts, EventKind, Reaction};
@@ -119,7 +121,7 @@ pub use safety::{
     Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
     SafetyChain, SafetyOptions, SafetyReport, WatchdogReport,
 };
-pub use servo::{Servo, ServoOptions, Touch};
+pub use servo::{Servo, ServoOptions};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use thread::{EndedThread, ServoThread, ThreadOptions};

@@ -3,8 +3,8 @@
 
 //! What another thread may see of a running servo.
 
+use crate::contact_point::Touch;
 use crate::event::Reaction;
-use crate::servo::Touch;
 
 /// A running servo, some ticks ago.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

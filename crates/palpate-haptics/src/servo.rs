@@ -5,20 +5,21 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::hint::black_box;
+
 use palpate_field::{Point, Pose, Vector};
 
-use crate::bodies::{Bodies, Body};
+use crate::bodies::Bodies;
+use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
 use crate::device::{DeviceProfile, PointState};
 use crate::error::{HapticsError, positive, positive_or_infinite};
-use crate::event::{Event, EventKind, Reaction};
+use crate::event::{Event, Reaction};
 use crate::guide::Guide;
-use crate::limit::limited;
 use crate::nearby::Nearby;
 use crate::protection::{Port, Protection};
-use crate::proxy::{Following, Probe, Proxy};
+use crate::proxy::Probe;
 use crate::recorder::Energy;
-use crate::safety::{Accepted, PortState, SafetyReport};
-use crate::surface::Ringing;
+use crate::safety::{Accepted, SafetyReport};
 use crate::workspace::WorkspaceMap;
 
 /// What a servo renders with, and how fast.
@@ -42,72 +43,12 @@ impl Default for ServoOptions {
     }
 }
 
-/// One contact point after a tick. World coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch<const D: usize> {
-    /// The device point [m]; as read, even if it is not finite.
-    pub device: Point<D>,
-    /// How fast it moves relative to the body that it touches, or to the world [m/s].
-    pub velocity: Vector<f64, D>,
-    /// The proxy [m]; the device point itself in free space.
-    pub proxy: Point<D>,
-    /// The force of what is touched [N], before any limit: what the hand does to the body is
-    /// its negative.
-    pub wanted: Vector<f64, D>,
-    /// The force on the hand [N], always finite.
-    pub force: Vector<f64, D>,
-    /// The unit normal of the surface last seen, pointing out.
-    pub normal: Vector<f64, D>,
-    /// `true` if the surface keeps the proxy from the device point.
-    pub contact: bool,
-    /// Whose surface it is: the number of the body.
-    pub body: u32,
-    /// `true` if the proxy moves along the surface against friction.
-    pub is_slipping: bool,
-    /// Evaluations of the field in this tick.
-    pub evaluations: u32,
-}
-
-impl<const D: usize> Touch<D> {
-    const NONE: Self = Self {
-        device: Vector::ZERO,
-        velocity: Vector::ZERO,
-        proxy: Vector::ZERO,
-        wanted: Vector::ZERO,
-        force: Vector::ZERO,
-        normal: Vector::ZERO,
-        contact: false,
-        body: 0,
-        is_slipping: false,
-        evaluations: 0,
-    };
-
-    /// The distance from the device point to its proxy [m]: how deep the hand presses.
-    #[must_use]
-    pub fn depth(&self) -> f64 {
-        if self.contact { (self.proxy - self.device).norm() } else { 0.0 }
-    }
-}
-
 /// Bodies fewer than this are all near.
 const FEW: usize = 5;
 
 /// How far proxies may go in a tick, in motions and radii of the probe: far enough that they
 /// see no horizon.
 const WAYS: f64 = 32.0;
-
-/// Events of a contact point in a tick at most: a leave, a touch or a change of its hold, and
-/// a layer that gives way.
-const MOST_EVENTS: usize = 3;
-
-#[derive(Clone, Debug)]
-struct ContactPoint<const D: usize> {
-    proxy: Proxy<D>,
-    /// The part of the force that is given, in [0, 1].
-    rise: f64,
-    ringing: Ringing,
-    guides: Vec<Guide<D>>,
-}
 
 /// Renders bodies to some contact points, each on its own.
 ///
@@ -140,13 +81,7 @@ pub struct Servo<const D: usize> {
     events: Vec<Event>,
     /// The forces to write [N], in device coordinates.
     forces: Vec<Vector<f64, D>>,
-    /// Of each contact point to the device; none of a servo that is not protected.
-    ports: Vec<Port<D>>,
-    map: WorkspaceMap<D>,
-    is_late: bool,
-    options: ServoOptions,
-    /// What is added to a force's part in a tick.
-    rise_step: f64,
+    setting: Setting<D>,
     /// Ticks done.
     tick: u64,
 }
@@ -170,20 +105,18 @@ impl<const D: usize> Servo<D> {
         let rate = positive("rate", options.rate, "Hz")?;
         let rise_time = positive("rise_time", options.rise_time, "s")?;
         positive_or_infinite("max_force", options.max_force, "N")?;
-        let proxy = Proxy::new(options.probe);
-        let point =
-            ContactPoint { proxy, rise: 1.0, ringing: Ringing::SILENT, guides: Vec::new() };
         Ok(Self {
             bodies: bodies.into(),
-            points: vec![point; points],
+            points: vec![ContactPoint::new(options.probe); points],
             touches: vec![Touch::NONE; points],
             events: Vec::with_capacity(MOST_EVENTS * points),
             forces: vec![Vector::ZERO; points],
-            ports: Vec::new(),
-            map: WorkspaceMap::default(),
-            is_late: false,
-            options,
-            rise_step: 1.0 / (rate * rise_time),
+            setting: Setting {
+                options,
+                map: WorkspaceMap::default(),
+                is_late: false,
+                rise_step: 1.0 / (rate * rise_time),
+            },
             tick: 0,
         })
     }
@@ -201,17 +134,19 @@ impl<const D: usize> Servo<D> {
         &mut self,
         protection: &Protection<D>,
     ) -> Result<Vec<Accepted>, HapticsError> {
-        self.map = protection.map;
+        self.setting.map = protection.map;
         self.limit_force(protection.profile.max_force);
-        if self.options.max_force == 0.0 {
+        if self.setting.options.max_force == 0.0 {
             return Ok(Vec::new());
         }
-        let rate = self.options.rate;
+        let rate = self.setting.options.rate;
         let (bodies, accepted) = protection.accept(self.bodies.clone(), rate)?;
-        let profile =
-            DeviceProfile { max_force: self.options.max_force, ..protection.profile.clone() };
+        let profile = DeviceProfile {
+            max_force: self.setting.options.max_force,
+            ..protection.profile.clone()
+        };
         let port = Protection { profile, ..protection.clone() }.port(&accepted, rate)?;
-        self.ports = vec![port; self.points.len()];
+        self.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         self.bodies = bodies;
         Ok(accepted)
     }
@@ -226,7 +161,7 @@ impl<const D: usize> Servo<D> {
     /// What is rendered with, and how fast.
     #[must_use]
     pub fn options(&self) -> &ServoOptions {
-        &self.options
+        &self.setting.options
     }
 
     /// What is touched.
@@ -250,7 +185,7 @@ impl<const D: usize> Servo<D> {
     /// What the safety chain of every contact point did so far; nothing if there is none.
     #[must_use]
     pub fn safety(&self) -> Vec<SafetyReport> {
-        self.ports.iter().map(Port::report).collect()
+        self.points.iter().filter_map(|point| point.port.as_ref()).map(Port::report).collect()
     }
 
     /// The energy at a contact point since the start; none of a servo that is not protected.
@@ -258,21 +193,26 @@ impl<const D: usize> Servo<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn energy(&self, point: u32) -> Energy {
-        self.ports.get(point as usize).map_or(Energy::default(), Port::energy)
+        let port = self.points.get(point as usize).and_then(|point| point.port.as_ref());
+        port.map_or(Energy::default(), Port::energy)
     }
 
     /// Says whether the next tick starts too late.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn set_late(&mut self, is_late: bool) {
-        self.is_late = is_late;
+        self.setting.is_late = is_late;
     }
 
     /// Stops all forces, or lets them rise again. It needs [protection](Self::protect).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn stop(&mut self, is_stopped: bool) {
-        self.ports.iter_mut().for_each(|port| port.stop(is_stopped));
+        self.ports().for_each(|port| port.stop(is_stopped));
+    }
+
+    fn ports(&mut self) -> impl Iterator<Item = &mut Port<D>> {
+        self.points.iter_mut().filter_map(|point| point.port.as_mut())
     }
 
     /// What happened in the last tick.
@@ -315,9 +255,9 @@ impl<const D: usize> Servo<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         // `min` ignores NaN.
-        self.options.max_force = self.options.max_force.min(max_force).max(0.0);
-        let limit = self.options.max_force;
-        self.ports.iter_mut().for_each(|port| port.limit_force(limit));
+        self.setting.options.max_force = self.setting.options.max_force.min(max_force).max(0.0);
+        let limit = self.setting.options.max_force;
+        self.ports().for_each(|port| port.limit_force(limit));
     }
 
     /// One tick: reads each point's state, moves its proxy, gives its force.
@@ -329,50 +269,15 @@ impl<const D: usize> Servo<D> {
     /// evaluates the field at most [`Probe::budget`] times a point, and once more for each
     /// magnet in reach.
     pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
-        let missing = PointState::at_rest(Vector([f64::NAN; D]));
         self.events.clear();
         let (mut list, mut reactions) = self.bodies.take_scratch();
-        let nearby = if self.bodies.bodies().len() < FEW {
-            self.bodies.everything()
-        } else {
-            self.bodies
-                .nearby(hand(&self.touches, states, (&self.map, &self.options)), &mut list)
-        };
-        let states = states.iter().copied().chain(std::iter::repeat(missing));
-        let mut ports = self.ports.iter_mut();
+        reactions.fill(Reaction::NONE);
+        let hand = || hand(&self.touches, states, &self.setting);
+        let nearby = nearby(&self.bodies, hand, &mut list);
+        let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
         let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
-        for (index, (((point, touch), force), state)) in (0..).zip(points.zip(states)) {
-            let mut tick = Tick {
-                nearby,
-                options: &self.options,
-                event: Event { tick: self.tick, point: index, body: 0, kind: EventKind::Leave },
-                events: &mut self.events,
-            };
-            let mut port = ports.next();
-            let at_device = port.as_mut().map_or(state, |port| port.state(state));
-            let before = *touch;
-            let (mut felt, free, placed) =
-                point.step(&mut tick, &self.map.state_to_world(at_device), &before);
-            match port {
-                Some(port) => {
-                    let wanted = limited(felt.wanted, self.options.max_force);
-                    let PointState { position, velocity } = at_device;
-                    let free_force = self.map.force_to_device(free);
-                    let (is_late, wants_ramp) = (self.is_late, placed);
-                    *force = port.write(
-                        self.map.force_to_device(wanted),
-                        &PortState { position, velocity, free_force, is_late, wants_ramp },
-                    );
-                    felt.force = self.map.force_to_world(*force);
-                }
-                None => {
-                    let rise = point.rise(placed, felt.contact, self.rise_step);
-                    let all = limited(felt.wanted + free, self.options.max_force);
-                    felt.force = all * rise;
-                    *force = self.map.force_to_device(felt.force);
-                }
-            }
-            *touch = felt;
+        for (index, (((point, touch), force), state)) in (0..).zip(points.zip(padded(states))) {
+            (*touch, *force) = point.tick(tick.of_point(index), state, touch);
             let touched = nearby.body(touch.body).filter(|_| touch.contact);
             let reaction = reactions.get_mut(touch.body as usize);
             if let Some((body, reaction)) = touched.zip(reaction) {
@@ -384,6 +289,41 @@ impl<const D: usize> Servo<D> {
         self.tick += 1;
         &self.touches
     }
+
+    /// Does what [`step`](Self::step) would with `states`, on doubles of the contact points:
+    /// nothing comes of it but that the next tick finds its code and data in the caches.
+    ///
+    /// Real-time: as [`step`](Self::step).
+    pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
+        let told = self.events.len();
+        let (mut list, reactions) = self.bodies.take_scratch();
+        let hand = || hand(&self.touches, states, &self.setting);
+        let nearby = nearby(&self.bodies, hand, &mut list);
+        let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
+        for ((point, touch), state) in self.points.iter().zip(&self.touches).zip(padded(states))
+        {
+            black_box(point.double().tick(tick.of_point(0), state, touch));
+        }
+        self.bodies.put_back((list, reactions));
+        self.events.truncate(told);
+    }
+}
+
+/// The bodies that are near enough to matter in a tick.
+fn nearby<'a, const D: usize>(
+    bodies: &'a Bodies<D>,
+    hand: impl FnOnce() -> (Point<D>, f64),
+    list: &'a mut [u32],
+) -> Nearby<'a, D> {
+    if bodies.bodies().len() < FEW { bodies.everything() } else { bodies.nearby(hand(), list) }
+}
+
+/// The states of as many points as one likes: those that are not there are not finite.
+fn padded<const D: usize>(
+    states: &[PointState<D>],
+) -> impl Iterator<Item = PointState<D>> + '_ {
+    let missing = PointState::at_rest(Vector([f64::NAN; D]));
+    states.iter().copied().chain(std::iter::repeat(missing))
 }
 
 /// A ball around all contact points and where their proxies may go in this tick, as far as
@@ -391,7 +331,7 @@ impl<const D: usize> Servo<D> {
 fn hand<const D: usize>(
     touches: &[Touch<D>],
     states: &[PointState<D>],
-    (map, options): (&WorkspaceMap<D>, &ServoOptions),
+    Setting { map, options, .. }: &Setting<D>,
 ) -> (Point<D>, f64) {
     let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
     let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
@@ -407,152 +347,4 @@ fn hand<const D: usize>(
         motion = motion.max((position - touch.proxy).norm());
     }
     (centre, radius + WAYS * (motion + options.probe.radius()))
-}
-
-/// What all contact points see in a tick.
-struct Tick<'a, const D: usize> {
-    nearby: Nearby<'a, D>,
-    options: &'a ServoOptions,
-    /// An event of this point in this tick, to be filled in.
-    event: Event,
-    events: &'a mut Vec<Event>,
-}
-
-impl<const D: usize> Tick<'_, D> {
-    fn tell(&mut self, body: u32, kind: EventKind) {
-        // There is room for all that can happen: it is set aside at the start.
-        if self.events.len() < self.events.capacity() {
-            self.events.push(Event { body, kind, ..self.event });
-        }
-    }
-}
-
-impl<const D: usize> ContactPoint<D> {
-    /// The touch with its wanted force, the force of guides and magnets, and whether the force
-    /// should rise anew.
-    fn step(
-        &mut self,
-        tick: &mut Tick<'_, D>,
-        state: &PointState<D>,
-        before: &Touch<D>,
-    ) -> (Touch<D>, Vector<f64, D>, bool) {
-        let device = state.position;
-        // A proxy told of a point that is not finite stays where it is.
-        let following = self.proxy.follow(tick.nearby, device);
-        let body = tick.nearby.body(following.body);
-        let mut touch = Touch {
-            device,
-            velocity: state.velocity,
-            proxy: following.proxy,
-            wanted: Vector::ZERO,
-            force: Vector::ZERO,
-            normal: following.normal,
-            contact: following.contact,
-            body: following.body,
-            is_slipping: following.is_slipping,
-            evaluations: following.evaluations,
-        };
-        let Some(body) = body.filter(|_| state.is_finite()) else {
-            touch.velocity = Vector::ZERO;
-            self.fall_silent(tick, before);
-            return (touch, Vector::ZERO, following.placed);
-        };
-        let guides = self.guides.iter_mut();
-        let mut free =
-            guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(device, state.velocity));
-        if following.contact {
-            if body.has_moved() {
-                touch.velocity -= (body.carried(device) - device) * tick.options.rate;
-            }
-            self.tell_changes(tick, &touch, before, body);
-            touch.wanted = self.force(tick, &touch, &following, body);
-        } else {
-            self.fall_silent(tick, before);
-        }
-        free += self.pull(tick, &mut touch);
-        (touch, free, following.placed)
-    }
-
-    /// Nothing is touched any more.
-    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: &Touch<D>) {
-        self.ringing = Ringing::SILENT;
-        if before.contact {
-            tick.tell(before.body, EventKind::Leave);
-        }
-    }
-
-    /// The part of the force that is given, which rises after a placement.
-    fn rise(&mut self, placed: bool, contact: bool, step: f64) -> f64 {
-        self.rise = match (placed, contact) {
-            (true, _) => 0.0,
-            (false, true) => (self.rise + step).min(1.0),
-            (false, false) => 1.0,
-        };
-        self.rise
-    }
-
-    /// Tells of what is new since the last tick, and starts what rings because of it.
-    fn tell_changes(
-        &mut self,
-        tick: &mut Tick<'_, D>,
-        touch: &Touch<D>,
-        before: &Touch<D>,
-        body: &Body<D>,
-    ) {
-        if !before.contact || before.body != touch.body {
-            if before.contact {
-                tick.tell(before.body, EventKind::Leave);
-            }
-            let speed = (-touch.velocity.dot(touch.normal)).max(0.0);
-            self.ringing = body.surface().ringing(speed, tick.options.rate);
-            tick.tell(touch.body, EventKind::Touch { speed });
-        } else if touch.is_slipping != before.is_slipping {
-            let kind = if touch.is_slipping { EventKind::Slip } else { EventKind::Stick };
-            tick.tell(touch.body, kind);
-        }
-    }
-
-    /// The force of the body that is touched [N].
-    fn force(
-        &mut self,
-        tick: &mut Tick<'_, D>,
-        touch: &Touch<D>,
-        following: &Following<D>,
-        body: &Body<D>,
-    ) -> Vector<f64, D> {
-        let stretch = following.proxy - touch.device;
-        let (surface, level) = (body.surface(), self.proxy.level(following.body));
-        let in_body = body.in_body(following.proxy);
-        let (pull, velocity) =
-            (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
-        let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
-        let held = surface.strata.force(level, stretch.norm());
-        let pop = surface.strata.top(level).and_then(|top| top.pop_through);
-        if pop.is_some_and(|pop| held > pop.force) && self.proxy.pierce(following.body) {
-            tick.tell(following.body, EventKind::Pop { force: held });
-        }
-        // A ring shakes the hand, but does not pull it in.
-        let ring = self.ringing.step().max(-force.dot(following.normal).max(0.0));
-        force + following.normal * ring
-    }
-
-    /// The pull of magnets, but that of the body that is touched, which is zero at its surface
-    /// [N]: down the gradients of their fields, and so that of a potential.
-    fn pull(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>) -> Vector<f64, D> {
-        let mut force = Vector::ZERO;
-        for (index, body) in tick.nearby.all() {
-            let Some(magnet) = &body.surface().magnet else { continue };
-            let is_far =
-                body.above_ball(touch.device) > magnet.reach + tick.options.probe.radius();
-            let is_touched = touch.contact && index == touch.body;
-            if is_far || is_touched || self.proxy.level(index) > 0 {
-                continue;
-            }
-            touch.evaluations += 1;
-            let (distance, gradient) = body.distance_gradient(touch.device);
-            let pull = magnet.at(distance - tick.options.probe.radius());
-            force -= gradient * pull;
-        }
-        force
-    }
 }

@@ -21,8 +21,11 @@ use crate::report::{Ending, RunReport, Tally};
 use crate::run::Pace;
 use crate::servo::Servo;
 
-/// How long before a tick the field is asked once more.
-const REHEARSAL: Duration = Duration::from_micros(20);
+/// How long before a tick it is rehearsed.
+const REHEARSAL: Duration = Duration::from_micros(50);
+
+/// How often: the first time loads what is cold, the others teach predictors.
+const REHEARSALS: u32 = 3;
 
 /// A servo and a device, and what goes on beside them.
 pub(crate) struct ServoLoop<'a, const D: usize> {
@@ -31,6 +34,8 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     recorder: Option<&'a mut Recorder<D>>,
     end: Option<&'a mut ServoEnd<D>>,
     states: Vec<PointState<D>>,
+    /// What the next tick may read.
+    expected: Vec<PointState<D>>,
     /// The forces of an emergency, and of the end.
     no_forces: Vec<Vector<f64, D>>,
     tally: Tally,
@@ -59,6 +64,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             recorder: None,
             end: None,
             states: vec![PointState::at_rest(Vector::ZERO); points],
+            expected: vec![PointState::at_rest(Vector::ZERO); points],
             no_forces: vec![Vector::ZERO; points],
             tally,
         }
@@ -114,12 +120,18 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         Ok(())
     }
 
-    /// Asks the field where the proxies are: the sleep between ticks has let caches and
-    /// predictors go cold, and the tick finds them warm again.
-    fn rehearse(&self) {
-        for touch in self.servo.touches() {
-            let near = self.servo.bodies().everything().look(touch.proxy);
-            std::hint::black_box(near);
+    /// Tries the tick to come: the sleep between ticks has let caches and predictors go cold,
+    /// and the tick finds them warm again.
+    fn rehearse(&mut self) {
+        let period = 1.0 / self.servo.options().rate;
+        for (expected, PointState { position, velocity }) in
+            self.expected.iter_mut().zip(&self.states)
+        {
+            let (position, velocity) = (*position + *velocity * period, *velocity);
+            *expected = PointState { position, velocity };
+        }
+        for _ in 0..REHEARSALS {
+            self.servo.rehearse(&self.expected);
         }
     }
 

@@ -206,6 +206,7 @@ impl<const D: usize> Tool<D> {
     pub fn step(&mut self, bodies: &mut Bodies<D>, device: &ToolState<D>) -> &ToolTouch<D> {
         self.events.clear();
         let (mut list, mut reactions) = bodies.take_scratch();
+        reactions.fill(Reaction::NONE);
         if device.is_usable() {
             self.follow(bodies, (&mut list, &mut reactions), device);
         } else {

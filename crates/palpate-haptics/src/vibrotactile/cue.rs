@@ -10,8 +10,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
+use crate::contact_point::Touch;
 use crate::error::{HapticsError, not_negative, positive};
-use crate::servo::Touch;
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]

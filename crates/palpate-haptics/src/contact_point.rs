@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! One contact point in a tick: its proxy, what it feels, and its way to the device.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Vector};
+
+use crate::bodies::Body;
+use crate::device::PointState;
+use crate::event::{Event, EventKind};
+use crate::guide::Guide;
+use crate::limit::limited;
+use crate::nearby::Nearby;
+use crate::protection::Port;
+use crate::proxy::{Following, Probe, Proxy};
+use crate::safety::PortState;
+use crate::servo::ServoOptions;
+use crate::surface::Ringing;
+use crate::workspace::WorkspaceMap;
+
+/// One contact point after a tick. World coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch<const D: usize> {
+    /// The device point [m]; as read, even if it is not finite.
+    pub device: Point<D>,
+    /// How fast it moves relative to the body that it touches, or to the world [m/s].
+    pub velocity: Vector<f64, D>,
+    /// The proxy [m]; the device point itself in free space.
+    pub proxy: Point<D>,
+    /// The force of what is touched [N], before any limit: what the hand does to the body is
+    /// its negative.
+    pub wanted: Vector<f64, D>,
+    /// The force on the hand [N], always finite.
+    pub force: Vector<f64, D>,
+    /// The unit normal of the surface last seen, pointing out.
+    pub normal: Vector<f64, D>,
+    /// `true` if the surface keeps the proxy from the device point.
+    pub contact: bool,
+    /// Whose surface it is: the number of the body.
+    pub body: u32,
+    /// `true` if the proxy moves along the surface against friction.
+    pub is_slipping: bool,
+    /// Evaluations of the field in this tick.
+    pub evaluations: u32,
+}
+
+impl<const D: usize> Touch<D> {
+    pub(crate) const NONE: Self = Self {
+        device: Vector::ZERO,
+        velocity: Vector::ZERO,
+        proxy: Vector::ZERO,
+        wanted: Vector::ZERO,
+        force: Vector::ZERO,
+        normal: Vector::ZERO,
+        contact: false,
+        body: 0,
+        is_slipping: false,
+        evaluations: 0,
+    };
+
+    /// The distance from the device point to its proxy [m]: how deep the hand presses.
+    #[must_use]
+    pub fn depth(&self) -> f64 {
+        if self.contact { (self.proxy - self.device).norm() } else { 0.0 }
+    }
+}
+
+/// Events of a contact point in a tick at most: a leave, a touch or a change of its hold, and
+/// a layer that gives way.
+pub(crate) const MOST_EVENTS: usize = 3;
+
+/// A point of the hand and what it remembers from tick to tick.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactPoint<const D: usize> {
+    pub(crate) proxy: Proxy<D>,
+    /// The part of the force that is given, in [0, 1].
+    rise: f64,
+    ringing: Ringing,
+    pub(crate) guides: Vec<Guide<D>>,
+    /// Its way to the device; none of a servo that is not protected.
+    pub(crate) port: Option<Port<D>>,
+}
+
+/// How all contact points are rendered.
+#[derive(Clone, Debug)]
+pub(crate) struct Setting<const D: usize> {
+    pub(crate) options: ServoOptions,
+    pub(crate) map: WorkspaceMap<D>,
+    /// What is added to a force's part in a tick.
+    pub(crate) rise_step: f64,
+    pub(crate) is_late: bool,
+}
+
+/// What all contact points see in a tick.
+pub(crate) struct Tick<'a, const D: usize> {
+    nearby: Nearby<'a, D>,
+    setting: &'a Setting<D>,
+    /// An event of this point in this tick, to be filled in.
+    event: Event,
+    events: &'a mut Vec<Event>,
+}
+
+impl<'a, const D: usize> Tick<'a, D> {
+    pub(crate) fn new(
+        nearby: Nearby<'a, D>,
+        setting: &'a Setting<D>,
+        tick: u64,
+        events: &'a mut Vec<Event>,
+    ) -> Self {
+        let event = Event { tick, point: 0, body: 0, kind: EventKind::Leave };
+        Self { nearby, setting, event, events }
+    }
+
+    /// The same for the contact point of that number.
+    pub(crate) fn of_point(&mut self, point: u32) -> &mut Self {
+        self.event.point = point;
+        self
+    }
+
+    fn tell(&mut self, body: u32, kind: EventKind) {
+        // There is room for all that can happen: it is set aside at the start.
+        if self.events.len() < self.events.capacity() {
+            self.events.push(Event { body, kind, ..self.event });
+        }
+    }
+}
+
+impl<const D: usize> ContactPoint<D> {
+    pub(crate) fn new(probe: Probe) -> Self {
+        let (proxy, guides) = (Proxy::new(probe), Vec::new());
+        Self { proxy, rise: 1.0, ringing: Ringing::SILENT, guides, port: None }
+    }
+
+    /// A double to try a tick with, without guides: copying those would allocate.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn double(&self) -> Self {
+        let (proxy, port) = (self.proxy.clone(), self.port.clone());
+        Self { proxy, rise: self.rise, ringing: self.ringing, guides: Vec::new(), port }
+    }
+
+    /// One tick, from the state of the device to the force to write to it [N], in its
+    /// coordinates.
+    ///
+    /// Real-time: as [`Servo::step`](crate::Servo::step).
+    pub(crate) fn tick(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        state: PointState<D>,
+        before: &Touch<D>,
+    ) -> (Touch<D>, Vector<f64, D>) {
+        let Setting { options, map, rise_step, is_late } = tick.setting;
+        let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
+        let (mut touch, free, placed) = self.feel(tick, &map.state_to_world(at_device), before);
+        let force = if let Some(port) = &mut self.port {
+            let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
+            let PointState { position, velocity } = at_device;
+            let (free_force, is_late) = (map.force_to_device(free), *is_late);
+            let state =
+                PortState { position, velocity, free_force, is_late, wants_ramp: placed };
+            let force = port.write(wanted, &state);
+            touch.force = map.force_to_world(force);
+            force
+        } else {
+            let rise = self.rise(placed, touch.contact, *rise_step);
+            touch.force = limited(touch.wanted + free, options.max_force) * rise;
+            map.force_to_device(touch.force)
+        };
+        (touch, force)
+    }
+
+    /// The touch with its wanted force, the force of guides and magnets, and whether the force
+    /// should rise anew.
+    fn feel(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        state: &PointState<D>,
+        before: &Touch<D>,
+    ) -> (Touch<D>, Vector<f64, D>, bool) {
+        let device = state.position;
+        // A proxy told of a point that is not finite stays where it is.
+        let following = self.proxy.follow(tick.nearby, device);
+        let body = tick.nearby.body(following.body);
+        let mut touch = Touch {
+            device,
+            velocity: state.velocity,
+            proxy: following.proxy,
+            wanted: Vector::ZERO,
+            force: Vector::ZERO,
+            normal: following.normal,
+            contact: following.contact,
+            body: following.body,
+            is_slipping: following.is_slipping,
+            evaluations: following.evaluations,
+        };
+        let Some(body) = body.filter(|_| state.is_finite()) else {
+            touch.velocity = Vector::ZERO;
+            self.fall_silent(tick, before);
+            return (touch, Vector::ZERO, following.placed);
+        };
+        let guides = self.guides.iter_mut();
+        let mut free =
+            guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(device, state.velocity));
+        if following.contact {
+            if body.has_moved() {
+                touch.velocity -= (body.carried(device) - device) * tick.setting.options.rate;
+            }
+            self.tell_changes(tick, &touch, before, body);
+            touch.wanted = self.force(tick, &touch, &following, body);
+        } else {
+            self.fall_silent(tick, before);
+        }
+        free += self.pull(tick, &mut touch);
+        (touch, free, following.placed)
+    }
+
+    /// Nothing is touched any more.
+    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: &Touch<D>) {
+        self.ringing = Ringing::SILENT;
+        if before.contact {
+            tick.tell(before.body, EventKind::Leave);
+        }
+    }
+
+    /// The part of the force that is given, which rises after a placement.
+    fn rise(&mut self, placed: bool, contact: bool, step: f64) -> f64 {
+        self.rise = match (placed, contact) {
+            (true, _) => 0.0,
+            (false, true) => (self.rise + step).min(1.0),
+            (false, false) => 1.0,
+        };
+        self.rise
+    }
+
+    /// Tells of what is new since the last tick, and starts what rings because of it.
+    fn tell_changes(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        touch: &Touch<D>,
+        before: &Touch<D>,
+        body: &Body<D>,
+    ) {
+        if !before.contact || before.body != touch.body {
+            if before.contact {
+                tick.tell(before.body, EventKind::Leave);
+            }
+            let speed = (-touch.velocity.dot(touch.normal)).max(0.0);
+            self.ringing = body.surface().ringing(speed, tick.setting.options.rate);
+            tick.tell(touch.body, EventKind::Touch { speed });
+        } else if touch.is_slipping != before.is_slipping {
+            let kind = if touch.is_slipping { EventKind::Slip } else { EventKind::Stick };
+            tick.tell(touch.body, kind);
+        }
+    }
+
+    /// The force of the body that is touched [N].
+    fn force(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        touch: &Touch<D>,
+        following: &Following<D>,
+        body: &Body<D>,
+    ) -> Vector<f64, D> {
+        let stretch = following.proxy - touch.device;
+        let (surface, level) = (body.surface(), self.proxy.level(following.body));
+        let in_body = body.in_body(following.proxy);
+        let (pull, velocity) =
+            (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
+        let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
+        let held = surface.strata.force(level, stretch.norm());
+        let pop = surface.strata.top(level).and_then(|top| top.pop_through);
+        if pop.is_some_and(|pop| held > pop.force) && self.proxy.pierce(following.body) {
+            tick.tell(following.body, EventKind::Pop { force: held });
+        }
+        // A ring shakes the hand, but does not pull it in.
+        let ring = self.ringing.step().max(-force.dot(following.normal).max(0.0));
+        force + following.normal * ring
+    }
+
+    /// The pull of magnets, but that of the body that is touched, which is zero at its surface
+    /// [N]: down the gradients of their fields, and so that of a potential.
+    fn pull(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>) -> Vector<f64, D> {
+        let mut force = Vector::ZERO;
+        for (index, body) in tick.nearby.all() {
+            let Some(magnet) = &body.surface().magnet else { continue };
+            let is_far = body.above_ball(touch.device)
+                > magnet.reach + tick.setting.options.probe.radius();
+            let is_touched = touch.contact && index == touch.body;
+            if is_far || is_touched || self.proxy.level(index) > 0 {
+                continue;
+            }
+            touch.evaluations += 1;
+            let (distance, gradient) = body.distance_gradient(touch.device);
+            let pull = magnet.at(distance - tick.setting.options.probe.radius());
+            force -= gradient * pull;
+        }
+        force
+    }
+}
