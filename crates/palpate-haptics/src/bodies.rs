@@ -39,6 +39,8 @@ pub struct Body<const D: usize> {
     pub(crate) region: Option<BoundingBall<D>>,
     /// The error of its distances in the world.
     rounding: Rounding,
+    /// How far the ball is from the origin [m]; negative if it holds it, or there is none.
+    off_origin: f64,
 }
 
 impl<const D: usize> Body<D> {
@@ -69,6 +71,7 @@ impl<const D: usize> Body<D> {
             is_below_ball,
             region: None,
             rounding,
+            off_origin: f64::NEG_INFINITY,
         };
         body.find_balls();
         body
@@ -207,6 +210,8 @@ impl<const D: usize> Body<D> {
             radius: ball.radius,
         };
         self.ball = promise.bounds.map(|bounds| placed(bounds.ball));
+        let off_origin = |ball: BoundingBall<D>| ball.centre.norm() - ball.radius;
+        self.off_origin = self.ball.map_or(f64::NEG_INFINITY, off_origin);
         // Distances that are exact or bounds need no constant.
         let region = promise.region.filter(|_| promise.outside == Quality::Lipschitz);
         self.region = region.map(placed);
@@ -219,10 +224,7 @@ impl<const D: usize> Body<D> {
     /// it is farther away than they are: what is far from it need not know how far exactly.
     #[inline]
     pub(crate) fn rounding_within(&self, extent: f64) -> f64 {
-        match self.ball {
-            Some(ball) if ball.centre.norm() - ball.radius > 2.0 * extent => 0.0,
-            _ => self.rounding.within(extent),
-        }
+        if self.off_origin > 2.0 * extent { 0.0 } else { self.rounding.within(extent) }
     }
 }
 

@@ -13,6 +13,7 @@
 
 use palpate_field::{Point, Vector};
 
+use crate::bend::Bend;
 use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
@@ -60,6 +61,14 @@ const CORNERED_TRUST: f64 = 1e-4;
 /// `1 − 1/8` a step at worst, and a bend that was misjudged throws the proxy no further.
 const MOST_GAIN: f64 = 8.0;
 
+/// The part of the fall of a bent surface that a step stays above it: below the surface it
+/// could not rest.
+const ABOVE: f64 = 0.1;
+
+/// The sharpest bend, in turns of the normal over a skin: twice that of an edge, as the probe
+/// rounds it. What is sharper is a crease.
+const MOST_BEND: f64 = 2.0;
+
 /// Where a tick at a surface ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rest<const D: usize> {
@@ -85,56 +94,61 @@ pub(crate) fn slide<const D: usize>(
     start: Sample<D>,
     normal: Vector<f64, D>,
     (device, motion): (Point<D>, f64),
+    bend: &mut Bend<D>,
 ) -> Rest<D> {
     let mut slide = Slide {
-        planes: Planes::new(),
+        bend,
+        here: start,
         best: start,
         normal,
+        device,
+        planes: Planes::new(),
         failed_lifts: 0,
         trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
         motion,
         last: None,
     };
-    let mut here = start;
-    if here.gradient.is_none() {
-        match sampler.gradient(here.point) {
-            Some(sample) => here = sample,
-            None => return slide.rest(sampler, device),
-        }
+    if start.tangent.is_none() && slide.go(sampler, start.point) == Turn::Spent {
+        return slide.rest(sampler);
     }
-    slide.best = here;
+    slide.best = slide.here;
+    let mut least = squared(slide.best.point - device);
     loop {
-        match slide.turn(sampler, here, device) {
-            Turn::Moved(sample) => {
-                here = sample;
-                slide.trust *= 2.0;
-            }
+        match slide.turn(sampler) {
+            Turn::Moved => slide.trust *= 2.0,
             Turn::Resting => {
-                slide.best = here;
-                let contact = (here.point - device).norm() > sampler.tolerance();
-                return Rest { sample: here, normal: slide.normal, contact };
+                let contact = squared(slide.here.point - device) > sampler.tolerance().powi(2);
+                return Rest { sample: slide.here, normal: slide.normal, contact };
             }
             // Between facing walls no plane leaves room: less of a step does not get there.
             Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
                 slide.trust *= 0.125;
                 (slide.planes, slide.last) = (Planes::new(), None);
+                *slide.bend = Bend::FLAT;
                 slide.failed_lifts = MOST_FAILED_LIFTS;
-                here = slide.best;
+                slide.here = slide.best;
             }
-            Turn::Cornered | Turn::Spent => return slide.rest(sampler, device),
+            Turn::Cornered | Turn::Spent => return slide.rest(sampler),
         }
-        let squared = |p: Point<D>| (p - device).dot(p - device);
-        let closer = squared(here.point) < squared(slide.best.point);
-        if closer && here.gap >= -sampler.tolerance() {
-            slide.best = here;
+        let distance = squared(slide.here.point - device);
+        if distance < least && slide.here.gap >= -sampler.tolerance() {
+            (slide.best, least) = (slide.here, distance);
         }
     }
 }
 
-struct Slide<const D: usize> {
-    planes: Planes<D>,
+fn squared<const D: usize>(way: Vector<f64, D>) -> f64 {
+    way.dot(way)
+}
+
+struct Slide<'a, const D: usize> {
+    bend: &'a mut Bend<D>,
+    here: Sample<D>,
+    /// The point closest to the device that is on or above the surface.
     best: Sample<D>,
     normal: Vector<f64, D>,
+    device: Point<D>,
+    planes: Planes<D>,
     /// How often the way up was not free: there is a ceiling, or a wall not yet known.
     failed_lifts: u8,
     /// How far the device point moved in this tick [m].
@@ -146,8 +160,9 @@ struct Slide<const D: usize> {
     last: Option<(Point<D>, Vector<f64, D>)>,
 }
 
-enum Turn<const D: usize> {
-    Moved(Sample<D>),
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Turn {
+    Moved,
     Resting,
     /// The planes leave no room.
     Cornered,
@@ -155,96 +170,113 @@ enum Turn<const D: usize> {
     Spent,
 }
 
-impl<const D: usize> Slide<D> {
-    fn turn(
-        &mut self,
-        sampler: &mut Sampler<'_, D>,
-        here: Sample<D>,
-        device: Point<D>,
-    ) -> Turn<D> {
+impl<const D: usize> Slide<'_, D> {
+    /// Looks around, and goes on from there.
+    fn turn(&mut self, sampler: &mut Sampler<'_, D>) -> Turn {
+        let (here, device) = (self.here, self.device);
         let (normal, gap) = sampler.tangent(&here, self.normal);
         let is_new = self.last.is_none();
         self.normal = normal;
-        self.planes.learn(here.point, normal, gap);
-        let Some(goal) = self.planes.closest(device) else { return Turn::Cornered };
         let foot = here.point - normal * gap;
-        let mut goal = self.over_the_bend(foot, normal, goal, device);
+        self.planes.learn(here.point, (foot, normal), gap, self.bend);
+        self.learn_bend(sampler, (foot, normal));
+        let Some(goal) = self.planes.closest(device) else { return Turn::Cornered };
+        let mut goal = self.over_the_bend(foot, normal, goal);
 
-        let stretch = (device - here.point).norm();
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
         // up for on a flat wall, which needs one evaluation and no more.
-        let left = if is_new { 0.0 } else { (AT_REST * stretch).min(LEFT_TO_GO * self.motion) };
-        let at_rest = sampler.tolerance() + left;
-        if is_outside && (goal - here.point).norm() <= at_rest {
-            if !self.planes.forget_sunk(at_rest) {
+        let left = if is_new {
+            0.0
+        } else {
+            let of_stretch = AT_REST * AT_REST * squared(device - here.point);
+            of_stretch.min((LEFT_TO_GO * self.motion).powi(2))
+        };
+        let at_rest = sampler.tolerance().powi(2) + left;
+        if is_outside && squared(goal - here.point) <= at_rest {
+            if !self.planes.forget_sunk(at_rest.sqrt()) {
                 return Turn::Resting;
             }
             goal = self.planes.closest(device).unwrap_or(here.point);
         }
         let way = goal - here.point;
-        let length = way.norm();
         let reach = sampler.reach(&here).min(self.trust);
-        if length <= reach {
-            return sampler.gradient(goal).map_or(Turn::Spent, Turn::Moved);
+        if squared(way) <= reach * reach {
+            return self.go(sampler, goal);
         }
         if !is_outside {
             // Straight on, the way to a far goal would stay below the surface.
             let Some(outside) = self.planes.closest(here.point) else { return Turn::Cornered };
             let way = outside - here.point;
             let part = (reach / way.norm()).min(1.0);
-            return sampler.gradient(here.point + way * part).map_or(Turn::Spent, Turn::Moved);
+            return self.go(sampler, here.point + way * part);
         }
+        let length = way.norm();
         let is_far = length > WORTH_LIFTING * sampler.reach(&here)
             && length < WORTH_FOLLOWING * self.motion;
         if is_far && self.failed_lifts < MOST_FAILED_LIFTS {
             let up = self.planes.up().unwrap_or(normal);
-            match lift(sampler, &here, up, LIFT * length) {
-                Some(above) => return Turn::Moved(above),
-                None => self.failed_lifts += 1,
+            if let Some(above) = lift(sampler, &here, up, LIFT * length) {
+                self.here = above;
+                return Turn::Moved;
             }
+            self.failed_lifts += 1;
         }
-        let next = here.point + way * (reach / length);
-        sampler.gradient(next).map_or(Turn::Spent, Turn::Moved)
+        self.go(sampler, here.point + way * (reach / length))
     }
 
-    /// The goal on a tangent plane, moved on for the surface's bend between the last two tangent
-    /// points, `foot` the later.
-    ///
-    /// A device point at depth `d` below a surface of curvature `κ` is `κd` times closer to the
-    /// centre of the bend, so the closest point turns `1 / (1 − κd)` times as far as on the
-    /// plane; going only as far as the plane says converges by `κd` a step, which on an edge
-    /// rounded by the probe's radius, pressed to nearly that depth, is slow. This is a secant
-    /// step on the way along the surface.
-    fn over_the_bend(
+    /// Goes to a point and asks what is there.
+    fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Turn {
+        let Some(sample) = sampler.gradient(point) else { return Turn::Spent };
+        self.here = sample;
+        Turn::Moved
+    }
+
+    /// Learns how the surface bends between the last two tangent points, of which this is the
+    /// later.
+    fn learn_bend(
         &mut self,
+        sampler: &Sampler<'_, D>,
+        (foot, normal): (Point<D>, Vector<f64, D>),
+    ) {
+        let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else { return };
+        let (way, turn) = (foot - last_foot, normal - last_normal);
+        let length = squared(way);
+        let most = MOST_BEND * MOST_BEND * length;
+        if squared(turn) * sampler.skin().powi(2) > most {
+            *self.bend = Bend::FLAT;
+        } else if length > sampler.tolerance().powi(2) {
+            self.bend.learn(way, turn, length);
+        }
+    }
+
+    /// The goal on a tangent plane, moved on and down for the bend of the surface.
+    fn over_the_bend(
+        &self,
         foot: Point<D>,
         normal: Vector<f64, D>,
         goal: Point<D>,
-        device: Point<D>,
     ) -> Point<D> {
-        let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else {
-            return goal;
-        };
-        let along = foot - last_foot;
-        let depth = normal.dot(foot - device);
-        // Written so that NaN, a flat surface and a crease keep the goal.
-        let curvature = along.dot(normal - last_normal) / along.dot(along);
+        let depth = normal.dot(foot - self.device);
         let side = goal - foot;
-        let off = normal.dot(side);
-        let is_on_plane = off * off <= AT_REST * AT_REST * side.dot(side);
-        let gain = 1.0 / (1.0 - curvature * depth);
-        if is_on_plane && depth > 0.0 && gain > 0.0 {
-            foot + side * gain.min(MOST_GAIN)
-        } else {
-            goal
+        let length = squared(side);
+        let is_on_plane = normal.dot(side).powi(2) <= AT_REST * AT_REST * length;
+        if !is_on_plane || depth <= 0.0 {
+            return goal;
+        }
+        match self.bend.way(side, depth) {
+            Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
+                let fall = self.bend.fall(way);
+                foot + way - normal * (fall - ABOVE * fall.abs())
+            }
+            _ => goal,
         }
     }
 
     /// The best point found, and whether its tangent plane keeps it from the device.
-    fn rest(&self, sampler: &Sampler<'_, D>, device: Point<D>) -> Rest<D> {
+    fn rest(&self, sampler: &Sampler<'_, D>) -> Rest<D> {
         let (normal, gap) = sampler.tangent(&self.best, self.normal);
-        let height = normal.dot(device - self.best.point) + gap;
+        let height = normal.dot(self.device - self.best.point) + gap;
         Rest { sample: self.best, normal, contact: height < 0.0 && gap <= sampler.near() }
     }
 }

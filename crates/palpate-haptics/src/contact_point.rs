@@ -269,10 +269,11 @@ impl<const D: usize> ContactPoint<D> {
         let (pull, velocity) =
             (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
         let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
-        let held = surface.strata.force(level, stretch.norm());
-        let pop = surface.strata.top(level).and_then(|top| top.pop_through);
-        if pop.is_some_and(|pop| held > pop.force) && self.proxy.pierce(following.body) {
-            tick.tell(following.body, EventKind::Pop { force: held });
+        if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
+            let held = surface.strata.force(level, stretch.norm());
+            if held > pop.force && self.proxy.pierce(following.body) {
+                tick.tell(following.body, EventKind::Pop { force: held });
+            }
         }
         // A ring shakes the hand, but does not pull it in.
         let ring = self.ringing.step().max(-force.dot(following.normal).max(0.0));

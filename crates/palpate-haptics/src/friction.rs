@@ -16,6 +16,7 @@
 
 use palpate_field::{Point, Vector};
 
+use crate::bend::Bend;
 use crate::contact::{Rest, slide};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
@@ -50,19 +51,20 @@ pub(crate) fn drag<const D: usize>(
     (start, normal): (Sample<D>, Vector<f64, D>),
     (device, motion): (Point<D>, f64),
     (friction, hold): (Friction, Hold),
+    bend: &mut Bend<D>,
 ) -> (Rest<D>, Hold) {
-    let free = |sampler: &mut Sampler<'_, D>| {
-        (slide(sampler, start, normal, (device, motion)), Hold::None)
+    let free = |sampler: &mut Sampler<'_, D>, bend: &mut Bend<D>| {
+        (slide(sampler, start, normal, (device, motion), bend), Hold::None)
     };
-    if start.gradient.is_none() || friction.fixed <= 0.0 {
-        return free(sampler);
+    if start.tangent.is_none() || friction.fixed <= 0.0 {
+        return free(sampler, bend);
     }
     let (normal, gap) = sampler.tangent(&start, normal);
     let stretch = start.point - device;
     let height = stretch.dot(normal);
     let depth = height - gap;
     if depth <= 0.0 || gap > sampler.near() {
-        return free(sampler);
+        return free(sampler, bend);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
     let stuck = Rest { sample: start, normal, contact: true };
@@ -71,10 +73,10 @@ pub(crate) fn drag<const D: usize>(
     else {
         return (stuck, Hold::Stick);
     };
-    let rest = slide(sampler, start, normal, (goal, motion));
+    let rest = slide(sampler, start, normal, (goal, motion), bend);
     let pull = rest.sample.point - goal;
     let along = pull - rest.normal * pull.dot(rest.normal);
-    if !rest.contact || along.norm() <= ONE_WALL * pull.norm() {
+    if !rest.contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
         return (rest, Hold::Slip);
     }
     // A crease. It holds a proxy that was in it; one that was beside it, on one wall, slid in.
@@ -88,7 +90,9 @@ pub(crate) fn drag<const D: usize>(
     let pressed = rest.normal * stretch.dot(rest.normal) + across * stretch.dot(across);
     match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
         None => (stuck, Hold::Stick),
-        Some(goal) => (slide(sampler, rest.sample, rest.normal, (goal, motion)), Hold::Slip),
+        Some(goal) => {
+            (slide(sampler, rest.sample, rest.normal, (goal, motion), bend), Hold::Slip)
+        }
     }
 }
 
@@ -100,7 +104,8 @@ fn held_back<const D: usize>(
     depth: f64,
     (most, slipping): (f64, f64),
 ) -> Option<Point<D>> {
-    let length = along.norm();
+    let squared = along.dot(along);
     // Written so that NaN is held.
-    (length > most * depth).then(|| device + along * (slipping * depth / length))
+    let is_loose = squared > most * most * depth * depth;
+    is_loose.then(|| device + along * (slipping * depth / squared.sqrt()))
 }

@@ -54,6 +54,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod bend;
 mod bodies;
 #[cfg(test)]
 #[path = "../tests/common/cases.rs"]

@@ -12,36 +12,54 @@ use crate::bodies::{Bodies, Body};
 /// Which layers of which bodies a hand went through: they hold it no more.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pierced {
-    entries: [Option<(u32, u8)>; Self::CAPACITY],
+    bodies: [u32; Self::CAPACITY],
+    /// How many layers of each; zero where there is no body.
+    levels: [u8; Self::CAPACITY],
 }
 
 impl Pierced {
     /// Bodies that a hand is through at a time.
     const CAPACITY: usize = 4;
 
+    /// Whether all layers hold.
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.levels == [0; Self::CAPACITY]
+    }
+
+    fn entries(&mut self) -> impl Iterator<Item = (&mut u32, &mut u8)> {
+        self.bodies.iter_mut().zip(&mut self.levels)
+    }
+
     /// How many layers of a body the hand went through.
     #[inline]
     pub(crate) fn level(&self, body: u32) -> usize {
-        let found = self.entries.iter().flatten().find(|(pierced, _)| *pierced == body);
+        if self.is_empty() {
+            return 0;
+        }
+        let mut entries = self.bodies.iter().zip(&self.levels);
+        let found = entries.find(|(pierced, level)| **pierced == body && **level > 0);
         found.map_or(0, |(_, level)| usize::from(*level))
     }
 
     /// Notes that the hand went through one more layer of a body; `false` if it is through as
     /// many as there is room for.
     pub(crate) fn pierce(&mut self, body: u32) -> bool {
-        let known = self.entries.iter_mut().flatten().find(|(pierced, _)| *pierced == body);
+        let known = self.entries().find(|(pierced, level)| **pierced == body && **level > 0);
         if let Some((_, level)) = known {
             *level = level.saturating_add(1);
             return true;
         }
-        let room = self.entries.iter_mut().find(|entry| entry.is_none());
-        room.map(|entry| *entry = Some((body, 1))).is_some()
+        let room = self.entries().find(|(_, level)| **level == 0);
+        room.map(|(place, level)| (*place, *level) = (body, 1)).is_some()
     }
 
     /// Lets those layers hold again that `is_away` says the hand is away from.
     pub(crate) fn heal(&mut self, mut is_away: impl FnMut(u32, usize) -> bool) {
-        for entry in &mut self.entries {
-            *entry = entry.filter(|(body, level)| !is_away(*body, usize::from(*level)));
+        for (body, level) in self.entries() {
+            if *level > 0 && is_away(*body, usize::from(*level)) {
+                *level = 0;
+            }
         }
     }
 }
@@ -113,7 +131,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// The field at a point, and whose it is.
     #[inline]
     pub(crate) fn distance(&self, p: Point<D>, pierced: &Pierced) -> (f64, u32) {
-        if let ([body], true) = (self.bodies.bodies(), *pierced == Pierced::default()) {
+        if let ([body], true) = (self.bodies.bodies(), pierced.is_empty()) {
             return (body.distance(p), 0);
         }
         let mut least = (self.horizon - (p - self.centre).norm(), 0);
@@ -141,7 +159,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// The field at a point with its gradient, and whose it is.
     #[inline]
     pub(crate) fn gradient(&self, p: Point<D>, pierced: &Pierced) -> Seen<D> {
-        if let ([body], true) = (self.bodies.bodies(), *pierced == Pierced::default()) {
+        if let ([body], true) = (self.bodies.bodies(), pierced.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);
             return Seen { distance, gradient, body: 0 };
         }

@@ -7,6 +7,7 @@
 
 use palpate_field::{Point, Vector};
 
+use crate::bend::Bend;
 use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
 
 /// Normals closer than this [rad] are one plane: two would meet in a line that rounding places.
@@ -19,7 +20,7 @@ const LEFT_BEHIND: f64 = 0.25;
 
 /// A plane and the point of the surface at which it was tangent.
 #[derive(Clone, Copy, Debug)]
-struct Tangent<const D: usize> {
+struct Wall<const D: usize> {
     half_space: HalfSpace<D>,
     foot: Point<D>,
     /// How far it was moved down since [m].
@@ -33,30 +34,30 @@ struct Tangent<const D: usize> {
 /// convex neighbour would be no constraint any more and is dropped.
 #[derive(Debug)]
 pub(crate) struct Planes<const D: usize> {
-    tangents: [Tangent<D>; CAPACITY],
+    walls: [Wall<D>; CAPACITY],
     count: usize,
 }
 
 impl<const D: usize> Planes<D> {
     pub(crate) fn new() -> Self {
         let half_space = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
-        let none = Tangent { half_space, foot: Vector::ZERO, sunk: 0.0 };
-        Self { tangents: [none; CAPACITY], count: 0 }
+        let none = Wall { half_space, foot: Vector::ZERO, sunk: 0.0 };
+        Self { walls: [none; CAPACITY], count: 0 }
     }
 
-    fn known(&self) -> &[Tangent<D>] {
-        self.tangents.get(..self.count).unwrap_or(&[])
+    fn known(&self) -> &[Wall<D>] {
+        self.walls.get(..self.count).unwrap_or(&[])
     }
 
     /// Changes each plane, and keeps those of which `keep` says so.
-    fn retain(&mut self, mut keep: impl FnMut(&mut Tangent<D>) -> bool) {
+    fn retain(&mut self, mut keep: impl FnMut(&mut Wall<D>) -> bool) {
         let mut kept = 0;
         for i in 0..self.count {
-            let Some(tangent) = self.tangents.get_mut(i) else { break };
-            if keep(tangent) {
-                let tangent = *tangent;
-                if let Some(place) = self.tangents.get_mut(kept) {
-                    *place = tangent;
+            let Some(wall) = self.walls.get_mut(i) else { break };
+            if keep(wall) {
+                let wall = *wall;
+                if let Some(place) = self.walls.get_mut(kept) {
+                    *place = wall;
                 }
                 kept += 1;
             }
@@ -70,41 +71,50 @@ impl<const D: usize> Planes<D> {
     /// of theirs, so a wall whose plane lies `h` below `seen_from` implies `gap ≤ h`. A larger
     /// gap contradicts the plane by `gap − h`: it was that of a face left behind, and is
     /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
-    /// by the angle between the normals (see [`LEFT_BEHIND`]).
-    pub(crate) fn learn(&mut self, seen_from: Point<D>, normal: Vector<f64, D>, gap: f64) {
-        let foot = seen_from - normal * gap;
-        self.retain(|tangent| {
-            let turn = tangent.half_space.normal - normal;
-            let excess = gap - tangent.half_space.height(seen_from);
-            let (turn, way) = (turn.dot(turn), (foot - tangent.foot).dot(foot - tangent.foot));
+    /// by the angle between the normals (see [`LEFT_BEHIND`]). A plane of the same wall, as
+    /// its `bend` tells, is dropped for the later one.
+    pub(crate) fn learn(
+        &mut self,
+        seen_from: Point<D>,
+        (foot, normal): (Point<D>, Vector<f64, D>),
+        gap: f64,
+        bend: &Bend<D>,
+    ) {
+        self.retain(|wall| {
+            let (way, turn) = (wall.foot - foot, wall.half_space.normal - normal);
+            let is_same_wall = bend.explains(way, turn);
+            let excess = gap - wall.half_space.height(seen_from);
+            let (way, turn) = (way.dot(way), turn.dot(turn));
             let is_behind =
                 excess > 0.0 && excess * excess > LEFT_BEHIND * LEFT_BEHIND * turn * way;
             // Written so that NaN drops the plane.
-            let stays = turn > SAME_NORMAL * SAME_NORMAL && !is_behind && !excess.is_nan();
+            let stays = turn > SAME_NORMAL * SAME_NORMAL
+                && !is_same_wall
+                && !is_behind
+                && !excess.is_nan();
             if stays {
                 let sunk = excess.max(0.0);
-                tangent.half_space.point -= tangent.half_space.normal * sunk;
-                tangent.sunk += sunk;
+                wall.half_space.point -= wall.half_space.normal * sunk;
+                wall.sunk += sunk;
             }
             stays
         });
-        let tangent =
-            Tangent { half_space: HalfSpace { point: foot, normal }, foot, sunk: 0.0 };
-        match self.tangents.get_mut(self.count) {
+        let wall = Wall { half_space: HalfSpace { point: foot, normal }, foot, sunk: 0.0 };
+        match self.walls.get_mut(self.count) {
             Some(place) => {
-                *place = tangent;
+                *place = wall;
                 self.count += 1;
             }
-            None => self.replace_loosest(tangent),
+            None => self.replace_loosest(wall),
         }
     }
 
-    /// Puts `tangent` in the place of the plane farthest below its foot.
-    fn replace_loosest(&mut self, tangent: Tangent<D>) {
-        let height = |t: &Tangent<D>| t.half_space.height(tangent.foot);
-        let loosest = self.tangents.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
+    /// Puts `wall` in the place of the plane farthest below its foot.
+    fn replace_loosest(&mut self, wall: Wall<D>) {
+        let height = |t: &Wall<D>| t.half_space.height(wall.foot);
+        let loosest = self.walls.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
         if let Some(place) = loosest {
-            *place = tangent;
+            *place = wall;
         }
     }
 
@@ -113,7 +123,7 @@ impl<const D: usize> Planes<D> {
     /// They are guesses: good enough to go by, not to rest on.
     pub(crate) fn forget_sunk(&mut self, limit: f64) -> bool {
         let before = self.count;
-        self.retain(|tangent| tangent.sunk <= limit);
+        self.retain(|wall| wall.sunk <= limit);
         self.count < before
     }
 
@@ -126,13 +136,13 @@ impl<const D: usize> Planes<D> {
 
     /// The point closest to `x` above all planes; `None` if they leave no room.
     pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
-        if let [tangent] = self.known() {
-            return Some(tangent.half_space.closest(x));
+        if let [wall] = self.known() {
+            return Some(wall.half_space.closest(x));
         }
         let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];
-        for (place, tangent) in half_spaces.iter_mut().zip(self.known()) {
-            *place = tangent.half_space;
+        for (place, wall) in half_spaces.iter_mut().zip(self.known()) {
+            *place = wall.half_space;
         }
         half_spaces.get(..self.count).and_then(|known| closest_point(x, known))
     }

@@ -15,6 +15,7 @@
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
+use crate::bend::Bend;
 use crate::bodies::Body;
 
 use crate::contact::{Rest, slide};
@@ -159,6 +160,8 @@ pub struct Proxy<const D: usize> {
     normal: Vector<f64, D>,
     contact: bool,
     hold: Hold,
+    /// How the surface bent where it last was.
+    bend: Bend<D>,
     pierced: Pierced,
 }
 
@@ -176,6 +179,7 @@ impl<const D: usize> Proxy<D> {
             normal,
             contact: false,
             hold: Hold::None,
+            bend: Bend::FLAT,
             pierced: Pierced::default(),
         }
     }
@@ -238,10 +242,12 @@ impl<const D: usize> Proxy<D> {
         }
         let carried =
             if nearby.has_moved() { self.carried(&nearby, [last, device]) } else { last };
-        let extent = carried.norm().max(device.norm()) + 2.0 * self.probe.radius;
-        let moved = if self.at.is_some() { (device - self.device).norm() } else { 0.0 };
+        let farther = carried.dot(carried).max(device.dot(device)).sqrt();
+        let extent = farther + 2.0 * self.probe.radius;
+        let squared = |way: Vector<f64, D>| way.dot(way);
+        let moved = if self.at.is_some() { squared(device - self.device) } else { 0.0 };
         self.device = device;
-        let moved = moved.max((carried - last).norm());
+        let moved = moved.max(squared(carried - last)).sqrt();
         let Probe { radius, budget } = self.probe;
         let mut sampler = Sampler::new((nearby, self.pierced), radius, budget, extent);
 
@@ -254,6 +260,9 @@ impl<const D: usize> Proxy<D> {
             self.at = self.look_again(&mut sampler, at);
         } else if self.is_stale && self.at.is_some() {
             self.at = self.look_again(&mut sampler, last);
+        }
+        if self.is_stale || nearby.has_moved() {
+            self.bend = Bend::FLAT;
         }
         self.is_stale = false;
         let known = self.at.filter(|at| at.gap >= -sampler.tolerance());
@@ -305,13 +314,13 @@ impl<const D: usize> Proxy<D> {
     /// What is there at the proxy, of which nothing is known any more.
     fn look_again(&self, sampler: &mut Sampler<'_, D>, at: Point<D>) -> Option<Sample<D>> {
         let body = self.at.map_or(0, |at| at.body);
-        let unknown = Sample { point: at, gap: f64::NEG_INFINITY, gradient: None, body };
+        let unknown = Sample { point: at, gap: f64::NEG_INFINITY, tangent: None, body };
         Some(sampler.gradient(at).unwrap_or(unknown))
     }
 
     /// Lets layers hold again that the hand is away from.
     fn heal(&mut self, sampler: &mut Sampler<'_, D>) {
-        if self.pierced == Pierced::default() {
+        if self.pierced.is_empty() {
             return;
         }
         let (device, radius) = (self.device, self.probe.radius);
@@ -374,30 +383,36 @@ impl<const D: usize> Proxy<D> {
 
     /// Flies straight to the device where that is free, and slides from where it is not.
     fn pursue(
-        &self,
+        &mut self,
         sampler: &mut Sampler<'_, D>,
         start: Sample<D>,
         (device, moved): (Point<D>, f64),
     ) -> (Rest<D>, Hold) {
-        let at_rest =
-            |sample| (Rest { sample, normal: self.normal, contact: false }, Hold::None);
+        let normal = self.normal;
+        let at_rest = |sample| (Rest { sample, normal, contact: false }, Hold::None);
         let mut here = start;
         let mut was_held = self.contact;
         loop {
             let way = device - here.point;
-            let length = way.norm();
+            let squared = way.dot(way);
             let free = sampler.free_radius(&here);
-            let next = if free > length {
+            let is_free = free > 0.0 && free * free > squared;
+            let next = if is_free {
                 device
-            } else if free > WORTH_FLYING * length {
+            } else if free > 0.0 && free * free > WORTH_FLYING * WORTH_FLYING * squared {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
-                here.point + way * (free / length)
+                here.point + way * (free / squared.sqrt())
             } else {
-                let from = (here, self.normal);
+                let from = (here, normal);
                 let friction = self.friction(sampler, &here, device).filter(|_| was_held);
                 return match friction {
-                    Some(friction) => drag(sampler, from, (device, moved), friction),
-                    None => (slide(sampler, from.0, from.1, (device, moved)), Hold::None),
+                    Some(friction) => {
+                        drag(sampler, from, (device, moved), friction, &mut self.bend)
+                    }
+                    None => (
+                        slide(sampler, from.0, from.1, (device, moved), &mut self.bend),
+                        Hold::None,
+                    ),
                 };
             };
             was_held = false;
@@ -405,7 +420,7 @@ impl<const D: usize> Proxy<D> {
                 Some(sample) if sample.gap >= -sampler.tolerance() => here = sample,
                 _ => return at_rest(here),
             }
-            if free > length {
+            if is_free {
                 return at_rest(here);
             }
         }

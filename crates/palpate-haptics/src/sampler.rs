@@ -26,7 +26,7 @@ const POINT_SKIN: f64 = 5e-5;
 const POINT_RADIUS: f64 = 1e-6;
 
 /// Below this part of the Lipschitz constant a gradient says nothing about the surface: it is
-/// that of a ridge, a blend or a centre. Dividing by it would throw the proxy far away.
+/// that of a ridge, a blend or a centre.
 const LEAST_SLOPE: f64 = 0.1;
 
 /// A goal beyond the region of the field's promise is sought this part of its radius within it:
@@ -40,10 +40,19 @@ pub(crate) struct Sample<const D: usize> {
     pub(crate) point: Point<D>,
     /// The field's value minus the probe's radius [m]: zero on the offset surface.
     pub(crate) gap: f64,
-    /// The gradient, if it was asked for.
-    pub(crate) gradient: Option<Vector<f64, D>>,
+    /// The plane that the offset surface lies along; none if no gradient was asked for.
+    pub(crate) tangent: Option<Tangent<D>>,
     /// Whose surface is nearest, as far as the field says.
     pub(crate) body: u32,
+}
+
+/// The plane that the offset surface lies along, to first order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tangent<const D: usize> {
+    /// The unit normal; zero if the gradient is too small to have a direction.
+    pub(crate) normal: Vector<f64, D>,
+    /// How far the plane is below the point, along its normal [m].
+    pub(crate) gap: f64,
 }
 
 /// Bodies with a budget of evaluations and the lengths that follow from them and the probe.
@@ -62,7 +71,8 @@ pub(crate) struct Sampler<'a, const D: usize> {
     radius: f64,
     skin: f64,
     tolerance: f64,
-    lipschitz: f64,
+    /// The inverse of the Lipschitz constant.
+    per_slope: f64,
     budget: u32,
     evaluations: u32,
 }
@@ -83,8 +93,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
         let skin =
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
         let skin = skin.max(4.0 * tolerance);
-        let lipschitz = nearby.lipschitz();
-        Self { nearby, pierced, radius, skin, tolerance, lipschitz, budget, evaluations: 0 }
+        let per_slope = 1.0 / nearby.lipschitz();
+        Self { nearby, pierced, radius, skin, tolerance, per_slope, budget, evaluations: 0 }
     }
 
     /// What is near.
@@ -133,7 +143,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.spend(point)?;
         let (value, body) = self.nearby.distance(point, &self.pierced);
         let gap = value - self.radius;
-        gap.is_finite().then_some(Sample { point, gap, gradient: None, body })
+        gap.is_finite().then_some(Sample { point, gap, tangent: None, body })
     }
 
     /// The value and gradient at `point`, likewise.
@@ -141,13 +151,19 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.spend(point)?;
         let seen = self.nearby.gradient(point, &self.pierced);
         let gap = seen.distance - self.radius;
-        let is_finite = gap.is_finite() && seen.gradient.is_finite();
-        is_finite.then_some(Sample {
-            point,
-            gap,
-            gradient: Some(seen.gradient),
-            body: seen.body,
-        })
+        let slope = seen.gradient.norm();
+        // Written so that NaN is refused.
+        if !(gap + slope).is_finite() {
+            return None;
+        }
+        // Dividing by less would throw the proxy far away.
+        let tangent = if slope * self.per_slope > LEAST_SLOPE {
+            let per_slope = 1.0 / slope;
+            Tangent { normal: seen.gradient * per_slope, gap: gap * per_slope }
+        } else {
+            Tangent { normal: Vector::ZERO, gap: gap * self.per_slope }
+        };
+        Some(Sample { point, gap, tangent: Some(tangent), body: seen.body })
     }
 
     /// Counts an evaluation at `point`, if there is one left and something is proven there.
@@ -163,7 +179,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     ///
     /// `(f − r − ε) / L` with the rounding `ε`.
     pub(crate) fn free_radius(&self, sample: &Sample<D>) -> f64 {
-        (sample.gap - self.tolerance) / self.lipschitz
+        (sample.gap - self.tolerance) * self.per_slope
     }
 
     /// How far the probe's centre may move from the sample in any direction [m], so that it
@@ -174,28 +190,26 @@ impl<'a, const D: usize> Sampler<'a, D> {
     pub(crate) fn reach(&self, sample: &Sample<D>) -> f64 {
         let to_half = sample.gap + 0.5 * self.skin;
         let half_way = 0.5 * (sample.gap + self.skin);
-        to_half.max(half_way) / self.lipschitz
+        to_half.max(half_way) * self.per_slope
     }
 
     /// How far any straight move in the region is sure to be less than a skin deep [m].
     pub(crate) fn clear_radius(&self, sample: &Sample<D>) -> f64 {
-        ((sample.gap + self.skin) / self.lipschitz).max(0.0)
+        ((sample.gap + self.skin) * self.per_slope).max(0.0)
     }
 
     /// The unit normal and the signed distance to the offset surface along it [m], to first
     /// order: `(f − r) / ‖∇f‖`. `previous` replaces the direction of a gradient too small to
-    /// have one.
+    /// have one, and of one that was not asked for.
     pub(crate) fn tangent(
         &self,
         sample: &Sample<D>,
         previous: Vector<f64, D>,
     ) -> (Vector<f64, D>, f64) {
-        let gradient = sample.gradient.unwrap_or(Vector::ZERO);
-        let slope = gradient.norm();
-        if slope > LEAST_SLOPE * self.lipschitz {
-            (gradient * (1.0 / slope), sample.gap / slope)
-        } else {
-            (previous, sample.gap / self.lipschitz)
+        match sample.tangent {
+            Some(Tangent { normal, gap }) if normal != Vector::ZERO => (normal, gap),
+            Some(Tangent { gap, .. }) => (previous, gap),
+            None => (previous, sample.gap * self.per_slope),
         }
     }
 }

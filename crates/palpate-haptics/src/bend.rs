@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How the surface bends near a proxy, learnt from the tangent planes that it meets.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::Vector;
+
+/// The part of a residual below which a step solves its equation: the step is itself a guess.
+const SOLVED: f64 = 1e-4;
+
+/// A turn is explained if the bend tells it up to this part.
+const EXPLAINED: f64 = 0.2;
+
+/// The shape operator `S` of a surface: its unit normal turns by `S w` along a short way `w`.
+///
+/// Learnt one way at a time by the symmetric secant update of Powell, "A new algorithm for
+/// unconstrained optimization" (1970): the least change of `S` that tells the turn seen. It
+/// outlives a tick: the surface under a proxy bends much as it did a tick before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bend<const D: usize> {
+    /// The rows of the symmetric matrix [1/m].
+    rows: [Vector<f64, D>; D],
+}
+
+impl<const D: usize> Bend<D> {
+    /// That of a plane.
+    pub(crate) const FLAT: Self = Self { rows: [Vector::ZERO; D] };
+
+    /// How the normal turns along a way.
+    #[inline]
+    fn turn(&self, way: Vector<f64, D>) -> Vector<f64, D> {
+        Vector(self.rows.map(|row| row.dot(way)))
+    }
+
+    /// Learns that the normal turned by `turn` along a `way` of squared length `squared` [m²].
+    ///
+    /// `S ← S + (r wᵀ + w rᵀ) / w² − (r·w) w wᵀ / w⁴` with `r = turn − S w`.
+    #[inline]
+    pub(crate) fn learn(&mut self, way: Vector<f64, D>, turn: Vector<f64, D>, squared: f64) {
+        let per_squared = 1.0 / squared;
+        let rest = (turn - self.turn(way)) * per_squared;
+        let half = way * (0.5 * rest.dot(way) * per_squared);
+        let rest = rest - half;
+        for ((row, r), w) in self.rows.iter_mut().zip(rest.0).zip(way.0) {
+            *row += way * r + rest * w;
+        }
+    }
+
+    /// Whether a `turn` of the normal along a `way` is that of this bend.
+    #[inline]
+    pub(crate) fn explains(&self, way: Vector<f64, D>, turn: Vector<f64, D>) -> bool {
+        let rest = turn - self.turn(way);
+        rest.dot(rest) <= EXPLAINED * EXPLAINED * turn.dot(turn)
+    }
+
+    /// The way to the point closest to a device at `depth` [m] below the surface, for which it
+    /// would be `along` on the tangent plane, itself not included; none if the closest point is
+    /// not near.
+    ///
+    /// The device is `κ d` times closer to the centre of a bend of curvature `κ` than the
+    /// surface, so `(1 − d S) w = along`. Solved by conjugate gradients, which are exact after
+    /// as many steps as the surface has dimensions. They end where the matrix is not positive:
+    /// past a centre there is no closest point.
+    #[inline]
+    pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
+        let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
+        let mut left = rest.dot(rest);
+        let solved = SOLVED * SOLVED * left;
+        for _ in 1..D {
+            let seen = step - self.turn(step) * depth;
+            let steepness = step.dot(seen);
+            // Written so that NaN is refused, and what is nothing needs no step.
+            if !(steepness > 0.0) {
+                return None;
+            }
+            let length = left / steepness;
+            way += step * length;
+            rest -= seen * length;
+            let before = left;
+            left = rest.dot(rest);
+            if left <= solved {
+                break;
+            }
+            step = rest + step * (left / before);
+        }
+        Some(way)
+    }
+
+    /// How far the surface falls below its tangent plane along a way [m].
+    #[inline]
+    pub(crate) fn fall(&self, way: Vector<f64, D>) -> f64 {
+        0.5 * way.dot(self.turn(way))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bend of a cylinder of 1/4 m along the third axis.
+    fn cylinder() -> Bend<3> {
+        let mut bend = Bend::FLAT;
+        let way = Vector([0.125, 0.0, 0.0]);
+        bend.learn(way, way * 4.0, way.dot(way));
+        bend
+    }
+
+    #[test]
+    fn a_bend_tells_what_it_learnt() {
+        let mut bend = cylinder();
+        assert_eq!(bend.turn(Vector([1.0, 0.0, 0.0])), Vector([4.0, 0.0, 0.0]));
+        assert_eq!(bend.turn(Vector([0.0, 0.0, 1.0])), Vector::ZERO);
+        let (way, turn) = (Vector([0.25, 0.0, 0.5]), Vector([0.5, 0.25, -0.25]));
+        bend.learn(way, turn, way.dot(way));
+        assert!((bend.turn(way) - turn).norm() < 1e-15);
+        assert!(bend.explains(way, turn) && !bend.explains(way, turn * -1.0));
+    }
+
+    #[test]
+    fn the_closest_point_turns_about_the_centre() {
+        // At a depth of half the radius, twice as far across the axis, as far along it.
+        let way = cylinder().way(Vector([0.001, 0.0, 0.002]), 0.125).unwrap();
+        assert!((way - Vector([0.002, 0.0, 0.002])).norm() < 1e-15);
+        assert_eq!(cylinder().fall(Vector([0.5, 0.0, 0.0])), 0.5);
+        // Past the axis there is none.
+        assert_eq!(cylinder().way(Vector([0.001, 0.0, 0.0]), 0.5), None);
+    }
+}
