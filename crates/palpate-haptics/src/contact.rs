@@ -18,8 +18,8 @@ use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
-/// this part: 0.0006 degrees, a thousandth of what a hand can tell.
-const AT_REST: f64 = 1e-5;
+/// this part: 0.002 degrees, far less than a hand can tell.
+const AT_REST: f64 = 3e-5;
 
 /// It rests when that move is less than this part of the hand's own, too. What is left of it
 /// points against the motion, and slow rounds would gain up to 3e-8 J of it; now it is that
@@ -54,6 +54,10 @@ const FIRST_TRUST: f64 = 2.0;
 /// The part of a skin that is tried in any case: the device may rest while its proxy does not.
 const LEAST_TRUST: f64 = 1.0 / 64.0;
 
+/// Where a plane that was moved down is forgotten, the next move is this many times as long as
+/// it was moved: to where its wall is seen again, but not far beyond.
+const NEAR_SUNK: f64 = 4.0;
+
 /// The part of a skin at which a cornered proxy gives up and stays where it is.
 const CORNERED_TRUST: f64 = 1e-4;
 
@@ -66,8 +70,19 @@ const MOST_GAIN: f64 = 8.0;
 const ABOVE: f64 = 0.1;
 
 /// The sharpest bend, in turns of the normal over a skin: twice that of an edge, as the probe
-/// rounds it. What is sharper is a crease.
+/// rounds it.
 const MOST_BEND: f64 = 2.0;
+
+/// A way shorter than this part of the hand's motion tells nothing of the bend: its ends are
+/// guesses.
+const LEAST_WAY: f64 = 1e-3;
+
+/// Nor does one that does not lead along the surface: the square of twice the sine of its angle
+/// to it.
+const ALONG: f64 = 0.01;
+
+/// Likewise of a hollow, which nothing rounds. What is sharper is a crease.
+const MOST_HOLLOW: f64 = 16.0;
 
 /// Where a tick at a surface ended.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +137,9 @@ pub(crate) fn slide<const D: usize>(
             }
             // Between facing walls no plane leaves room: less of a step does not get there.
             Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
-                slide.trust *= 0.125;
+                let gone = squared(slide.here.point - slide.best.point).sqrt();
+                slide.trust =
+                    0.125 * if gone > 0.0 { slide.trust.min(gone) } else { slide.trust };
                 (slide.planes, slide.last) = (Planes::new(), None);
                 *slide.bend = Bend::FLAT;
                 slide.failed_lifts = MOST_FAILED_LIFTS;
@@ -194,9 +211,11 @@ impl<const D: usize> Slide<'_, D> {
         };
         let at_rest = sampler.tolerance().powi(2) + left;
         if is_outside && squared(goal - here.point) <= at_rest {
-            if !self.planes.forget_sunk(at_rest.sqrt()) {
+            let Some(sunk) = self.planes.forget_sunk(at_rest.sqrt()) else {
                 return Turn::Resting;
-            }
+            };
+            // The walls that they were of are not far, or gone.
+            self.trust = self.trust.min(NEAR_SUNK * sunk);
             goal = self.planes.closest(device).unwrap_or(here.point);
         }
         let way = goal - here.point;
@@ -242,10 +261,12 @@ impl<const D: usize> Slide<'_, D> {
         let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else { return };
         let (way, turn) = (foot - last_foot, normal - last_normal);
         let length = squared(way);
-        let most = MOST_BEND * MOST_BEND * length;
-        if squared(turn) * sampler.skin().powi(2) > most {
+        let most = if turn.dot(way) > 0.0 { MOST_BEND } else { MOST_HOLLOW };
+        if squared(turn) * sampler.skin().powi(2) > most * most * length {
             *self.bend = Bend::FLAT;
-        } else if length > sampler.tolerance().powi(2) {
+        } else if length > (LEAST_WAY * self.motion).powi(2)
+            && (normal + last_normal).dot(way).powi(2) < length * ALONG
+        {
             self.bend.learn(way, turn, length);
         }
     }
@@ -266,6 +287,8 @@ impl<const D: usize> Slide<'_, D> {
         }
         match self.bend.way(side, depth) {
             Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
+                // The bend was learnt where the surface faced another way.
+                let way = way - normal * normal.dot(way);
                 let fall = self.bend.fall(way);
                 foot + way - normal * (fall - ABOVE * fall.abs())
             }
@@ -273,11 +296,11 @@ impl<const D: usize> Slide<'_, D> {
         }
     }
 
-    /// The best point found, and whether its tangent plane keeps it from the device.
-    fn rest(&self, sampler: &Sampler<'_, D>) -> Rest<D> {
-        let (normal, gap) = sampler.tangent(&self.best, self.normal);
-        let height = normal.dot(self.device - self.best.point) + gap;
-        Rest { sample: self.best, normal, contact: height < 0.0 && gap <= sampler.near() }
+    /// The best point found, and whether the device is below the surface.
+    fn rest(&self, sampler: &mut Sampler<'_, D>) -> Rest<D> {
+        let (normal, _) = sampler.tangent(&self.best, self.normal);
+        let contact = sampler.is_below(self.device).unwrap_or(false);
+        Rest { sample: self.best, normal, contact }
     }
 }
 

@@ -118,13 +118,20 @@ impl<const D: usize> Planes<D> {
         }
     }
 
-    /// Drops the planes that were moved down by more than `limit` [m]; `true` if there were any.
+    /// Drops the planes that were moved down by more than `limit` [m]. By how much they were at
+    /// most; none if there were none.
     ///
     /// They are guesses: good enough to go by, not to rest on.
-    pub(crate) fn forget_sunk(&mut self, limit: f64) -> bool {
-        let before = self.count;
-        self.retain(|wall| wall.sunk <= limit);
-        self.count < before
+    pub(crate) fn forget_sunk(&mut self, limit: f64) -> Option<f64> {
+        let mut most = None;
+        self.retain(|wall| {
+            let stays = wall.sunk <= limit;
+            if !stays {
+                most = Some(wall.sunk.max(most.unwrap_or(0.0)));
+            }
+            stays
+        });
+        most
     }
 
     /// The unit vector that leads away from all planes, the mean of their normals; `None` if

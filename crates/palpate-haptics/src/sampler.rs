@@ -27,11 +27,14 @@ const POINT_RADIUS: f64 = 1e-6;
 
 /// Below this part of the Lipschitz constant a gradient says nothing about the surface: it is
 /// that of a ridge, a blend or a centre.
-const LEAST_SLOPE: f64 = 0.1;
+const LEAST_SLOPE: f64 = 0.01;
 
 /// A goal beyond the region of the field's promise is sought this part of its radius within it:
 /// far more than rounding can carry it out again.
 const REGION_EDGE: f64 = 1e-9;
+
+/// Evaluations that are kept for the end of a tick that spent its budget.
+const IN_RESERVE: u32 = 1;
 
 /// An evaluated point.
 #[derive(Clone, Copy, Debug)]
@@ -168,11 +171,22 @@ impl<'a, const D: usize> Sampler<'a, D> {
 
     /// Counts an evaluation at `point`, if there is one left and something is proven there.
     pub(crate) fn spend(&mut self, point: Point<D>) -> Option<()> {
-        if self.evaluations >= self.budget || !self.nearby.is_proven(point) {
+        if self.evaluations + IN_RESERVE >= self.budget || !self.nearby.is_proven(point) {
             return None;
         }
         self.evaluations += 1;
         Some(())
+    }
+
+    /// Whether a point is below the offset surface, as the evaluation in reserve tells, which
+    /// is for this alone; none if nothing is proven there.
+    pub(crate) fn is_below(&mut self, point: Point<D>) -> Option<bool> {
+        if !self.nearby.is_proven(point) {
+            return None;
+        }
+        self.evaluations += 1;
+        let (value, _) = self.nearby.distance(point, &self.pierced);
+        Some(value < self.radius - self.tolerance)
     }
 
     /// How far any straight move in the region is sure not to reach the offset surface [m].
