@@ -84,6 +84,27 @@ const ALONG: f64 = 0.01;
 /// Likewise of a hollow, which nothing rounds. What is sharper is a crease.
 const MOST_HOLLOW: f64 = 16.0;
 
+/// What is known of the surface near a proxy.
+#[derive(Clone, Debug)]
+pub(crate) struct Ground<const D: usize> {
+    /// Its tangent planes, for a tick.
+    planes: Planes<D>,
+    /// How it bends.
+    bend: Bend<D>,
+}
+
+impl<const D: usize> Ground<D> {
+    /// Nothing is known yet.
+    pub(crate) fn new() -> Self {
+        Self { planes: Planes::new(), bend: Bend::FLAT }
+    }
+
+    /// Another surface may be there now.
+    pub(crate) fn forget(&mut self) {
+        self.bend = Bend::FLAT;
+    }
+}
+
 /// Where a tick at a surface ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rest<const D: usize> {
@@ -109,24 +130,27 @@ pub(crate) fn slide<const D: usize>(
     start: Sample<D>,
     normal: Vector<f64, D>,
     (device, motion): (Point<D>, f64),
-    bend: &mut Bend<D>,
+    Ground { planes, bend }: &mut Ground<D>,
 ) -> Rest<D> {
+    planes.clear();
     let mut slide = Slide {
         bend,
         here: start,
         best: start,
         normal,
         device,
-        planes: Planes::new(),
+        planes,
         failed_lifts: 0,
         trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
         motion,
         last: None,
     };
-    if start.tangent.is_none() && slide.go(sampler, start.point) == Turn::Spent {
-        return slide.rest(sampler);
+    if start.tangent.is_none() {
+        if slide.go(sampler, start.point) == Turn::Spent {
+            return slide.rest(sampler);
+        }
+        slide.best = slide.here;
     }
-    slide.best = slide.here;
     let mut least = squared(slide.best.point - device);
     loop {
         match slide.turn(sampler) {
@@ -140,8 +164,8 @@ pub(crate) fn slide<const D: usize>(
                 let gone = squared(slide.here.point - slide.best.point).sqrt();
                 slide.trust =
                     0.125 * if gone > 0.0 { slide.trust.min(gone) } else { slide.trust };
-                (slide.planes, slide.last) = (Planes::new(), None);
-                *slide.bend = Bend::FLAT;
+                (*slide.bend, slide.last) = (Bend::FLAT, None);
+                slide.planes.clear();
                 slide.failed_lifts = MOST_FAILED_LIFTS;
                 slide.here = slide.best;
             }
@@ -165,7 +189,7 @@ struct Slide<'a, const D: usize> {
     best: Sample<D>,
     normal: Vector<f64, D>,
     device: Point<D>,
-    planes: Planes<D>,
+    planes: &'a mut Planes<D>,
     /// How often the way up was not free: there is a ceiling, or a wall not yet known.
     failed_lifts: u8,
     /// How far the device point moved in this tick [m].
@@ -189,6 +213,7 @@ enum Turn {
 
 impl<const D: usize> Slide<'_, D> {
     /// Looks around, and goes on from there.
+    #[inline(always)]
     fn turn(&mut self, sampler: &mut Sampler<'_, D>) -> Turn {
         let (here, device) = (self.here, self.device);
         let (normal, gap) = sampler.tangent(&here, self.normal);
@@ -197,8 +222,7 @@ impl<const D: usize> Slide<'_, D> {
         let foot = here.point - normal * gap;
         self.planes.learn(here.point, (foot, normal), gap, self.bend);
         self.learn_bend(sampler, (foot, normal));
-        let Some(goal) = self.planes.closest(device) else { return Turn::Cornered };
-        let mut goal = self.over_the_bend(foot, normal, goal);
+        let Some(mut goal) = self.planes.closest(device) else { return Turn::Cornered };
 
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
@@ -210,6 +234,10 @@ impl<const D: usize> Slide<'_, D> {
             of_stretch.min((LEFT_TO_GO * self.motion).powi(2))
         };
         let at_rest = sampler.tolerance().powi(2) + left;
+        let on_plane = squared(goal - here.point);
+        if !is_outside || MOST_GAIN * MOST_GAIN * on_plane > at_rest {
+            goal = self.over_the_bend(foot, normal, goal);
+        }
         if is_outside && squared(goal - here.point) <= at_rest {
             let Some(sunk) = self.planes.forget_sunk(at_rest.sqrt()) else {
                 return Turn::Resting;
@@ -245,6 +273,7 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// Goes to a point and asks what is there.
+    #[inline(always)]
     fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Turn {
         let Some(sample) = sampler.gradient(point) else { return Turn::Spent };
         self.here = sample;

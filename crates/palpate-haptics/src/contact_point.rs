@@ -14,7 +14,7 @@ use crate::guide::Guide;
 use crate::limit::limited;
 use crate::nearby::Nearby;
 use crate::protection::Port;
-use crate::proxy::{Following, Probe, Proxy};
+use crate::proxy::{Probe, Proxy};
 use crate::safety::PortState;
 use crate::servo::ServoOptions;
 use crate::surface::Ringing;
@@ -127,6 +127,21 @@ impl<'a, const D: usize> Tick<'a, D> {
     }
 }
 
+/// What a contact point touched in the tick before.
+#[derive(Clone, Copy)]
+struct Before {
+    contact: bool,
+    body: u32,
+    is_slipping: bool,
+}
+
+impl Before {
+    fn of<const D: usize>(touch: &Touch<D>) -> Self {
+        let Touch { contact, body, is_slipping, .. } = *touch;
+        Self { contact, body, is_slipping }
+    }
+}
+
 impl<const D: usize> ContactPoint<D> {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
@@ -142,19 +157,19 @@ impl<const D: usize> ContactPoint<D> {
     }
 
     /// One tick, from the state of the device to the force to write to it [N], in its
-    /// coordinates.
+    /// coordinates; `touch` is that of the tick before, and then of this one.
     ///
     /// Real-time: as [`Servo::step`](crate::Servo::step).
     pub(crate) fn tick(
         &mut self,
         tick: &mut Tick<'_, D>,
         state: PointState<D>,
-        before: &Touch<D>,
-    ) -> (Touch<D>, Vector<f64, D>) {
+        touch: &mut Touch<D>,
+    ) -> Vector<f64, D> {
         let Setting { options, map, rise_step, is_late } = tick.setting;
         let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
-        let (mut touch, free, placed) = self.feel(tick, &map.state_to_world(at_device), before);
-        let force = if let Some(port) = &mut self.port {
+        let (free, placed) = self.feel(tick, &map.state_to_world(at_device), touch);
+        if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
             let PointState { position, velocity } = at_device;
             let (free_force, is_late) = (map.force_to_device(free), *is_late);
@@ -167,23 +182,23 @@ impl<const D: usize> ContactPoint<D> {
             let rise = self.rise(placed, touch.contact, *rise_step);
             touch.force = limited(touch.wanted + free, options.max_force) * rise;
             map.force_to_device(touch.force)
-        };
-        (touch, force)
+        }
     }
 
-    /// The touch with its wanted force, the force of guides and magnets, and whether the force
-    /// should rise anew.
+    /// What the hand feels, but for its force; the force of guides and magnets, and whether the
+    /// force should rise anew.
     fn feel(
         &mut self,
         tick: &mut Tick<'_, D>,
         state: &PointState<D>,
-        before: &Touch<D>,
-    ) -> (Touch<D>, Vector<f64, D>, bool) {
+        touch: &mut Touch<D>,
+    ) -> (Vector<f64, D>, bool) {
         let device = state.position;
         // A proxy told of a point that is not finite stays where it is.
         let following = self.proxy.follow(tick.nearby, device);
+        let before = Before::of(touch);
         let body = tick.nearby.body(following.body);
-        let mut touch = Touch {
+        *touch = Touch {
             device,
             velocity: state.velocity,
             proxy: following.proxy,
@@ -198,7 +213,7 @@ impl<const D: usize> ContactPoint<D> {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return (touch, Vector::ZERO, following.placed);
+            return (Vector::ZERO, following.placed);
         };
         let guides = self.guides.iter_mut();
         let mut free =
@@ -207,17 +222,17 @@ impl<const D: usize> ContactPoint<D> {
             if body.has_moved() {
                 touch.velocity -= (body.carried(device) - device) * tick.setting.options.rate;
             }
-            self.tell_changes(tick, &touch, before, body);
-            touch.wanted = self.force(tick, &touch, &following, body);
+            self.tell_changes(tick, touch, before, body);
+            touch.wanted = self.force(tick, touch, body);
         } else {
             self.fall_silent(tick, before);
         }
-        free += self.pull(tick, &mut touch);
-        (touch, free, following.placed)
+        free += self.pull(tick, touch);
+        (free, following.placed)
     }
 
     /// Nothing is touched any more.
-    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: &Touch<D>) {
+    fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: Before) {
         self.ringing = Ringing::SILENT;
         if before.contact {
             tick.tell(before.body, EventKind::Leave);
@@ -239,7 +254,7 @@ impl<const D: usize> ContactPoint<D> {
         &mut self,
         tick: &mut Tick<'_, D>,
         touch: &Touch<D>,
-        before: &Touch<D>,
+        before: Before,
         body: &Body<D>,
     ) {
         if !before.contact || before.body != touch.body {
@@ -260,24 +275,23 @@ impl<const D: usize> ContactPoint<D> {
         &mut self,
         tick: &mut Tick<'_, D>,
         touch: &Touch<D>,
-        following: &Following<D>,
         body: &Body<D>,
     ) -> Vector<f64, D> {
-        let stretch = following.proxy - touch.device;
-        let (surface, level) = (body.surface(), self.proxy.level(following.body));
-        let in_body = body.in_body(following.proxy);
+        let stretch = touch.proxy - touch.device;
+        let (surface, level) = (body.surface(), self.proxy.level(touch.body));
+        let in_body = body.in_body(touch.proxy);
         let (pull, velocity) =
             (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
         let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
         if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
             let held = surface.strata.force(level, stretch.norm());
-            if held > pop.force && self.proxy.pierce(following.body) {
-                tick.tell(following.body, EventKind::Pop { force: held });
+            if held > pop.force && self.proxy.pierce(touch.body) {
+                tick.tell(touch.body, EventKind::Pop { force: held });
             }
         }
         // A ring shakes the hand, but does not pull it in.
-        let ring = self.ringing.step().max(-force.dot(following.normal).max(0.0));
-        force + following.normal * ring
+        let ring = self.ringing.step().max(-force.dot(touch.normal).max(0.0));
+        force + touch.normal * ring
     }
 
     /// The pull of magnets, but that of the body that is touched, which is zero at its surface

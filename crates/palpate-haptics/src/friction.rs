@@ -16,8 +16,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::bend::Bend;
-use crate::contact::{Rest, slide};
+use crate::contact::{Ground, Rest, slide};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 
@@ -51,20 +50,20 @@ pub(crate) fn drag<const D: usize>(
     (start, normal): (Sample<D>, Vector<f64, D>),
     (device, motion): (Point<D>, f64),
     (friction, hold): (Friction, Hold),
-    bend: &mut Bend<D>,
+    ground: &mut Ground<D>,
 ) -> (Rest<D>, Hold) {
-    let free = |sampler: &mut Sampler<'_, D>, bend: &mut Bend<D>| {
-        (slide(sampler, start, normal, (device, motion), bend), Hold::None)
+    let free = |sampler: &mut Sampler<'_, D>, ground: &mut Ground<D>| {
+        (slide(sampler, start, normal, (device, motion), ground), Hold::None)
     };
     if start.tangent.is_none() || friction.fixed <= 0.0 {
-        return free(sampler, bend);
+        return free(sampler, ground);
     }
     let (normal, gap) = sampler.tangent(&start, normal);
     let stretch = start.point - device;
     let height = stretch.dot(normal);
     let depth = height - gap;
     if depth <= 0.0 || gap > sampler.near() {
-        return free(sampler, bend);
+        return free(sampler, ground);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
     let stuck = Rest { sample: start, normal, contact: true };
@@ -73,7 +72,7 @@ pub(crate) fn drag<const D: usize>(
     else {
         return (stuck, Hold::Stick);
     };
-    let rest = slide(sampler, start, normal, (goal, motion), bend);
+    let rest = slide(sampler, start, normal, (goal, motion), ground);
     let pull = rest.sample.point - goal;
     let along = pull - rest.normal * pull.dot(rest.normal);
     if !rest.contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
@@ -91,7 +90,7 @@ pub(crate) fn drag<const D: usize>(
     match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
         None => (stuck, Hold::Stick),
         Some(goal) => {
-            (slide(sampler, rest.sample, rest.normal, (goal, motion), bend), Hold::Slip)
+            (slide(sampler, rest.sample, rest.normal, (goal, motion), ground), Hold::Slip)
         }
     }
 }

@@ -32,7 +32,7 @@ struct Wall<const D: usize> {
 /// A crease of a concave shape is where several planes hold the proxy, but a field shows one at
 /// a time; so planes are remembered over the evaluations of one tick. A remembered plane of a
 /// convex neighbour would be no constraint any more and is dropped.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Planes<const D: usize> {
     walls: [Wall<D>; CAPACITY],
     count: usize,
@@ -43,6 +43,11 @@ impl<const D: usize> Planes<D> {
         let half_space = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
         let none = Wall { half_space, foot: Vector::ZERO, sunk: 0.0 };
         Self { walls: [none; CAPACITY], count: 0 }
+    }
+
+    /// Forgets all.
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
     }
 
     fn known(&self) -> &[Wall<D>] {
@@ -73,6 +78,7 @@ impl<const D: usize> Planes<D> {
     /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
     /// by the angle between the normals (see [`LEFT_BEHIND`]). A plane of the same wall, as
     /// its `bend` tells, is dropped for the later one.
+    #[inline(always)]
     pub(crate) fn learn(
         &mut self,
         seen_from: Point<D>,

@@ -15,10 +15,9 @@
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use crate::bend::Bend;
 use crate::bodies::Body;
 
-use crate::contact::{Rest, slide};
+use crate::contact::{Ground, Rest, slide};
 use crate::error::{HapticsError, not_negative};
 use crate::friction::{Hold, drag};
 use crate::nearby::{Nearby, Pierced};
@@ -160,8 +159,8 @@ pub struct Proxy<const D: usize> {
     normal: Vector<f64, D>,
     contact: bool,
     hold: Hold,
-    /// How the surface bent where it last was.
-    bend: Bend<D>,
+    /// What is known of the surface where it last was.
+    ground: Ground<D>,
     pierced: Pierced,
 }
 
@@ -179,7 +178,7 @@ impl<const D: usize> Proxy<D> {
             normal,
             contact: false,
             hold: Hold::None,
-            bend: Bend::FLAT,
+            ground: Ground::new(),
             pierced: Pierced::default(),
         }
     }
@@ -262,7 +261,7 @@ impl<const D: usize> Proxy<D> {
             self.at = self.look_again(&mut sampler, last);
         }
         if self.is_stale || nearby.has_moved() {
-            self.bend = Bend::FLAT;
+            self.ground.forget();
         }
         self.is_stale = false;
         let known = self.at.filter(|at| at.gap >= -sampler.tolerance());
@@ -407,10 +406,10 @@ impl<const D: usize> Proxy<D> {
                 let friction = self.friction(sampler, &here, device).filter(|_| was_held);
                 return match friction {
                     Some(friction) => {
-                        drag(sampler, from, (device, moved), friction, &mut self.bend)
+                        drag(sampler, from, (device, moved), friction, &mut self.ground)
                     }
                     None => (
-                        slide(sampler, from.0, from.1, (device, moved), &mut self.bend),
+                        slide(sampler, from.0, from.1, (device, moved), &mut self.ground),
                         Hold::None,
                     ),
                 };

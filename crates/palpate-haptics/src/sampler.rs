@@ -150,6 +150,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The value and gradient at `point`, likewise.
+    #[inline(always)]
     pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
         let seen = self.nearby.gradient(point, &self.pierced);
@@ -215,6 +216,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// The unit normal and the signed distance to the offset surface along it [m], to first
     /// order: `(f − r) / ‖∇f‖`. `previous` replaces the direction of a gradient too small to
     /// have one, and of one that was not asked for.
+    #[inline]
     pub(crate) fn tangent(
         &self,
         sample: &Sample<D>,

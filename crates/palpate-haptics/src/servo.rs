@@ -276,8 +276,8 @@ impl<const D: usize> Servo<D> {
         let nearby = nearby(&self.bodies, hand, &mut list);
         let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
         let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
-        for (index, (((point, touch), force), state)) in (0..).zip(points.zip(padded(states))) {
-            (*touch, *force) = point.tick(tick.of_point(index), state, touch);
+        for (index, ((point, touch), force)) in points.enumerate() {
+            *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
             let touched = nearby.body(touch.body).filter(|_| touch.contact);
             let reaction = reactions.get_mut(touch.body as usize);
             if let Some((body, reaction)) = touched.zip(reaction) {
@@ -300,9 +300,9 @@ impl<const D: usize> Servo<D> {
         let hand = || hand(&self.touches, states, &self.setting);
         let nearby = nearby(&self.bodies, hand, &mut list);
         let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
-        for ((point, touch), state) in self.points.iter().zip(&self.touches).zip(padded(states))
-        {
-            black_box(point.double().tick(tick.of_point(0), state, touch));
+        for (index, (point, touch)) in self.points.iter().zip(&self.touches).enumerate() {
+            let (mut double, mut touch) = (point.double(), *touch);
+            black_box(double.tick(tick.of_point(0), state(states, index), &mut touch));
         }
         self.bodies.put_back((list, reactions));
         self.events.truncate(told);
@@ -318,12 +318,9 @@ fn nearby<'a, const D: usize>(
     if bodies.bodies().len() < FEW { bodies.everything() } else { bodies.nearby(hand(), list) }
 }
 
-/// The states of as many points as one likes: those that are not there are not finite.
-fn padded<const D: usize>(
-    states: &[PointState<D>],
-) -> impl Iterator<Item = PointState<D>> + '_ {
-    let missing = PointState::at_rest(Vector([f64::NAN; D]));
-    states.iter().copied().chain(std::iter::repeat(missing))
+/// The state of a contact point; not finite if it is missing.
+fn state<const D: usize>(states: &[PointState<D>], index: usize) -> PointState<D> {
+    states.get(index).copied().unwrap_or(PointState::at_rest(Vector([f64::NAN; D])))
 }
 
 /// A ball around all contact points and where their proxies may go in this tick, as far as
