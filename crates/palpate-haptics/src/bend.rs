@@ -87,12 +87,6 @@ impl<const D: usize> Bend<D> {
         }
         Some(way)
     }
-
-    /// How far the surface falls below its tangent plane along a way [m].
-    #[inline]
-    pub(crate) fn fall(&self, way: Vector<f64, D>) -> f64 {
-        0.5 * way.dot(self.turn(way))
-    }
 }
 
 #[cfg(test)]
@@ -123,7 +117,6 @@ mod tests {
         // At a depth of half the radius, twice as far across the axis, as far along it.
         let way = cylinder().way(Vector([0.001, 0.0, 0.002]), 0.125).unwrap();
         assert!((way - Vector([0.002, 0.0, 0.002])).norm() < 1e-15);
-        assert_eq!(cylinder().fall(Vector([0.5, 0.0, 0.0])), 0.5);
         // Past the axis there is none.
         assert_eq!(cylinder().way(Vector([0.001, 0.0, 0.0]), 0.5), None);
     }

@@ -236,7 +236,7 @@ impl<const D: usize> Slide<'_, D> {
         let at_rest = sampler.tolerance().powi(2) + left;
         let on_plane = squared(goal - here.point);
         if !is_outside || MOST_GAIN * MOST_GAIN * on_plane > at_rest {
-            goal = self.over_the_bend(foot, normal, goal);
+            goal = self.over_the_bend((foot, normal), goal, sampler.tolerance());
         }
         if is_outside && squared(goal - here.point) <= at_rest {
             let Some(sunk) = self.planes.forget_sunk(at_rest.sqrt()) else {
@@ -303,22 +303,24 @@ impl<const D: usize> Slide<'_, D> {
     /// The goal on a tangent plane, moved on and down for the bend of the surface.
     fn over_the_bend(
         &self,
-        foot: Point<D>,
-        normal: Vector<f64, D>,
+        (foot, normal): (Point<D>, Vector<f64, D>),
         goal: Point<D>,
+        tolerance: f64,
     ) -> Point<D> {
         let depth = normal.dot(foot - self.device);
         let side = goal - foot;
         let length = squared(side);
         let is_on_plane = normal.dot(side).powi(2) <= AT_REST * AT_REST * length;
-        if !is_on_plane || depth <= 0.0 {
+        // Written so that NaN keeps the goal.
+        if !is_on_plane || !(depth > tolerance) {
             return goal;
         }
         match self.bend.way(side, depth) {
             Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
+                // wᵀ S w / 2, as the way solves (1 − d S) w = side.
+                let fall = 0.5 * way.dot(way - side) / depth;
                 // The bend was learnt where the surface faced another way.
                 let way = way - normal * normal.dot(way);
-                let fall = self.bend.fall(way);
                 foot + way - normal * (fall - ABOVE * fall.abs())
             }
             _ => goal,
