@@ -45,7 +45,7 @@ const FEW: usize = 5;
 const WAYS: f64 = 4.0;
 
 /// How far points of the tool are likely to go in a tick, in motions of the device.
-const LIKELY: f64 = 3.0;
+const LIKELY: f64 = 2.0;
 
 /// The tool rests where the next motion is below this part of the device's in this tick: what is
 /// left of it is made up for in the next, and none where the hand rests.

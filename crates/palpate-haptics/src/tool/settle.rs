@@ -38,6 +38,11 @@ const SHARE: f64 = 0.5;
 /// After a turn that was cut short by its horizon, the next looks this many times as far.
 const FARTHER: f64 = 4.0;
 
+/// After any other turn, the next looks at most this many times as far as that one would have
+/// gone: motions get shorter, and where one grows, it is cut short and looks farther. Less
+/// would cut short more often, more looks at what nothing comes to.
+const NEXT: f64 = 1.5;
+
 /// Constraints are satisfied up to this part of the tolerance.
 const SLACK: f64 = 1e-3;
 
@@ -163,8 +168,8 @@ impl<const D: usize> Settler<D> {
             if !scan.look(shell, nearby, &pose, (&wish, horizon, share)) {
                 break;
             }
-            let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
-            self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
+            let is_outside = scan.least_gap() >= -lengths.tolerance;
+            self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
             if turn == 0 && is_outside {
                 match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
                     Hold::None => self.is_slipping = false,
@@ -181,7 +186,7 @@ impl<const D: usize> Settler<D> {
                         if !scan.look(shell, nearby, &pose, (&wish, horizon, SHARE)) {
                             break;
                         }
-                        self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
+                        self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
                     }
                 }
                 self.rows.truncate(self.plain);
@@ -220,8 +225,11 @@ impl<const D: usize> Settler<D> {
             } else {
                 pose = twist.part(part).moved(&pose);
             }
-            if part < 1.0 && twist.part(part).way(shell.reach) > 0.5 * horizon {
+            let way = twist.way(shell.reach);
+            if part < 1.0 && part * way > 0.5 * horizon {
                 horizon *= FARTHER;
+            } else {
+                horizon = horizon.min((NEXT * way).max(lengths.still));
             }
         }
         if self.rest.is_outside {
@@ -237,16 +245,14 @@ impl<const D: usize> Settler<D> {
     /// The tangent planes of all points that the wish could bring to the surface.
     fn make_rows(
         &mut self,
-        shell: &Shell<D>,
-        scan: &Scan<D>,
-        nearby: &Nearby<'_, D>,
+        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
         (pose, wish, horizon, lengths): (&Pose<D>, &Twist<D>, f64, Lengths),
     ) {
         self.rows.clear();
         self.numbers.clear();
         let lipschitz = nearby.lipschitz();
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
-        for (number, seen) in scan.seen(shell) {
+        for (number, seen) in scan.seen() {
             let arm = seen.centre - pose.translation;
             if seen.gap > lipschitz * (linear + angular * arm.norm()).min(horizon) {
                 continue;

@@ -57,7 +57,7 @@ impl<const D: usize> Scan<D> {
         let (linear, angle) = (twist.linear.norm(), twist.angular.norm());
         let (mut proven, mut marches) = (whole, std::mem::take(&mut self.marches));
         marches.clear();
-        for (number, seen) in self.seen(shell) {
+        for (number, seen) in self.seen() {
             // Points that are deeper than a skin already are on their way out.
             if seen.gap <= -skin {
                 continue;
