@@ -386,3 +386,27 @@ fn a_box_that_slips_is_held_back_by_coulomb() {
         assert_eq!(touch.is_slipping, tick >= 20, "{tick}");
     }
 }
+
+/// Once, a clone had room for nothing: it looked at few points, and went through the ground.
+#[test]
+fn a_clone_feels_what_the_tool_feels() {
+    let ground = half_space([0.0, 1.0, 0.0], 0.0);
+    let (mut bodies, mut others) = (Bodies::from(ground.clone()), Bodies::from(ground.clone()));
+    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0005).unwrap();
+    let mut tool = Tool::new(shell.clone(), springs()).unwrap();
+    tool.step(&mut bodies, &at([0.0, 0.1, 0.0]));
+    let mut clone = tool.clone();
+    for tick in 0..200 {
+        let t = f64::from(tick) / 200.0;
+        let state = turned([0.3, 1.0, 0.8], t, [0.02 * t, 0.1 - 0.09 * t, 0.0]);
+        let touch = tool.step(&mut bodies, &state);
+        let other = clone.step(&mut others, &state);
+        assert!(least_gap(&shell, &other.pose, &ground) > -1e-9, "{tick}");
+        assert_eq!(
+            (touch.pose, touch.force, touch.torque),
+            (other.pose, other.force, other.torque)
+        );
+        assert_eq!(touch.contacts.len(), other.contacts.len());
+    }
+    assert!(clone.touch().contact);
+}

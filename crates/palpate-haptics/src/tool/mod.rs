@@ -14,6 +14,7 @@
 mod batch;
 mod closest;
 mod friction;
+mod room;
 mod scan;
 mod settle;
 #[allow(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
@@ -32,6 +33,7 @@ use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
+use room::Room;
 use scan::Scan;
 use settle::{Lengths, Push, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
@@ -128,7 +130,7 @@ pub struct Tool<const D: usize> {
     /// The part of the force that is given, in [0, 1].
     rise: f64,
     touch: ToolTouch<D>,
-    events: Vec<Event>,
+    events: Room<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
     radius: f64,
@@ -154,7 +156,7 @@ impl<const D: usize> Tool<D> {
             pose: None,
             rise: 1.0,
             touch: ToolTouch::new(shell.points().len()),
-            events: Vec::with_capacity(MOST_EVENTS),
+            events: Room::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
             shell,

@@ -16,6 +16,7 @@
 use palpate_field::{Pose, Vector};
 
 use super::batch::{Batch, Seen};
+use super::room::Room;
 use super::shell::{Cluster, Shell};
 use super::sweep::March;
 use super::twist::Twist;
@@ -101,15 +102,15 @@ pub(super) struct Scan<const D: usize> {
     /// Of the present pose.
     stamp: u64,
     /// Clusters to look at now.
-    due: Vec<Due>,
+    due: Room<Due>,
     /// The points that were looked at where the tool is.
-    near: Vec<u32>,
+    near: Room<u32>,
     /// Levels that are still looked at in this tick.
     levels: usize,
     budget: u32,
     evaluations: u32,
     /// Points that are followed on their way.
-    pub(super) marches: Vec<March>,
+    pub(super) marches: Room<March>,
     pub(super) batch: Box<Batch<D>>,
 }
 
@@ -123,12 +124,12 @@ impl<const D: usize> Scan<D> {
             looks: vec![Look::NONE; shell.clusters.len()],
             clock: Clock::default(),
             stamp: 1,
-            due: Vec::with_capacity(shell.clusters.len()),
-            near: Vec::with_capacity(shell.points().len()),
+            due: Room::with_capacity(shell.clusters.len()),
+            near: Room::with_capacity(shell.points().len()),
             levels: shell.levels.len(),
             budget: 0,
             evaluations: 0,
-            marches: Vec::with_capacity(shell.points().len()),
+            marches: Room::with_capacity(shell.points().len()),
             batch: Batch::boxed(),
         }
     }

@@ -19,6 +19,7 @@ use palpate_field::{Point, Pose, Vector};
 use super::batch::Seen;
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::friction::{Cone, Hold, MOST_AROUND};
+use super::room::Room;
 use super::scan::Scan;
 use super::shell::Shell;
 use super::twist::{Twist, cross, in_space};
@@ -94,7 +95,7 @@ pub(super) struct Push<const D: usize> {
 pub(super) struct Rest<const D: usize> {
     pub(super) pose: Pose<D>,
     /// What pushes it there.
-    pub(super) pushes: Vec<Push<D>>,
+    pub(super) pushes: Room<Push<D>>,
     /// Points known to be outside.
     pub(super) known: u32,
     /// `true` if every point that was looked at is outside.
@@ -107,7 +108,7 @@ impl<const D: usize> Rest<D> {
     pub(super) fn new() -> Self {
         Self {
             pose: Pose::identity(),
-            pushes: Vec::with_capacity(FREEDOMS),
+            pushes: Room::with_capacity(FREEDOMS),
             known: 0,
             is_outside: false,
             energy: f64::INFINITY,
@@ -118,15 +119,15 @@ impl<const D: usize> Rest<D> {
 /// Room for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Room<Row>,
     /// Of which point each of the first rows is; those after them are of cones of friction.
-    numbers: Vec<u32>,
+    numbers: Room<u32>,
     /// How many rows there are without those of friction.
     pub(super) plain: usize,
     /// Points that pushed in the tick before.
-    pub(super) held: Vec<u32>,
+    pub(super) held: Room<u32>,
     /// Contacts with friction.
-    pub(super) cones: Vec<Cone<D>>,
+    pub(super) cones: Room<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
     pub(super) rest: Rest<D>,
@@ -135,11 +136,11 @@ pub(super) struct Settler<const D: usize> {
 impl<const D: usize> Settler<D> {
     pub(super) fn new(points: usize) -> Self {
         Self {
-            rows: Vec::with_capacity(points + FREEDOMS * MOST_AROUND),
-            numbers: Vec::with_capacity(points),
+            rows: Room::with_capacity(points + FREEDOMS * MOST_AROUND),
+            numbers: Room::with_capacity(points),
             plain: 0,
-            held: Vec::with_capacity(FREEDOMS),
-            cones: Vec::with_capacity(FREEDOMS),
+            held: Room::with_capacity(FREEDOMS),
+            cones: Room::with_capacity(FREEDOMS),
             is_slipping: false,
             rest: Rest::new(),
         }

@@ -31,7 +31,7 @@ const DIPS: f64 = 0.75;
 const MET: f64 = 0.125;
 
 /// A point on its way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct March {
     number: u32,
     /// The length of its way [m].
