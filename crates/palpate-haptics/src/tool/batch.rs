@@ -68,6 +68,15 @@ impl<const D: usize> Batch<D> {
 
     /// Asks all that is near: as [`Nearby::gradient`], in blocks.
     pub(super) fn ask(&mut self, nearby: &Nearby<'_, D>) {
+        self.ask_for(nearby, true);
+    }
+
+    /// Asks for gaps alone, which costs less; gradients say nothing.
+    pub(super) fn ask_gaps(&mut self, nearby: &Nearby<'_, D>) {
+        self.ask_for(nearby, false);
+    }
+
+    fn ask_for(&mut self, nearby: &Nearby<'_, D>, has_gradients: bool) {
         let is_all = nearby.horizon == f64::INFINITY;
         for seen in self.seen.iter_mut().take(self.count) {
             (seen.gap, seen.gradient, seen.body) = (f64::INFINITY, Vector::ZERO, 0);
@@ -94,7 +103,11 @@ impl<const D: usize> Batch<D> {
             if asked == 0 {
                 continue;
             }
-            body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            if has_gradients {
+                body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            } else {
+                body.shape().block_distances(&self.block, asked, &mut self.answers.distance);
+            }
             let turn = body.world_from_body();
             for (answer, lane) in self.lanes.iter().take(asked).enumerate() {
                 let Some(seen) = self.seen.get_mut(*lane) else { continue };
@@ -108,6 +121,7 @@ impl<const D: usize> Batch<D> {
                         let outwards = body.ball.map(|ball| seen.centre - ball.centre);
                         (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
                     }
+                    None if !has_gradients => (distance, Vector::ZERO),
                     None => {
                         let gradient = self.answers.gradient.get(answer);
                         (distance, turn.transform_vector(gradient))

@@ -19,7 +19,7 @@ use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// A motion that values at its start prove for this part of it needs no evaluations on the way.
-const WORTH_GOING: f64 = 0.25;
+const WORTH_GOING: f64 = 0.75;
 
 /// Poses on a way at most.
 const MOST_STEPS: u32 = 64;
@@ -116,7 +116,7 @@ impl<const D: usize> Scan<D> {
                 if batch.count == 0 {
                     break;
                 }
-                batch.ask(nearby);
+                batch.ask_gaps(nearby);
                 let asked = rest.iter_mut().enumerate().filter(|(_, march)| behind(march));
                 for ((place, march), (_, seen)) in asked.zip(batch.results()) {
                     last = place + 1;
