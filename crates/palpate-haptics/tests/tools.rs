@@ -410,3 +410,27 @@ fn a_clone_feels_what_the_tool_feels() {
     }
     assert!(clone.touch().contact);
 }
+
+#[test]
+fn a_tool_that_slides_asks_only_the_points_that_could_touch() {
+    let hill = ball(0.5);
+    let mut bodies = Bodies::from(hill.clone());
+    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 1000, 0.0005).unwrap();
+    let mut tool = Tool::new(shell.clone(), springs()).unwrap();
+    tool.step(&mut bodies, &at([0.0, 0.54, 0.0]));
+    let mut most = 0;
+    for tick in 0..500 {
+        let t = f64::from(tick) * 1e-3;
+        // It lands on an edge, and slides at 0.1 m/s.
+        let height = 0.54 - 0.02 * (10.0 * t).min(1.0);
+        let touch =
+            tool.step(&mut bodies, &turned([0.0, 0.0, 1.0], 0.3, [0.1 * t, height, 0.0]));
+        assert_eq!(touch.points_known, touch.points);
+        assert!(tick < 200 || touch.contact);
+        most = most.max(if tick < 200 { 0 } else { touch.evaluations });
+        let gap = least_gap(&shell, &touch.pose, &hill);
+        assert!(gap >= -1e-9, "{tick}: {gap}");
+    }
+    // A tick has six turns at most; the edge has some ten points.
+    assert!(most <= 60, "{most}");
+}

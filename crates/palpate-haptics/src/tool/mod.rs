@@ -46,8 +46,12 @@ const FEW: usize = 5;
 /// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
 const WAYS: f64 = 4.0;
 
-/// How far points of the tool are likely to go in a tick, in motions of the device.
-const LIKELY: f64 = 2.0;
+/// How far points of the tool are likely to go in a tick, in motions of the device: as far. A
+/// tool that goes farther is cut short there, and looks farther in its next turn.
+const LIKELY: f64 = 1.0;
+
+/// And in skins, where the device rests and the tool does not yet.
+const LIKELY_SKINS: f64 = 0.25;
 
 /// The tool rests where the next motion is below this part of the device's in this tick: what is
 /// left of it is made up for in the next, and none where the hand rests.
@@ -271,7 +275,7 @@ impl<const D: usize> Tool<D> {
         let sampler = Sampler::new(place, self.radius, 0, extent);
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);
-        let horizon = LIKELY * moved + skin;
+        let horizon = LIKELY * moved + LIKELY_SKINS * skin;
         let tolerance = sampler.tolerance();
         let still = (AT_REST * moved).max(tolerance);
         Lengths { unit, tolerance, still, skin, horizon }

@@ -10,6 +10,8 @@
 //! "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3; for shells,
 //! Johnson, Willemsen and Cohen, "Six degree-of-freedom haptic rendering using spatialized normal
 //! cone search", 2005, keep what is near likewise).
+//! Of a cluster that is asked again, only those points are that could touch by their own gaps and
+//! the ways they went themselves, which are often shorter.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -220,20 +222,20 @@ impl<const D: usize> Scan<D> {
                     seen_until = least(seen_until, mark.free_until);
                     continue;
                 }
-                if !(mark.free_until > until) && mark.is_known() {
+                // Written so that NaN is looked at, here and below.
+                let is_free = |until_then: f64| until_then > until;
+                if !is_free(mark.free_until) && mark.is_known() {
                     let i = number as usize;
                     let known = shell.points().get(i).zip(self.points.get(i));
                     let went = known.map_or(f64::INFINITY, |(point, seen)| {
                         let way = pose.transform_point(point.centre) - seen.centre;
                         way.norm() - seen.gap / lipschitz
                     });
-                    // NaN is left out of a maximum.
                     mark.free_until = mark.free_until.max(now - went);
                 }
-                if mark.free_until > until {
+                if is_free(mark.free_until) {
                     rest_until = rest_until.min(mark.free_until);
                 } else {
-                    // NaN is looked at.
                     self.near.push(number);
                 }
             }
