@@ -234,7 +234,7 @@ impl<const D: usize> Scan<D> {
                     mark.free_until = mark.free_until.max(now - went);
                 }
                 if is_free(mark.free_until) {
-                    rest_until = rest_until.min(mark.free_until);
+                    rest_until = least(rest_until, mark.free_until);
                 } else {
                     self.near.push(number);
                 }
@@ -335,6 +335,7 @@ impl<const D: usize> Scan<D> {
 }
 
 /// The lesser of two; NaN if one is.
+#[inline]
 fn least(a: f64, b: f64) -> f64 {
     if a.is_nan() || b >= a { a } else { b }
 }
