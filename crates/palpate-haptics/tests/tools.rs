@@ -386,3 +386,51 @@ fn a_box_that_slips_is_held_back_by_coulomb() {
         assert_eq!(touch.is_slipping, tick >= 20, "{tick}");
     }
 }
+
+/// Once, a clone had room for nothing: it looked at few points, and went through the ground.
+#[test]
+fn a_clone_feels_what_the_tool_feels() {
+    let ground = half_space([0.0, 1.0, 0.0], 0.0);
+    let (mut bodies, mut others) = (Bodies::from(ground.clone()), Bodies::from(ground.clone()));
+    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0005).unwrap();
+    let mut tool = Tool::new(shell.clone(), springs()).unwrap();
+    tool.step(&mut bodies, &at([0.0, 0.1, 0.0]));
+    let mut clone = tool.clone();
+    for tick in 0..200 {
+        let t = f64::from(tick) / 200.0;
+        let state = turned([0.3, 1.0, 0.8], t, [0.02 * t, 0.1 - 0.09 * t, 0.0]);
+        let touch = tool.step(&mut bodies, &state);
+        let other = clone.step(&mut others, &state);
+        assert!(least_gap(&shell, &other.pose, &ground) > -1e-9, "{tick}");
+        assert_eq!(
+            (touch.pose, touch.force, touch.torque),
+            (other.pose, other.force, other.torque)
+        );
+        assert_eq!(touch.contacts.len(), other.contacts.len());
+    }
+    assert!(clone.touch().contact);
+}
+
+#[test]
+fn a_tool_that_slides_asks_only_the_points_that_could_touch() {
+    let hill = ball(0.5);
+    let mut bodies = Bodies::from(hill.clone());
+    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 1000, 0.0005).unwrap();
+    let mut tool = Tool::new(shell.clone(), springs()).unwrap();
+    tool.step(&mut bodies, &at([0.0, 0.54, 0.0]));
+    let mut most = 0;
+    for tick in 0..500 {
+        let t = f64::from(tick) * 1e-3;
+        // It lands on an edge, and slides at 0.1 m/s.
+        let height = 0.54 - 0.02 * (10.0 * t).min(1.0);
+        let touch =
+            tool.step(&mut bodies, &turned([0.0, 0.0, 1.0], 0.3, [0.1 * t, height, 0.0]));
+        assert_eq!(touch.points_known, touch.points);
+        assert!(tick < 200 || touch.contact);
+        most = most.max(if tick < 200 { 0 } else { touch.evaluations });
+        let gap = least_gap(&shell, &touch.pose, &hill);
+        assert!(gap >= -1e-9, "{tick}: {gap}");
+    }
+    // A tick has six turns at most; the edge has some ten points.
+    assert!(most <= 60, "{most}");
+}

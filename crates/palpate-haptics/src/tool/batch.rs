@@ -68,22 +68,30 @@ impl<const D: usize> Batch<D> {
 
     /// Asks all that is near: as [`Nearby::gradient`], in blocks.
     pub(super) fn ask(&mut self, nearby: &Nearby<'_, D>) {
+        self.ask_for(nearby, true);
+    }
+
+    /// Asks for gaps alone, which costs less; gradients say nothing.
+    pub(super) fn ask_gaps(&mut self, nearby: &Nearby<'_, D>) {
+        self.ask_for(nearby, false);
+    }
+
+    fn ask_for(&mut self, nearby: &Nearby<'_, D>, has_gradients: bool) {
+        let is_all = nearby.horizon == f64::INFINITY;
         for seen in self.seen.iter_mut().take(self.count) {
-            let way = seen.centre - nearby.centre;
-            seen.gap = nearby.horizon - way.norm();
-            seen.gradient = if nearby.horizon < f64::INFINITY {
-                -way.normalized().unwrap_or(Vector::ZERO)
-            } else {
-                Vector::ZERO
-            };
-            seen.body = 0;
+            (seen.gap, seen.gradient, seen.body) = (f64::INFINITY, Vector::ZERO, 0);
+            if !is_all {
+                let way = seen.centre - nearby.centre;
+                seen.gap = nearby.horizon - way.norm();
+                seen.gradient = -way.normalized().unwrap_or(Vector::ZERO);
+            }
         }
         for (index, body) in nearby.all() {
             let mut asked = 0;
             let points = self.seen.iter().take(self.count).enumerate();
             for (lane, seen) in points {
                 // Written so that NaN is looked at.
-                if body.above_ball(seen.centre) >= seen.gap {
+                if seen.gap < f64::INFINITY && body.above_ball(seen.centre) >= seen.gap {
                     continue;
                 }
                 self.block.set(asked, body.in_body(seen.centre));
@@ -95,20 +103,29 @@ impl<const D: usize> Batch<D> {
             if asked == 0 {
                 continue;
             }
-            body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            if has_gradients {
+                body.shape().block_gradients(&self.block, asked, &mut self.answers);
+            } else {
+                body.shape().block_distances(&self.block, asked, &mut self.answers.distance);
+            }
             let turn = body.world_from_body();
             for (answer, lane) in self.lanes.iter().take(asked).enumerate() {
                 let Some(seen) = self.seen.get_mut(*lane) else { continue };
                 let distance = self.answers.distance.get(answer);
-                let above = body.above_ball(seen.centre);
                 let beyond =
                     body.region.is_some_and(|r| (seen.centre - r.centre).norm() > r.radius);
-                let (gap, gradient) = if (body.is_below_ball || beyond) && above > distance {
-                    let outwards = body.ball.map(|ball| seen.centre - ball.centre);
-                    (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
-                } else {
-                    let gradient = self.answers.gradient.get(answer);
-                    (distance, turn.transform_vector(gradient))
+                let is_bounded = body.is_below_ball || beyond;
+                let above = is_bounded.then(|| body.above_ball(seen.centre));
+                let (gap, gradient) = match above.filter(|above| *above > distance) {
+                    Some(above) => {
+                        let outwards = body.ball.map(|ball| seen.centre - ball.centre);
+                        (above, outwards.and_then(Vector::normalized).unwrap_or(Vector::ZERO))
+                    }
+                    None if !has_gradients => (distance, Vector::ZERO),
+                    None => {
+                        let gradient = self.answers.gradient.get(answer);
+                        (distance, turn.transform_vector(gradient))
+                    }
                 };
                 // Written so that NaN stays.
                 if gap.is_nan() || gap < seen.gap {

@@ -87,7 +87,9 @@ impl<const D: usize> Settler<D> {
             self.list_pushes(&found);
             return Hold::Stick;
         }
-        let found = self.solve((pose, away), lengths, true);
+        // A tool that slipped before has been tried with what it slips with.
+        let found =
+            if self.is_slipping { found } else { self.solve((pose, away), lengths, true) };
         let mut friction = [0.0; FREEDOMS];
         for held in found.held() {
             let Some((cone, row)) = self.cone_of(held.row) else { continue };

@@ -14,6 +14,7 @@
 mod batch;
 mod closest;
 mod friction;
+mod room;
 mod scan;
 mod settle;
 #[allow(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
@@ -32,6 +33,7 @@ use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
+use room::Room;
 use scan::Scan;
 use settle::{Lengths, Push, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
@@ -44,8 +46,12 @@ const FEW: usize = 5;
 /// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
 const WAYS: f64 = 4.0;
 
-/// How far points of the tool are likely to go in a tick, in motions of the device.
-const LIKELY: f64 = 3.0;
+/// How far points of the tool are likely to go in a tick, in motions of the device: as far. A
+/// tool that goes farther is cut short there, and looks farther in its next turn.
+const LIKELY: f64 = 1.0;
+
+/// And in skins, where the device rests and the tool does not yet.
+const LIKELY_SKINS: f64 = 0.25;
 
 /// The tool rests where the next motion is below this part of the device's in this tick: what is
 /// left of it is made up for in the next, and none where the hand rests.
@@ -128,7 +134,7 @@ pub struct Tool<const D: usize> {
     /// The part of the force that is given, in [0, 1].
     rise: f64,
     touch: ToolTouch<D>,
-    events: Vec<Event>,
+    events: Room<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
     radius: f64,
@@ -154,7 +160,7 @@ impl<const D: usize> Tool<D> {
             pose: None,
             rise: 1.0,
             touch: ToolTouch::new(shell.points().len()),
-            events: Vec::with_capacity(MOST_EVENTS),
+            events: Room::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
             shell,
@@ -269,7 +275,7 @@ impl<const D: usize> Tool<D> {
         let sampler = Sampler::new(place, self.radius, 0, extent);
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);
-        let horizon = LIKELY * moved + skin;
+        let horizon = LIKELY * moved + LIKELY_SKINS * skin;
         let tolerance = sampler.tolerance();
         let still = (AT_REST * moved).max(tolerance);
         Lengths { unit, tolerance, still, skin, horizon }

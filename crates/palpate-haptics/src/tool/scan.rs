@@ -10,28 +10,69 @@
 //! "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3; for shells,
 //! Johnson, Willemsen and Cohen, "Six degree-of-freedom haptic rendering using spatialized normal
 //! cone search", 2005, keep what is near likewise).
+//! Of a cluster that is asked again, only those points are that could touch by their own gaps and
+//! the ways they went themselves, which are often shorter.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Pose, Vector};
 
 use super::batch::{Batch, Seen};
+use super::room::Room;
 use super::shell::{Cluster, Shell};
 use super::sweep::March;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
-/// When a cluster was looked at.
+/// When a point was looked at.
 #[derive(Clone, Copy, Debug)]
-struct Look {
+struct Mark {
     /// At which pose.
     stamp: u64,
-    /// The reading of the clock before which it touches nothing.
+    /// The reading of its cluster's clock before which it touches nothing.
     free_until: f64,
 }
 
-impl Look {
+impl Mark {
     const NONE: Self = Self { stamp: 0, free_until: f64::NEG_INFINITY };
+
+    /// `true` if it was looked at since the bodies are where they are.
+    fn is_known(&self) -> bool {
+        self.stamp > 0
+    }
+}
+
+/// What is known of a cluster: until when none of its points touches anything.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    /// At which pose it was looked at.
+    stamp: u64,
+    /// Of all its points.
+    free_until: f64,
+    /// Of those that were not looked at then, since they were too far away.
+    rest_until: f64,
+}
+
+impl Look {
+    const NONE: Self =
+        Self { stamp: 0, free_until: f64::NEG_INFINITY, rest_until: f64::NEG_INFINITY };
+
+    /// Until when what was not looked at where the tool is touches nothing.
+    fn unseen_until(&self, stamp: u64) -> f64 {
+        if self.stamp == stamp { self.rest_until } else { self.free_until }
+    }
+}
+
+/// A cluster to look at now.
+#[derive(Clone, Copy, Debug)]
+struct Due {
+    cluster: u32,
+    /// How many points are near once those of this cluster are.
+    end: usize,
+    /// Until when its points touch nothing that were looked at here before.
+    seen_until: f64,
+    /// And those that are not looked at.
+    rest_until: f64,
 }
 
 /// How far the tool went and turned so far; grows only.
@@ -42,6 +83,11 @@ struct Clock {
 }
 
 impl Clock {
+    /// What a motion adds.
+    fn of<const D: usize>(twist: &Twist<D>) -> Self {
+        Self { way: twist.linear.norm(), turn: twist.angular.norm() }
+    }
+
     /// How far a point `arm` from the origin may have gone.
     fn at(&self, arm: f64) -> f64 {
         self.way + self.turn * arm
@@ -52,18 +98,21 @@ impl Clock {
 #[derive(Clone, Debug)]
 pub(super) struct Scan<const D: usize> {
     points: Vec<Seen<D>>,
+    marks: Vec<Mark>,
     looks: Vec<Look>,
     clock: Clock,
     /// Of the present pose.
     stamp: u64,
     /// Clusters to look at now.
-    due: Vec<u32>,
+    due: Room<Due>,
+    /// The points that were looked at where the tool is.
+    near: Room<u32>,
     /// Levels that are still looked at in this tick.
     levels: usize,
     budget: u32,
     evaluations: u32,
     /// Points that are followed on their way.
-    pub(super) marches: Vec<March>,
+    pub(super) marches: Room<March>,
     pub(super) batch: Box<Batch<D>>,
 }
 
@@ -73,14 +122,16 @@ impl<const D: usize> Scan<D> {
         let nothing = Seen { centre: zero, gap: f64::NEG_INFINITY, gradient: zero, body: 0 };
         Self {
             points: vec![nothing; shell.points().len()],
+            marks: vec![Mark::NONE; shell.points().len()],
             looks: vec![Look::NONE; shell.clusters.len()],
             clock: Clock::default(),
             stamp: 1,
-            due: Vec::with_capacity(shell.clusters.len()),
+            due: Room::with_capacity(shell.clusters.len()),
+            near: Room::with_capacity(shell.points().len()),
             levels: shell.levels.len(),
             budget: 0,
             evaluations: 0,
-            marches: Vec::with_capacity(shell.points().len()),
+            marches: Room::with_capacity(shell.points().len()),
             batch: Batch::boxed(),
         }
     }
@@ -93,14 +144,22 @@ impl<const D: usize> Scan<D> {
     /// The bodies are other ones, or elsewhere: nothing is known any more.
     pub(super) fn forget(&mut self) {
         self.looks.fill(Look::NONE);
-        self.stamp += 1;
+        self.marks.fill(Mark::NONE);
+        self.leave();
     }
 
     /// The tool is elsewhere.
     pub(super) fn moved(&mut self, twist: &Twist<D>) {
-        self.clock.way += twist.linear.norm();
-        self.clock.turn += twist.angular.norm();
+        let motion = Clock::of(twist);
+        self.clock.way += motion.way;
+        self.clock.turn += motion.turn;
+        self.leave();
+    }
+
+    /// Nothing was looked at where the tool is now.
+    fn leave(&mut self) {
         self.stamp += 1;
+        self.near.clear();
     }
 
     /// Evaluations in this tick.
@@ -128,9 +187,10 @@ impl<const D: usize> Scan<D> {
         self.points.get(number as usize)
     }
 
-    /// Looks at all clusters that the tool at `pose` could touch with in a motion like `twist`
-    /// that moves no point by more than `horizon` [m]; at those of fewer levels if there are more than `share` of what the budget has left
-    /// allow. `false` if it does not allow the first level.
+    /// Looks at all points that the tool at `pose` could touch with in a motion like `twist`
+    /// that moves no point by more than `horizon` [m]; at those of fewer levels if there are
+    /// more than `share` of what the budget has left allow. `false` if it does not allow the
+    /// first level.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn look(
@@ -141,36 +201,68 @@ impl<const D: usize> Scan<D> {
         (twist, horizon, share): (&Twist<D>, f64, f64),
     ) -> bool {
         self.due.clear();
-        let left = f64::from(self.left());
-        let (mut count, mut is_enough) = (0, true);
+        let (left, begin, stamp) = (f64::from(self.left()), self.near.len(), self.stamp);
+        let mut is_enough = true;
+        let motion = Clock::of(twist);
+        let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         for (index, (cluster, look)) in (0..).zip(shell.clusters.iter().zip(&self.looks)) {
             if cluster.level >= self.levels {
                 break;
             }
-            let remaining = look.free_until - self.clock.at(cluster.arm);
-            if look.stamp == self.stamp || remaining > twist.way(cluster.arm).min(horizon) {
+            let now = self.clock.at(cluster.arm);
+            let until = now + motion.at(cluster.arm).min(horizon);
+            if look.unseen_until(stamp) > until {
                 continue;
             }
-            let size = cluster.members.len();
+            let before = self.near.len();
+            let (mut seen_until, mut rest_until) = (f64::INFINITY, f64::INFINITY);
+            for number in shell.members(cluster) {
+                let Some(mark) = self.marks.get_mut(number as usize) else { continue };
+                if mark.stamp == stamp {
+                    seen_until = least(seen_until, mark.free_until);
+                    continue;
+                }
+                // Written so that NaN is looked at, here and below.
+                let is_free = |until_then: f64| until_then > until;
+                if !is_free(mark.free_until) && mark.is_known() {
+                    let i = number as usize;
+                    let known = shell.points().get(i).zip(self.points.get(i));
+                    let went = known.map_or(f64::INFINITY, |(point, seen)| {
+                        let way = pose.transform_point(point.centre) - seen.centre;
+                        way.norm() - seen.gap / lipschitz
+                    });
+                    mark.free_until = mark.free_until.max(now - went);
+                }
+                if is_free(mark.free_until) {
+                    rest_until = least(rest_until, mark.free_until);
+                } else {
+                    self.near.push(number);
+                }
+            }
             let allowed = if cluster.level == 0 { left } else { left * share };
-            if (count + size) as f64 > allowed {
+            if (self.near.len() - begin) as f64 > allowed {
+                self.near.truncate(before);
                 self.levels = cluster.level;
                 is_enough = cluster.level > 0;
                 break;
             }
-            count += size;
-            self.due.push(index);
+            let (cluster, end) = (index, self.near.len());
+            self.due.push(Due { cluster, end, seen_until, rest_until });
         }
-        self.evaluate(shell, nearby, pose);
+        self.evaluate(shell, nearby, pose, begin);
         is_enough
     }
 
-    /// Looks at the clusters that are due.
-    fn evaluate(&mut self, shell: &Shell<D>, nearby: &Nearby<'_, D>, pose: &Pose<D>) {
+    /// Looks at the points near from the place `begin` on, of the clusters that are due.
+    fn evaluate(
+        &mut self,
+        shell: &Shell<D>,
+        nearby: &Nearby<'_, D>,
+        pose: &Pose<D>,
+        begin: usize,
+    ) {
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
-        let due = std::mem::take(&mut self.due);
-        let members = due.iter().filter_map(|cluster| shell.clusters.get(*cluster as usize));
-        let mut numbers = members.clone().flat_map(|cluster| shell.members(cluster));
+        let mut numbers = self.near.iter().skip(begin).copied();
         let batch = &mut *self.batch;
         loop {
             batch.gather(shell, pose, &mut numbers);
@@ -185,59 +277,47 @@ impl<const D: usize> Scan<D> {
                 }
             }
         }
-        for (index, cluster) in due.iter().zip(members) {
-            let gaps = shell.members(cluster).filter_map(|i| self.points.get(i as usize));
-            // Written so that NaN touches.
-            let least =
-                gaps.fold(
-                    f64::INFINITY,
-                    |least, point| {
-                        if point.gap >= least { least } else { point.gap }
-                    },
-                );
-            let free_until = self.clock.at(cluster.arm) + least / lipschitz;
-            if let Some(look) = self.looks.get_mut(*index as usize) {
-                *look = Look { stamp: self.stamp, free_until };
+        let mut near = self.near.iter().skip(begin);
+        let mut begin = begin;
+        for Due { cluster: index, end, seen_until, rest_until } in &self.due {
+            let cluster = shell.clusters.get(*index as usize);
+            let look = self.looks.get_mut(*index as usize);
+            let Some((cluster, look)) = cluster.zip(look) else { continue };
+            let (now, mut free_until) =
+                (self.clock.at(cluster.arm), least(*seen_until, *rest_until));
+            for number in near.by_ref().take(end - begin) {
+                let place = *number as usize;
+                let known = self.points.get(place).zip(self.marks.get_mut(place));
+                let Some((point, mark)) = known else { continue };
+                *mark = Mark { stamp: self.stamp, free_until: now + point.gap / lipschitz };
+                free_until = least(free_until, mark.free_until);
             }
+            begin = *end;
+            *look = Look { stamp: self.stamp, free_until, rest_until: *rest_until };
         }
-        self.due = due;
-    }
-
-    /// The clusters that were looked at where the tool is.
-    fn seen_clusters<'a>(&'a self, shell: &'a Shell<D>) -> impl Iterator<Item = &'a Cluster> {
-        let known = shell.clusters.iter().zip(&self.looks);
-        known.filter(|(_, look)| look.stamp == self.stamp).map(|(cluster, _)| cluster)
     }
 
     /// The points that were looked at where the tool is, with their numbers.
-    pub(super) fn seen<'a>(
-        &'a self,
-        shell: &'a Shell<D>,
-    ) -> impl Iterator<Item = (u32, &'a Seen<D>)> {
-        let numbers = self.seen_clusters(shell).flat_map(|cluster| shell.members(cluster));
-        numbers.filter_map(|i| Some((i, self.points.get(i as usize)?)))
+    pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
+        self.near.iter().filter_map(|i| Some((*i, self.points.get(*i as usize)?)))
     }
 
     /// The least gap of what was looked at where the tool is [m].
-    pub(super) fn least_gap(&self, shell: &Shell<D>) -> f64 {
-        // Written so that NaN is the least.
-        self.seen(shell).fold(
-            f64::INFINITY,
-            |least, (_, point)| {
-                if point.gap >= least { least } else { point.gap }
-            },
-        )
+    pub(super) fn least_gap(&self) -> f64 {
+        self.seen().fold(f64::INFINITY, |gap, (_, point)| least(gap, point.gap))
     }
 
-    /// The part of a motion that those clusters allow which were not looked at here.
+    /// The part of a motion that those points allow which were not looked at here.
     pub(super) fn free_part(&self, shell: &Shell<D>, twist: &Twist<D>) -> f64 {
-        let mut part = 1.0_f64;
+        let (mut part, motion) = (1.0_f64, Clock::of(twist));
         for (cluster, look) in shell.clusters.iter().zip(&self.looks) {
-            if cluster.level >= self.levels || look.stamp == self.stamp {
-                continue;
+            if cluster.level >= self.levels {
+                break;
             }
-            let remaining = (look.free_until - self.clock.at(cluster.arm)).max(0.0);
-            let way = twist.way(cluster.arm);
+            let until = look.unseen_until(self.stamp);
+            // Written so that NaN allows nothing.
+            let remaining = (until - self.clock.at(cluster.arm)).max(0.0);
+            let way = motion.at(cluster.arm);
             if way > remaining {
                 part = part.min(remaining / way);
             }
@@ -254,9 +334,28 @@ impl<const D: usize> Scan<D> {
     }
 }
 
+/// The lesser of two; NaN if one is.
+#[inline]
+fn least(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b >= a { a } else { b }
+}
+
 impl<const D: usize> Shell<D> {
     /// The numbers of the points of a cluster.
     fn members(&self, cluster: &Cluster) -> impl Iterator<Item = u32> + '_ {
         self.order.get(cluster.members.clone()).unwrap_or(&[]).iter().copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Once, a value after NaN hid it, and a tool was outside of a field that said nothing.
+    #[test]
+    fn a_gap_that_is_no_number_stays_the_least() {
+        let gaps = [1.0, f64::NAN, 2.0];
+        assert!(gaps.into_iter().fold(f64::INFINITY, least).is_nan());
+        assert_eq!([1.0, -0.5, 2.0].into_iter().fold(f64::INFINITY, least), -0.5);
     }
 }

@@ -19,6 +19,7 @@ use palpate_field::{Point, Pose, Vector};
 use super::batch::Seen;
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::friction::{Cone, Hold, MOST_AROUND};
+use super::room::Room;
 use super::scan::Scan;
 use super::shell::Shell;
 use super::twist::{Twist, cross, in_space};
@@ -37,6 +38,11 @@ const SHARE: f64 = 0.5;
 
 /// After a turn that was cut short by its horizon, the next looks this many times as far.
 const FARTHER: f64 = 4.0;
+
+/// After any other turn, the next looks at most this many times as far as that one would have
+/// gone: motions get shorter, and where one grows, it is cut short and looks farther. Less
+/// would cut short more often, more looks at what nothing comes to.
+const NEXT: f64 = 1.5;
 
 /// Constraints are satisfied up to this part of the tolerance.
 const SLACK: f64 = 1e-3;
@@ -89,7 +95,7 @@ pub(super) struct Push<const D: usize> {
 pub(super) struct Rest<const D: usize> {
     pub(super) pose: Pose<D>,
     /// What pushes it there.
-    pub(super) pushes: Vec<Push<D>>,
+    pub(super) pushes: Room<Push<D>>,
     /// Points known to be outside.
     pub(super) known: u32,
     /// `true` if every point that was looked at is outside.
@@ -102,7 +108,7 @@ impl<const D: usize> Rest<D> {
     pub(super) fn new() -> Self {
         Self {
             pose: Pose::identity(),
-            pushes: Vec::with_capacity(FREEDOMS),
+            pushes: Room::with_capacity(FREEDOMS),
             known: 0,
             is_outside: false,
             energy: f64::INFINITY,
@@ -113,15 +119,15 @@ impl<const D: usize> Rest<D> {
 /// Room for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Room<Row>,
     /// Of which point each of the first rows is; those after them are of cones of friction.
-    numbers: Vec<u32>,
+    numbers: Room<u32>,
     /// How many rows there are without those of friction.
     pub(super) plain: usize,
     /// Points that pushed in the tick before.
-    pub(super) held: Vec<u32>,
+    pub(super) held: Room<u32>,
     /// Contacts with friction.
-    pub(super) cones: Vec<Cone<D>>,
+    pub(super) cones: Room<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
     pub(super) rest: Rest<D>,
@@ -130,11 +136,11 @@ pub(super) struct Settler<const D: usize> {
 impl<const D: usize> Settler<D> {
     pub(super) fn new(points: usize) -> Self {
         Self {
-            rows: Vec::with_capacity(points + FREEDOMS * MOST_AROUND),
-            numbers: Vec::with_capacity(points),
+            rows: Room::with_capacity(points + FREEDOMS * MOST_AROUND),
+            numbers: Room::with_capacity(points),
             plain: 0,
-            held: Vec::with_capacity(FREEDOMS),
-            cones: Vec::with_capacity(FREEDOMS),
+            held: Room::with_capacity(FREEDOMS),
+            cones: Room::with_capacity(FREEDOMS),
             is_slipping: false,
             rest: Rest::new(),
         }
@@ -163,8 +169,8 @@ impl<const D: usize> Settler<D> {
             if !scan.look(shell, nearby, &pose, (&wish, horizon, share)) {
                 break;
             }
-            let is_outside = scan.least_gap(shell) >= -lengths.tolerance;
-            self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
+            let is_outside = scan.least_gap() >= -lengths.tolerance;
+            self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
             if turn == 0 && is_outside {
                 match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
                     Hold::None => self.is_slipping = false,
@@ -181,7 +187,7 @@ impl<const D: usize> Settler<D> {
                         if !scan.look(shell, nearby, &pose, (&wish, horizon, SHARE)) {
                             break;
                         }
-                        self.make_rows(shell, scan, nearby, (&pose, &wish, horizon, lengths));
+                        self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
                     }
                 }
                 self.rows.truncate(self.plain);
@@ -220,8 +226,11 @@ impl<const D: usize> Settler<D> {
             } else {
                 pose = twist.part(part).moved(&pose);
             }
-            if part < 1.0 && twist.part(part).way(shell.reach) > 0.5 * horizon {
+            let way = twist.way(shell.reach);
+            if part < 1.0 && part * way > 0.5 * horizon {
                 horizon *= FARTHER;
+            } else {
+                horizon = horizon.min((NEXT * way).max(lengths.still));
             }
         }
         if self.rest.is_outside {
@@ -237,16 +246,14 @@ impl<const D: usize> Settler<D> {
     /// The tangent planes of all points that the wish could bring to the surface.
     fn make_rows(
         &mut self,
-        shell: &Shell<D>,
-        scan: &Scan<D>,
-        nearby: &Nearby<'_, D>,
+        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
         (pose, wish, horizon, lengths): (&Pose<D>, &Twist<D>, f64, Lengths),
     ) {
         self.rows.clear();
         self.numbers.clear();
         let lipschitz = nearby.lipschitz();
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
-        for (number, seen) in scan.seen(shell) {
+        for (number, seen) in scan.seen() {
             let arm = seen.centre - pose.translation;
             if seen.gap > lipschitz * (linear + angular * arm.norm()).min(horizon) {
                 continue;

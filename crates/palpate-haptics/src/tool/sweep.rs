@@ -19,7 +19,8 @@ use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// A motion that values at its start prove for this part of it needs no evaluations on the way.
-const WORTH_GOING: f64 = 0.25;
+/// Less ends turns early, and a turn costs more than the few points in its way.
+const WORTH_GOING: f64 = 0.75;
 
 /// Poses on a way at most.
 const MOST_STEPS: u32 = 64;
@@ -31,7 +32,7 @@ const DIPS: f64 = 0.75;
 const MET: f64 = 0.125;
 
 /// A point on its way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct March {
     number: u32,
     /// The length of its way [m].
@@ -57,7 +58,7 @@ impl<const D: usize> Scan<D> {
         let (linear, angle) = (twist.linear.norm(), twist.angular.norm());
         let (mut proven, mut marches) = (whole, std::mem::take(&mut self.marches));
         marches.clear();
-        for (number, seen) in self.seen(shell) {
+        for (number, seen) in self.seen() {
             // Points that are deeper than a skin already are on their way out.
             if seen.gap <= -skin {
                 continue;
@@ -116,7 +117,7 @@ impl<const D: usize> Scan<D> {
                 if batch.count == 0 {
                     break;
                 }
-                batch.ask(nearby);
+                batch.ask_gaps(nearby);
                 let asked = rest.iter_mut().enumerate().filter(|(_, march)| behind(march));
                 for ((place, march), (_, seen)) in asked.zip(batch.results()) {
                     last = place + 1;
