@@ -10,9 +10,6 @@ use palpate_field::Vector;
 /// The part of a residual below which a step solves its equation: the step is itself a guess.
 const SOLVED: f64 = 1e-4;
 
-/// A turn is explained if the bend tells it up to this part.
-const EXPLAINED: f64 = 0.2;
-
 /// The shape operator `S` of a surface: its unit normal turns by `S w` along a short way `w`.
 ///
 /// Learnt one way at a time by the symmetric secant update of Powell, "A new algorithm for
@@ -34,25 +31,24 @@ impl<const D: usize> Bend<D> {
         Vector(self.rows.map(|row| row.dot(way)))
     }
 
-    /// Learns that the normal turned by `turn` along a `way` of squared length `squared` [m²].
+    /// What this bend does not tell of a `turn` of the normal along a way.
+    #[inline]
+    pub(crate) fn untold(&self, way: Vector<f64, D>, turn: Vector<f64, D>) -> Vector<f64, D> {
+        turn - self.turn(way)
+    }
+
+    /// Learns what was [untold](Self::untold) of the turn along a `way` of squared length
+    /// `squared` [m²].
     ///
     /// `S ← S + (r wᵀ + w rᵀ) / w² − (r·w) w wᵀ / w⁴` with `r = turn − S w`.
     #[inline]
-    pub(crate) fn learn(&mut self, way: Vector<f64, D>, turn: Vector<f64, D>, squared: f64) {
+    pub(crate) fn learn(&mut self, way: Vector<f64, D>, untold: Vector<f64, D>, squared: f64) {
         let per_squared = 1.0 / squared;
-        let rest = (turn - self.turn(way)) * per_squared;
-        let half = way * (0.5 * rest.dot(way) * per_squared);
-        let rest = rest - half;
+        let rest = untold * per_squared;
+        let rest = rest - way * (0.5 * rest.dot(way) * per_squared);
         for ((row, r), w) in self.rows.iter_mut().zip(rest.0).zip(way.0) {
             *row += way * r + rest * w;
         }
-    }
-
-    /// Whether a `turn` of the normal along a `way` is that of this bend.
-    #[inline]
-    pub(crate) fn explains(&self, way: Vector<f64, D>, turn: Vector<f64, D>) -> bool {
-        let rest = turn - self.turn(way);
-        rest.dot(rest) <= EXPLAINED * EXPLAINED * turn.dot(turn)
     }
 
     /// The way to the point closest to a device at `depth` [m] below the surface, for which it
@@ -71,8 +67,8 @@ impl<const D: usize> Bend<D> {
         for _ in 1..D {
             let seen = step - self.turn(step) * depth;
             let steepness = step.dot(seen);
-            // Written so that NaN is refused, and what is nothing needs no step.
-            if !(steepness > 0.0) {
+            // What is nothing needs no step.
+            if steepness <= 0.0 || steepness.is_nan() {
                 return None;
             }
             let length = left / steepness;
@@ -97,7 +93,7 @@ mod tests {
     fn cylinder() -> Bend<3> {
         let mut bend = Bend::FLAT;
         let way = Vector([0.125, 0.0, 0.0]);
-        bend.learn(way, way * 4.0, way.dot(way));
+        bend.learn(way, bend.untold(way, way * 4.0), way.dot(way));
         bend
     }
 
@@ -107,9 +103,8 @@ mod tests {
         assert_eq!(bend.turn(Vector([1.0, 0.0, 0.0])), Vector([4.0, 0.0, 0.0]));
         assert_eq!(bend.turn(Vector([0.0, 0.0, 1.0])), Vector::ZERO);
         let (way, turn) = (Vector([0.25, 0.0, 0.5]), Vector([0.5, 0.25, -0.25]));
-        bend.learn(way, turn, way.dot(way));
-        assert!((bend.turn(way) - turn).norm() < 1e-15);
-        assert!(bend.explains(way, turn) && !bend.explains(way, turn * -1.0));
+        bend.learn(way, bend.untold(way, turn), way.dot(way));
+        assert!(bend.untold(way, turn).norm() < 1e-15);
     }
 
     #[test]

@@ -14,7 +14,8 @@
 use palpate_field::{Point, Vector};
 
 use crate::bend::Bend;
-use crate::planes::Planes;
+use crate::half_spaces::HalfSpace;
+use crate::planes::{Known, Planes};
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
@@ -72,6 +73,9 @@ const ABOVE: f64 = 0.1;
 /// The sharpest bend, in turns of the normal over a skin: twice that of an edge, as the probe
 /// rounds it.
 const MOST_BEND: f64 = 2.0;
+
+/// A wall is the same if the bend tells the turn of its normal up to this part.
+const SAME_WALL: f64 = 0.2;
 
 /// A way shorter than this part of the hand's motion tells nothing of the bend: its ends are
 /// guesses.
@@ -220,9 +224,13 @@ impl<const D: usize> Slide<'_, D> {
         let is_new = self.last.is_none();
         self.normal = normal;
         let foot = here.point - normal * gap;
-        self.planes.learn(here.point, (foot, normal), gap, self.bend);
         self.learn_bend(sampler, (foot, normal));
-        let Some(mut goal) = self.planes.closest(device) else { return Turn::Cornered };
+        let wall = HalfSpace { point: foot, normal };
+        let goal = match self.planes.learn(here.point, wall, gap) {
+            Known::OneAlone => Some(wall.closest(device)),
+            Known::Several => self.planes.closest(device),
+        };
+        let Some(mut goal) = goal else { return Turn::Cornered };
 
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
@@ -281,7 +289,8 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// Learns how the surface bends between the last two tangent points, of which this is the
-    /// later.
+    /// later. Where it bends as was known, it is one wall, of which this plane is the latest.
+    #[inline(always)]
     fn learn_bend(
         &mut self,
         sampler: &Sampler<'_, D>,
@@ -289,18 +298,27 @@ impl<const D: usize> Slide<'_, D> {
     ) {
         let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else { return };
         let (way, turn) = (foot - last_foot, normal - last_normal);
-        let length = squared(way);
+        let (length, turned) = (squared(way), squared(turn));
+        let untold = self.bend.untold(way, turn);
+        let is_told = |untold, turned| squared(untold) <= SAME_WALL * SAME_WALL * turned;
+        if is_told(untold, turned) && self.planes.is_one() {
+            self.planes.clear();
+        } else {
+            let is_turn = |way, turn| is_told(self.bend.untold(way, turn), squared(turn));
+            self.planes.forget_wall((foot, normal), is_turn);
+        }
         let most = if turn.dot(way) > 0.0 { MOST_BEND } else { MOST_HOLLOW };
-        if squared(turn) * sampler.skin().powi(2) > most * most * length {
+        if turned * sampler.skin().powi(2) > most * most * length {
             *self.bend = Bend::FLAT;
         } else if length > (LEAST_WAY * self.motion).powi(2)
             && (normal + last_normal).dot(way).powi(2) < length * ALONG
         {
-            self.bend.learn(way, turn, length);
+            self.bend.learn(way, untold, length);
         }
     }
 
     /// The goal on a tangent plane, moved on and down for the bend of the surface.
+    #[inline(always)]
     fn over_the_bend(
         &self,
         (foot, normal): (Point<D>, Vector<f64, D>),
@@ -311,8 +329,7 @@ impl<const D: usize> Slide<'_, D> {
         let side = goal - foot;
         let length = squared(side);
         let is_on_plane = normal.dot(side).powi(2) <= AT_REST * AT_REST * length;
-        // Written so that NaN keeps the goal.
-        if !is_on_plane || !(depth > tolerance) {
+        if !is_on_plane || depth <= tolerance || depth.is_nan() {
             return goal;
         }
         match self.bend.way(side, depth) {
@@ -328,6 +345,7 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// The best point found, and whether the device is below the surface.
+    #[inline(always)]
     fn rest(&self, sampler: &mut Sampler<'_, D>) -> Rest<D> {
         let (normal, _) = sampler.tangent(&self.best, self.normal);
         let contact = sampler.is_below(self.device).unwrap_or(false);

@@ -7,7 +7,6 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::bend::Bend;
 use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
 
 /// Normals closer than this [rad] are one plane: two would meet in a line that rounding places.
@@ -25,6 +24,15 @@ struct Wall<const D: usize> {
     foot: Point<D>,
     /// How far it was moved down since [m].
     sunk: f64,
+}
+
+/// How many planes are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Known {
+    /// The one that was learnt last.
+    OneAlone,
+    /// It and others.
+    Several,
 }
 
 /// Up to [`CAPACITY`] tangent planes of the offset surface about one place.
@@ -50,6 +58,21 @@ impl<const D: usize> Planes<D> {
         self.count = 0;
     }
 
+    /// Whether there is one alone.
+    pub(crate) fn is_one(&self) -> bool {
+        self.count == 1
+    }
+
+    /// Forgets the planes of one wall: those from whose foot to `foot` the normal turned to
+    /// `normal` as `is_turn` says it does along the wall.
+    pub(crate) fn forget_wall(
+        &mut self,
+        (foot, normal): (Point<D>, Vector<f64, D>),
+        is_turn: impl Fn(Vector<f64, D>, Vector<f64, D>) -> bool,
+    ) {
+        self.retain(|wall| !is_turn(foot - wall.foot, normal - wall.half_space.normal));
+    }
+
     fn known(&self) -> &[Wall<D>] {
         self.walls.get(..self.count).unwrap_or(&[])
     }
@@ -70,34 +93,29 @@ impl<const D: usize> Planes<D> {
         self.count = kept;
     }
 
-    /// Learns that the offset surface is `gap` [m] below `seen_from` along the unit `normal`.
+    /// Learns the tangent plane of the offset surface, which is `gap` [m] below `seen_from`.
     ///
     /// Older planes are revised first. Where several walls meet in a crease, `f` is the least
     /// of theirs, so a wall whose plane lies `h` below `seen_from` implies `gap ≤ h`. A larger
     /// gap contradicts the plane by `gap − h`: it was that of a face left behind, and is
     /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
-    /// by the angle between the normals (see [`LEFT_BEHIND`]). A plane of the same wall, as
-    /// its `bend` tells, is dropped for the later one.
+    /// by the angle between the normals (see [`LEFT_BEHIND`]).
     #[inline(always)]
     pub(crate) fn learn(
         &mut self,
         seen_from: Point<D>,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        half_space: HalfSpace<D>,
         gap: f64,
-        bend: &Bend<D>,
-    ) {
+    ) -> Known {
+        let HalfSpace { point: foot, normal } = half_space;
         self.retain(|wall| {
             let (way, turn) = (wall.foot - foot, wall.half_space.normal - normal);
-            let is_same_wall = bend.explains(way, turn);
             let excess = gap - wall.half_space.height(seen_from);
             let (way, turn) = (way.dot(way), turn.dot(turn));
             let is_behind =
                 excess > 0.0 && excess * excess > LEFT_BEHIND * LEFT_BEHIND * turn * way;
             // Written so that NaN drops the plane.
-            let stays = turn > SAME_NORMAL * SAME_NORMAL
-                && !is_same_wall
-                && !is_behind
-                && !excess.is_nan();
+            let stays = turn > SAME_NORMAL * SAME_NORMAL && !is_behind && !excess.is_nan();
             if stays {
                 let sunk = excess.max(0.0);
                 wall.half_space.point -= wall.half_space.normal * sunk;
@@ -105,14 +123,19 @@ impl<const D: usize> Planes<D> {
             }
             stays
         });
-        let wall = Wall { half_space: HalfSpace { point: foot, normal }, foot, sunk: 0.0 };
+        let known = if self.count == 0 { Known::OneAlone } else { Known::Several };
         match self.walls.get_mut(self.count) {
             Some(place) => {
-                *place = wall;
+                // Field by field: a copy of a whole waits for its parts to be written.
+                place.half_space.point = foot;
+                place.half_space.normal = normal;
+                place.foot = foot;
+                place.sunk = 0.0;
                 self.count += 1;
             }
-            None => self.replace_loosest(wall),
+            None => self.replace_loosest(Wall { half_space, foot, sunk: 0.0 }),
         }
+        known
     }
 
     /// Puts `wall` in the place of the plane farthest below its foot.
@@ -149,9 +172,6 @@ impl<const D: usize> Planes<D> {
 
     /// The point closest to `x` above all planes; `None` if they leave no room.
     pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
-        if let [wall] = self.known() {
-            return Some(wall.half_space.closest(x));
-        }
         let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];
         for (place, wall) in half_spaces.iter_mut().zip(self.known()) {

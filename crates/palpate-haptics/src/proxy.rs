@@ -229,7 +229,7 @@ impl<const D: usize> Proxy<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
     pub fn follow(&mut self, nearby: Nearby<'_, D>, device: Point<D>) -> Following<D> {
-        let last = self.at.map_or(device, |at| at.point);
+        let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
             // What moves meanwhile is not where it was when the hand comes back.
@@ -264,14 +264,15 @@ impl<const D: usize> Proxy<D> {
             self.ground.forget();
         }
         self.is_stale = false;
-        let known = self.at.filter(|at| at.gap >= -sampler.tolerance());
-        let (start, placed) = match known {
-            Some(start) => (Some(start), false),
-            None => self.place(&mut sampler, self.at.map_or(device, |at| at.point)),
-        };
-        let placed = placed || is_pushed;
-        self.at = start;
-        let Some(start) = start else {
+        let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -sampler.tolerance());
+        let mut placed = is_pushed;
+        if !is_known {
+            let from = self.at.as_ref().map_or(device, |at| at.point);
+            let (start, is_moved) = self.place(&mut sampler, from);
+            self.at = start;
+            placed |= is_moved;
+        }
+        let Some(start) = self.at else {
             (self.contact, self.hold) = (false, Hold::None);
             return self.following(device, false, sampler.evaluations());
         };
@@ -289,7 +290,7 @@ impl<const D: usize> Proxy<D> {
             proxy,
             normal: self.normal,
             contact: self.contact,
-            body: self.at.map_or(0, |at| at.body),
+            body: self.at.as_ref().map_or(0, |at| at.body),
             is_slipping: self.hold == Hold::Slip,
             placed,
             evaluations,
@@ -402,14 +403,17 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let from = (here, normal);
                 let friction = self.friction(sampler, &here, device).filter(|_| was_held);
                 return match friction {
-                    Some(friction) => {
-                        drag(sampler, from, (device, moved), friction, &mut self.ground)
-                    }
+                    Some(friction) => drag(
+                        sampler,
+                        (here, normal),
+                        (device, moved),
+                        friction,
+                        &mut self.ground,
+                    ),
                     None => (
-                        slide(sampler, from.0, from.1, (device, moved), &mut self.ground),
+                        slide(sampler, here, normal, (device, moved), &mut self.ground),
                         Hold::None,
                     ),
                 };
