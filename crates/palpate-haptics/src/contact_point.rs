@@ -151,9 +151,24 @@ impl<const D: usize> ContactPoint<D> {
         state: PointState<D>,
         before: &Touch<D>,
     ) -> (Touch<D>, Vector<f64, D>) {
-        let Setting { options, map, rise_step, is_late } = tick.setting;
         let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
-        let (mut touch, free, placed) = self.feel(tick, &map.state_to_world(at_device), before);
+        let in_world = tick.setting.map.state_to_world(at_device);
+        let felt = self.feel(tick, &in_world, before);
+        self.give(tick.setting, at_device, felt)
+    }
+
+    /// What is felt as it is given to the hand, and the force to write to the device [N], in its
+    /// coordinates: of a touch with its wanted force, a force in free space, and whether the
+    /// force should rise anew.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn give(
+        &mut self,
+        setting: &Setting<D>,
+        at_device: PointState<D>,
+        (mut touch, free, placed): (Touch<D>, Vector<f64, D>, bool),
+    ) -> (Touch<D>, Vector<f64, D>) {
+        let Setting { options, map, rise_step, is_late } = setting;
         let force = if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
             let PointState { position, velocity } = at_device;

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Tools as scene files have them.
+
+use palpate_field::kernel::Argument;
+use palpate_field::{Point, Shape, Vector};
+use palpate_scene::{Form, Node, Primitive};
+
+use super::{Shell, Tool, ToolOptions};
+use crate::error::HapticsError;
+
+/// Points on the surface of a tool that is neither a ball nor a capsule. More feel finer things,
+/// and cost more; a face of 1 cm² of a tool as large as a hand has a few.
+const POINTS: usize = 500;
+
+/// The balls of a capsule are this part of its radius apart: then its sides are 3 % of the
+/// radius from them at most.
+const SPACING: f64 = 0.5;
+
+/// Balls of a capsule at most: those of one thinner than a hair are farther apart.
+const MOST_BALLS: f64 = 512.0;
+
+impl<const D: usize> Tool<D> {
+    /// The tool that a scene describes, with its shape as the scene
+    /// [built](palpate_scene::BuiltScene::tool) it.
+    ///
+    /// A ball, and a capsule, are felt as they are, also where they are moved; the surface of any
+    /// other shape as 500 points ([`Shell::from_field`]). The tool's `radius` makes it that much
+    /// thicker. What is left out of the coupling is that of [`ToolOptions::default`].
+    ///
+    /// Not for the servo: it allocates.
+    ///
+    /// # Errors
+    ///
+    /// As [`Shell::from_field`] and [`Tool::new`].
+    ///
+    /// ```
+    /// use palpate_haptics::Tool;
+    /// use palpate_scene::{Scene, World};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 3,
+    ///          "bodies": [ { "name": "table", "shape": { "ball": { "radius": 0.5 } } } ],
+    ///          "tool": { "shape": { "capsule": { "radius": 0.004, "height": 0.1 } },
+    ///                    "coupling": { "stiffness": 800 } } }"#,
+    /// )?;
+    /// let World::Spatial(world) = scene.build()? else { return Err("it is in space".into()) };
+    /// let data = scene.tool.as_ref().ok_or("it has a tool")?;
+    /// let tool = Tool::from_data(data, world.tool.as_ref().ok_or("with a shape")?)?;
+    /// assert_eq!((tool.options().stiffness, tool.options().damping), (800.0, 1.0));
+    /// assert!(tool.shell().points().iter().all(|point| point.radius == 0.004));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn from_data(
+        data: &palpate_scene::Tool,
+        shape: &Shape<D>,
+    ) -> Result<Self, HapticsError> {
+        let default = ToolOptions::default();
+        let coupling = data.coupling.clone().unwrap_or_default();
+        let options = ToolOptions {
+            stiffness: coupling.stiffness.unwrap_or(default.stiffness),
+            angular_stiffness: coupling.angular_stiffness.or(default.angular_stiffness),
+            damping: coupling.damping.unwrap_or(default.damping),
+            angular_damping: coupling.angular_damping.unwrap_or(default.angular_damping),
+            max_force: data.max_force.unwrap_or(default.max_force),
+            ..default
+        };
+        let balls = data.shape.as_ref().and_then(|node| balls(node, Vector::ZERO));
+        let shell = match balls {
+            Some((ends, radius)) => rod(ends, radius + data.radius)?,
+            None => Shell::from_field(shape, POINTS, data.radius)?,
+        };
+        Self::new(shell, options)
+    }
+}
+
+/// All points within a radius [m] of a segment.
+fn rod<const D: usize>(
+    [from, to]: [Point<D>; 2],
+    radius: f64,
+) -> Result<Shell<D>, HapticsError> {
+    let length = (to - from).norm();
+    if length == 0.0 && from == Vector::ZERO {
+        return Shell::ball(radius);
+    }
+    let steps = (length / (SPACING * radius)).ceil().clamp(1.0, MOST_BALLS - 1.0);
+    Shell::capsule([from, to], radius, steps as usize + 1)
+}
+
+/// The segment and the radius of a ball or a capsule, if a node is one, moved by `origin` [m].
+fn balls<const D: usize>(node: &Node, origin: Point<D>) -> Option<([Point<D>; 2], f64)> {
+    match &node.form {
+        Form::Placed { translate: Some(translate), rotation: None, of } => {
+            let translate: [f64; D] = translate.as_slice().try_into().ok()?;
+            balls(of, origin + Vector(translate))
+        }
+        Form::Primitive(primitive) if primitive.name == "ball" => {
+            Some(([origin; 2], number(primitive, "radius")?))
+        }
+        Form::Primitive(primitive) if primitive.name == "capsule" => {
+            let radius = number(primitive, "radius")?;
+            let half = Vector::unit(1) * (0.5 * number(primitive, "height")? - radius);
+            Some(([origin - half, origin + half], radius))
+        }
+        _ => None,
+    }
+}
+
+fn number(primitive: &Primitive, key: &str) -> Option<f64> {
+    match primitive.arguments.get(key) {
+        Some(Argument::Number(number)) => Some(*number),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_scene::{Scene, World};
+
+    use super::*;
+
+    fn shell(tool: &str) -> Shell<3> {
+        let scene = Scene::from_json(&format!(
+            r#"{{ "palpate": 1, "dimension": 3, "tool": {tool},
+                 "bodies": [ {{ "name": "table", "shape": {{ "ball": {{ "radius": 0.5 }} }} }} ] }}"#
+        ));
+        let scene = scene.unwrap();
+        let World::Spatial(world) = scene.build().unwrap() else { panic!("it is in space") };
+        let tool = Tool::from_data(&scene.tool.unwrap(), &world.tool.unwrap());
+        tool.unwrap().shell().clone()
+    }
+
+    #[test]
+    fn a_ball_and_a_capsule_are_felt_as_they_are() {
+        let ball = shell(r#"{ "radius": 0.001, "shape": { "ball": { "radius": 0.02 } } }"#);
+        assert_eq!((ball.points().len(), ball.points()[0].radius), (1, 0.021));
+        let rod = r#"{ "shape": { "translate": [0, 0.05, 0],
+            "of": { "capsule": { "radius": 0.01, "height": 0.12 } } } }"#;
+        let rod = shell(rod);
+        assert_eq!(rod.points().len(), 21);
+        let heights = || rod.points().iter().map(|point| point.centre[1]);
+        assert!(heights().fold(f64::INFINITY, f64::min).abs() < 1e-16);
+        assert!((heights().fold(0.0, f64::max) - 0.1).abs() < 1e-16);
+        // √(r² + (r/4)²) − r
+        assert!(rod.resolution(21) < 0.032 * 0.01);
+    }
+
+    #[test]
+    fn what_is_neither_is_a_field() {
+        let ring =
+            shell(r#"{ "shape": { "torus": { "ring_radius": 0.02, "radius": 0.005 } } }"#);
+        assert_eq!(ring.points().len(), POINTS);
+        let turned = r#"{ "radius": 0.002, "shape": { "rotate_degrees": { "axis": [1, 0, 0],
+            "angle": 90 }, "of": { "capsule": { "radius": 0.01, "height": 0.12 } } } }"#;
+        let turned = shell(turned);
+        assert_eq!(turned.points().len(), POINTS);
+        assert!(turned.points().iter().all(|point| point.radius == 0.002));
+    }
+}
