@@ -51,13 +51,16 @@ impl<const D: usize> Tool<D> {
         (start, carry): (Pose<D>, &Twist<D>),
         lengths: Lengths,
     ) -> Pose<D> {
-        let horizon = carry.way(self.shell.reach()) + lengths.skin;
+        let length = carry.way(self.shell.reach());
+        let horizon = length + lengths.skin;
         if !self.scan.look(&self.shell, nearby, &start, (carry, horizon, SHARE)) {
             return start;
         }
         let way = (&start, carry);
         let part = self.scan.sweep((&self.shell, nearby), way, lengths.skin, 1.0);
-        let carried = carry.part(part);
+        // Before what stops it, not a skin deep in it: friction holds a tool that is outside.
+        let short = if part < 1.0 { lengths.skin / length } else { 0.0 };
+        let carried = carry.part((part - short).max(0.0));
         self.scan.moved(&carried);
         carried.moved(&start)
     }

@@ -120,15 +120,17 @@ impl<const D: usize> Tool<D> {
         let part = yielding.part;
         let force = Motion {
             spring: stretch.linear * (options.stiffness * part),
-            damper: velocity * (-options.damping * part) + yielding.force,
+            damper: velocity * (-options.damping * part),
         };
         let torque = Motion {
             spring: stretch.angular * (self.angular_stiffness * part),
-            damper: spins * (-options.angular_damping * part) + yielding.torque,
+            damper: spins * (-options.angular_damping * part),
         };
+        let force = and_damper(not_pulling(force), yielding.force);
+        let torque = and_damper(not_pulling(torque), yielding.torque);
         let rise = self.rise;
-        self.touch.force = damped(&not_pulling(force), options.max_force) * rise;
-        self.touch.torque = damped(&not_pulling(torque), options.max_torque) * rise;
+        self.touch.force = damped(&force, options.max_force) * rise;
+        self.touch.torque = damped(&torque, options.max_torque) * rise;
         self.rise = (rise + 1.0 / (options.rate * options.rise_time)).min(1.0);
         self.part = part;
     }
@@ -263,4 +265,9 @@ fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
     let pulls = -(motion.damper.dot(along) + motion.spring.norm());
     let damper = if pulls > 0.0 { motion.damper + along * pulls } else { motion.damper };
     Motion { damper, ..motion }
+}
+
+/// The same with one more damper.
+fn and_damper<const N: usize>(motion: Motion<N>, damper: Vector<f64, N>) -> Motion<N> {
+    Motion { damper: motion.damper + damper, ..motion }
 }

@@ -4,9 +4,10 @@
 //! Tools as scene files have them.
 
 use palpate_field::kernel::Argument;
-use palpate_field::{Point, Shape, Vector};
-use palpate_scene::{Form, Node, Primitive};
+use palpate_field::{Point, Pose, Rotation, Shape, ShapeError, Vector};
+use palpate_scene::{Form, Node, Primitive, WrittenRotation};
 
+use super::twist::{in_place, in_space};
 use super::{Shell, Tool, ToolOptions};
 use crate::error::HapticsError;
 
@@ -25,7 +26,7 @@ impl<const D: usize> Tool<D> {
     /// The tool that a scene describes, with its shape as the scene
     /// [built](palpate_scene::BuiltScene::tool) it.
     ///
-    /// A ball, and a capsule, are felt as they are, also where they are moved; the surface of any
+    /// A ball, and a capsule, are felt as they are, also where they are placed; the surface of any
     /// other shape as 500 points ([`Shell::from_field`]). The tool's `radius` makes it that much
     /// thicker. What is left out of the coupling is that of [`ToolOptions::default`].
     ///
@@ -68,9 +69,9 @@ impl<const D: usize> Tool<D> {
             max_force: data.max_force.unwrap_or(default.max_force),
             ..default
         };
-        let balls = data.shape.as_ref().and_then(|node| balls(node, Vector::ZERO));
+        let balls = data.shape.as_ref().and_then(|node| balls::<D>(node, Pose::identity()));
         let shell = match balls {
-            Some((ends, radius)) => rod(ends, radius + data.radius)?,
+            Some((ends, radius)) => rod(ends.map(in_place), radius + data.radius)?,
             None => Shell::from_field(shape, POINTS, data.radius)?,
         };
         Self::new(shell, options)
@@ -90,22 +91,45 @@ fn rod<const D: usize>(
     Shell::capsule([from, to], radius, steps as usize + 1)
 }
 
-/// The segment and the radius of a ball or a capsule, if a node is one, moved by `origin` [m].
-fn balls<const D: usize>(node: &Node, origin: Point<D>) -> Option<([Point<D>; 2], f64)> {
+/// The segment and the radius of a ball or a capsule, if a node is one, placed by a pose; in
+/// space, where the plane is that of x and y.
+fn balls<const D: usize>(
+    node: &Node,
+    world_from_node: Pose<3>,
+) -> Option<([Point<3>; 2], f64)> {
     match &node.form {
-        Form::Placed { translate: Some(translate), rotation: None, of } => {
-            let translate: [f64; D] = translate.as_slice().try_into().ok()?;
-            balls(of, origin + Vector(translate))
+        Form::Placed { translate, rotation, of } => {
+            let translation: [f64; D] = match translate {
+                Some(translate) => translate.as_slice().try_into().ok()?,
+                None => [0.0; D],
+            };
+            let rotation = rotation.as_ref().map(turned).transpose().ok()?;
+            let rotation = rotation.unwrap_or_else(Rotation::identity);
+            let placed = Pose::new(rotation, in_space(Vector(translation)));
+            balls::<D>(of, world_from_node * placed)
         }
         Form::Primitive(primitive) if primitive.name == "ball" => {
-            Some(([origin; 2], number(primitive, "radius")?))
+            Some(([world_from_node.translation; 2], number(primitive, "radius")?))
         }
         Form::Primitive(primitive) if primitive.name == "capsule" => {
             let radius = number(primitive, "radius")?;
             let half = Vector::unit(1) * (0.5 * number(primitive, "height")? - radius);
-            Some(([origin - half, origin + half], radius))
+            Some(([-half, half].map(|end| world_from_node.transform_point(end)), radius))
         }
         _ => None,
+    }
+}
+
+/// A rotation of the plane or of space, in space.
+fn turned(written: &WrittenRotation) -> Result<Rotation<3>, ShapeError> {
+    match written {
+        WrittenRotation::Degrees(angle) => {
+            Rotation::from_axis_angle(Vector::unit(2), angle.to_radians())
+        }
+        WrittenRotation::AxisAngle(turn) => {
+            Rotation::from_axis_angle(Vector(turn.axis), turn.angle.to_radians())
+        }
+        WrittenRotation::Quaternion(quaternion) => Rotation::from_quaternion(*quaternion),
     }
 }
 
@@ -137,11 +161,13 @@ mod tests {
     fn a_ball_and_a_capsule_are_felt_as_they_are() {
         let ball = shell(r#"{ "radius": 0.001, "shape": { "ball": { "radius": 0.02 } } }"#);
         assert_eq!((ball.points().len(), ball.points()[0].radius), (1, 0.021));
-        let rod = r#"{ "shape": { "translate": [0, 0.05, 0],
-            "of": { "capsule": { "radius": 0.01, "height": 0.12 } } } }"#;
+        let rod = r#"{ "shape": { "rotate_degrees": { "axis": [1, 0, 0], "angle": 90 },
+            "of": { "translate": [0, 0.05, 0],
+                    "of": { "capsule": { "radius": 0.01, "height": 0.12 } } } } }"#;
         let rod = shell(rod);
         assert_eq!(rod.points().len(), 21);
-        let heights = || rod.points().iter().map(|point| point.centre[1]);
+        assert!(rod.points().iter().all(|point| point.centre[1].abs() < 1e-16));
+        let heights = || rod.points().iter().map(|point| point.centre[2]);
         assert!(heights().fold(f64::INFINITY, f64::min).abs() < 1e-16);
         assert!((heights().fold(0.0, f64::max) - 0.1).abs() < 1e-16);
         // √(r² + (r/4)²) − r
@@ -153,10 +179,10 @@ mod tests {
         let ring =
             shell(r#"{ "shape": { "torus": { "ring_radius": 0.02, "radius": 0.005 } } }"#);
         assert_eq!(ring.points().len(), POINTS);
-        let turned = r#"{ "radius": 0.002, "shape": { "rotate_degrees": { "axis": [1, 0, 0],
-            "angle": 90 }, "of": { "capsule": { "radius": 0.01, "height": 0.12 } } } }"#;
-        let turned = shell(turned);
-        assert_eq!(turned.points().len(), POINTS);
-        assert!(turned.points().iter().all(|point| point.radius == 0.002));
+        let grown = r#"{ "radius": 0.002,
+            "shape": { "offset": 0.001, "of": { "ball": { "radius": 0.01 } } } }"#;
+        let grown = shell(grown);
+        assert_eq!(grown.points().len(), POINTS);
+        assert!(grown.points().iter().all(|point| point.radius == 0.002));
     }
 }

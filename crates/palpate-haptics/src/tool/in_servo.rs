@@ -8,6 +8,7 @@
 
 use palpate_field::{Pose, Vector};
 
+use super::twist::Twist;
 use super::{Tool, ToolState};
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, Setting, Touch};
@@ -21,6 +22,9 @@ use crate::servo::ServoOptions;
 pub struct HeldTool<const D: usize> {
     /// Where the tool is: `world_from_tool`.
     pub pose: Pose<D>,
+    /// How it is turned against the device: along the axis, as long as the angle [rad]; in the
+    /// plane about z alone.
+    pub turn: Vector<f64, 3>,
     /// The torque on the hand about the tool's origin [N·m]; in the plane about z alone.
     pub torque: Vector<f64, 3>,
     /// Contacts that push.
@@ -42,6 +46,7 @@ impl<const D: usize> Tool<D> {
         let touch = self.touch();
         HeldTool {
             pose: touch.pose,
+            turn: Twist::between(&touch.device, &touch.pose).angular,
             torque: touch.torque,
             contacts: touch.contacts.len() as u32,
             resolution: touch.resolution,

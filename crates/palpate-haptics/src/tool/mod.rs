@@ -85,7 +85,7 @@ const MOST_EVENTS: usize = 2;
 /// ```
 ///
 /// with the velocities `u` [m/s] and `Ω` [rad/s] that the device says, and those of the tool from
-/// its last two poses; the damper acts in contact alone and never makes the hand be pulled in.
+/// its last two poses; this damper acts in contact alone and never makes the hand be pulled in.
 ///
 /// # What is felt of a material
 ///
