@@ -57,6 +57,7 @@ where
     // A scene that was felt has bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
+    let bounds = with_tools(bounds, rows);
     let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
     let of_point = |point| rows.iter().filter(|row| row.point == point).collect::<Vec<_>>();
     let together = count == 1 || count > MOST_CONTACTS;
@@ -102,6 +103,13 @@ where
     } else {
         figure
     })
+}
+
+/// Bounds that hold the origins of tools that touch, too: they may be far from what is touched.
+fn with_tools<const D: usize>(bounds: Aabb<D>, rows: &[TraceRow<D>]) -> Aabb<D> {
+    let touching = rows.iter().filter(|row| row.contact && row.tool.is_some());
+    let origins = Aabb::around(touching.map(|row| row.proxy));
+    origins.map_or(bounds, |origins| bounds.union(&origins))
 }
 
 /// The torque of a tool over time; none of contact points.

@@ -59,7 +59,10 @@ fn write_report<const D: usize>(
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     match &report.tool {
-        Some(tool) => writeln!(out, "{name}, felt with a tool of {} point(s)", tool.points)?,
+        Some(tool) => {
+            let plural = if tool.points == 1 { "" } else { "s" };
+            writeln!(out, "{name}, felt with a tool of {} point{plural}", tool.points)?;
+        }
         None => writeln!(out, "{name}, felt with {} contact point(s)", report.points)?,
     }
     write!(
@@ -167,11 +170,10 @@ fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
     )?;
     writeln!(
         out,
-        "  how sure       {} ticks of a coarser shell; within {:.3} mm of the tool, \
-         {:.3} mm of all its points",
-        tool.degraded_ticks,
+        "  resolution     {:.3} mm, in the worst tick {:.3} mm; {} ticks with a coarser shell",
+        1e3 * tool.resolution,
         1e3 * tool.coarsest_resolution,
-        1e3 * tool.resolution
+        tool.degraded_ticks,
     )?;
     if tool.covered_ticks > 0 {
         writeln!(out, "                 {} ticks covered by bodies", tool.covered_ticks)?;
