@@ -84,7 +84,7 @@ fn a_servo_feels_what_the_tool_alone_feels() {
 fn the_device_turns_and_scales_the_tool_with_its_axes() {
     // The device's x points up in the world, and the world is twice as large.
     let rotation =
-        Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 0.5 * 3.141_592_653_589_793);
+        Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), std::f64::consts::FRAC_PI_2);
     let pose = Pose::new(rotation.unwrap(), Vector::ZERO);
     let map = WorkspaceMap::new(pose, 2.0).unwrap();
     let mut servo = Servo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();

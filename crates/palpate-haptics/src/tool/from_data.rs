@@ -152,8 +152,11 @@ mod tests {
                  "bodies": [ {{ "name": "table", "shape": {{ "ball": {{ "radius": 0.5 }} }} }} ] }}"#
         ));
         let scene = scene.unwrap();
-        let World::Spatial(world) = scene.build().unwrap() else { panic!("it is in space") };
-        let tool = Tool::from_data(&scene.tool.unwrap(), &world.tool.unwrap());
+        let shape = match scene.build().unwrap() {
+            World::Spatial(world) => world.tool,
+            World::Planar(_) => None,
+        };
+        let tool = Tool::from_data(&scene.tool.unwrap(), &shape.unwrap());
         tool.unwrap().shell().clone()
     }
 

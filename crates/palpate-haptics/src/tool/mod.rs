@@ -16,7 +16,6 @@ mod carry;
 mod closest;
 mod felt;
 mod friction;
-#[allow(clippy::indexing_slicing, reason = "read at set-up, never in a tick")]
 mod from_data;
 mod in_servo;
 mod obstacle;
