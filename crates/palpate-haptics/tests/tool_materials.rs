@@ -217,3 +217,24 @@ fn a_device_that_gets_lost_leaves() {
     let touch = EventKind::Touch { speed: 0.0 };
     assert_eq!(told, [(1, touch), (2, EventKind::Leave), (3, touch)]);
 }
+
+#[test]
+fn the_friction_is_that_of_the_layer_at_the_depth_of_the_hand() {
+    let layer = Layer {
+        depth: 0.002,
+        static_friction: Some(0.9),
+        dynamic_friction: Some(0.8),
+        ..Layer::default()
+    };
+    let slick = Material { static_friction: 0.1, dynamic_friction: 0.1, ..smooth() };
+    let layered = Material { layers: vec![layer], ..slick };
+    let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&layered).unwrap());
+    for (depth, is_slipping) in [(0.0015, true), (0.004, false)] {
+        let mut tool = Tool::new(Shell::ball(0.01).unwrap(), springs()).unwrap();
+        tool.step(&mut bodies, &at([0.0, 0.02, 0.0]));
+        tool.step(&mut bodies, &at([0.0, 0.01 - depth, 0.0]));
+        // Half the depth to the side: beyond the outer cone, within the inner.
+        let touch = tool.step(&mut bodies, &at([0.5 * depth, 0.01 - depth, 0.0]));
+        assert_eq!((touch.contact, touch.is_slipping), (true, is_slipping), "{depth}");
+    }
+}
