@@ -28,7 +28,8 @@ pub struct RunReport {
     pub contact_time: f64,
     /// The largest force on a contact point [N].
     pub largest_force: f64,
-    /// The largest depth a contact point was pressed to [m].
+    /// The largest depth a contact point was pressed to [m]; of a tool with a shape, how far
+    /// bodies held its origin from the hand.
     pub largest_depth: f64,
     /// Evaluations of the shape a tick, all points together.
     pub evaluations: Evaluations,
@@ -59,7 +60,7 @@ pub struct Evaluations {
     pub mean: f64,
     /// In the tick that needed most.
     pub max: u64,
-    /// Ticks in which a point spent its whole budget.
+    /// Ticks in which a point, or a tool with a shape, spent its whole budget.
     pub budget_spent: u64,
 }
 

@@ -130,8 +130,8 @@ impl<const D: usize> Servo<D> {
     ///
     /// Rate, rise time and largest force of the servo become the tool's; the probe is not used.
     /// The [touch](Self::touches) is that of the whole tool, with the origin for its proxy, the
-    /// normal and the body of the contact that pushes hardest; the rest is in
-    /// [`tool`](Self::tool).
+    /// normal and the body of the contact that pushes hardest, and a wanted force that is limited
+    /// already; the rest is in [`tool`](Self::tool).
     ///
     /// # Errors
     ///
