@@ -156,8 +156,8 @@ pub(crate) struct FeelOptions {
     /// left out.
     #[arg(long)]
     pub(crate) device: Option<DeviceChoice>,
-    /// How many contact points the built-in hand has; 10 on the built-in gallery, else 1, if
-    /// left out.
+    /// How many contact points the built-in hand has; those of the scene's tool, or 10 on the
+    /// built-in gallery, else 1, if left out. A tool with a shape is felt as a whole instead.
     #[arg(long, alias = "contacts", conflicts_with = "path")]
     pub(crate) points: Option<usize>,
     /// Refuse bodies that the device cannot render, instead of making them softer.
@@ -173,7 +173,8 @@ pub(crate) struct FeelOptions {
     /// if left out.
     #[arg(long)]
     pub(crate) max_force: Option<f64>,
-    /// Radius of the ball that touches [m]; the tool's, or 2 mm, if left out.
+    /// Radius of the ball that touches, or of those that cover a tool with a shape [m]; the
+    /// tool's, or 2 mm, if left out.
     #[arg(long)]
     pub(crate) radius: Option<f64>,
     /// One tick after the other, without waiting for the clock.

@@ -14,8 +14,8 @@ use crate::outcome::Failure;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The names of the columns.
-pub(crate) fn header<const D: usize>() -> Vec<String> {
+/// The names of the columns; those of a tool with a shape are the last.
+pub(crate) fn header<const D: usize>(has_tool: bool) -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "point".to_owned()];
     let vectors =
         [("device", "_m"), ("proxy", "_m"), ("wanted", "_n"), ("force", "_n"), ("normal", "")];
@@ -25,7 +25,18 @@ pub(crate) fn header<const D: usize>() -> Vec<String> {
     let rest = ["contact", "body", "slipping", "taken_j", "given_j", "kept_j"];
     names.extend(rest.map(str::to_owned));
     names.extend(["evaluations", "cost_ns", "lateness_ns"].map(str::to_owned));
+    if has_tool {
+        for (vector, unit) in [("torque", "_nm"), ("turn", "_rad")] {
+            names.extend(turns::<_, D>(AXES).map(|axis| format!("{vector}_{axis}{unit}")));
+        }
+        names.extend(["contacts", "resolution_m", "degraded"].map(str::to_owned));
+    }
     names
+}
+
+/// What turns: about all axes in space, about the last in the plane.
+fn turns<T, const D: usize>(axes: [T; 3]) -> impl Iterator<Item = T> {
+    axes.into_iter().skip(if D == 2 { 2 } else { 0 })
 }
 
 fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
@@ -44,6 +55,16 @@ fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
         row.cost_ns.to_string(),
         row.lateness_ns.to_string(),
     ]);
+    if let Some(tool) = &row.tool {
+        for Vector(components) in [tool.torque, tool.turn] {
+            fields.extend(turns::<_, D>(components).map(|x| x.to_string()));
+        }
+        fields.extend([
+            tool.contacts.to_string(),
+            tool.resolution.to_string(),
+            tool.is_degraded.to_string(),
+        ]);
+    }
     fields
 }
 
@@ -55,7 +76,8 @@ pub(crate) fn write<const D: usize>(
     let wrong = |error: csv::Error| Failure::file(path, error);
     let file = File::create(path).map_err(|error| Failure::file(path, error))?;
     let mut writer = csv::Writer::from_writer(file);
-    writer.write_record(header::<D>()).map_err(wrong)?;
+    let has_tool = recorder.rows().iter().any(|row| row.tool.is_some());
+    writer.write_record(header::<D>(has_tool)).map_err(wrong)?;
     for row in recorder.rows() {
         writer.write_record(fields(row)).map_err(wrong)?;
     }

@@ -215,3 +215,96 @@ fn jitter_measures_every_way_to_wait_and_advises() {
         assert!(!errors(&output).is_empty());
     }
 }
+
+/// A plate of 6 cm by 4 cm on the ground, 3 mm deep at last.
+const PLATE: &str = r#"{ "palpate": 1, "dimension": 2,
+  "bodies": [ { "name": "ground",
+    "shape": { "translate": [0, -0.05], "of": { "cuboid": { "size": [0.4, 0.1] } } },
+    "material": { "stiffness": 500, "damping": 0, "static_friction": 0, "dynamic_friction": 0 } } ],
+  "tool": { "shape": { "cuboid": { "size": [0.06, 0.04] } },
+    "coupling": { "stiffness": 500, "damping": 0 } } }"#;
+
+#[test]
+fn a_tool_with_a_shape_is_felt_as_a_whole() {
+    let folder = Folder::new();
+    let scene = folder.write("plate.json", PLATE);
+    let hand = folder.write("hand.csv", "time_s,x_m,y_m\n0,0.01,0.05\n1,0.01,0.017\n");
+    let trace = folder.name("trace.csv");
+    let report = json(&[
+        "feel",
+        &scene,
+        "--path",
+        &hand,
+        "--fast",
+        "--json",
+        "--trace",
+        &trace,
+        "--duration",
+        "1.2",
+    ]);
+    // 3 mm of 500 N/m, on a face that stays flat.
+    assert!((report["largest_force"].as_f64().unwrap() - 1.5).abs() < 1e-3);
+    assert!((report["largest_depth"].as_f64().unwrap() - 0.003).abs() < 1e-6);
+    let tool = &report["tool"];
+    assert_eq!((&tool["points"], &tool["degraded_ticks"]), (&500.into(), &0.into()));
+    assert!(tool["largest_torque"].as_f64().unwrap() < 1e-3, "{tool}");
+    assert!(tool["most_contacts"].as_u64().unwrap() >= 2, "{tool}");
+    assert_eq!(report["events"]["touches"], 1);
+    assert_eq!(report["coupling"]["factor"], 1.0);
+    assert_eq!(report["points"], 1);
+    let rows = std::fs::read_to_string(&trace).unwrap();
+    let header: Vec<_> = rows.lines().next().unwrap().split(',').collect();
+    let ending = ["torque_z_nm", "turn_z_rad", "contacts", "resolution_m", "degraded"];
+    assert!(header.ends_with(&ending), "{header:?}");
+    assert!(rows.lines().all(|row| row.split(',').count() == header.len()));
+    // Fingers have no shape.
+    let refused = palpate(&["feel", &scene, "--points", "3", "--fast"]);
+    assert_eq!(status(&refused), 2);
+    assert!(errors(&refused).contains("the tool of the scene has a shape"));
+}
+
+#[test]
+fn a_stylus_tours_a_cup_and_is_drawn() {
+    let folder = Folder::new();
+    let plot = folder.name("stylus.svg");
+    let arguments =
+        ["feel", "scenes/stylus_in_cup.json", "--fast", "--duration", "5", "--json"];
+    let report = json(&[&arguments[..], &["--plot", &plot]].concat());
+    assert!(report["contact_time"].as_f64().unwrap() > 2.0, "{report}");
+    // The tour presses the whole stylus no deeper than a probe.
+    assert!(report["largest_depth"].as_f64().unwrap() < 0.006, "{report}");
+    let tool = &report["tool"];
+    assert_eq!(tool["covered_ticks"], 0);
+    assert!(tool["largest_torque"].as_f64().unwrap() > 0.01, "{tool}");
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    for word in ["stylus in cup, felt with a tool", "tool's origin", "torque [mN·m]"] {
+        assert!(words.contains(&word), "{word} is not among {words:?}");
+    }
+    let again = json(&arguments);
+    for key in ["contact_time", "largest_force", "evaluations", "tool"] {
+        assert_eq!(report[key], again[key], "{key}");
+    }
+    // A device that bears less is given a softer coupling.
+    let simulated = json(&[&arguments[..], &["--device", "simulated:falcon"]].concat());
+    let factor = simulated["coupling"]["factor"].as_f64().unwrap();
+    let stiffness = simulated["tool"]["stiffness"].as_f64().unwrap();
+    assert!(factor < 1.0 && (stiffness - 600.0 * factor).abs() < 1e-9, "{factor} {stiffness}");
+    let text =
+        text(&palpate(&["feel", "scenes/stylus_in_cup.json", "--fast", "--duration", "1"]));
+    assert!(text.contains("felt with a tool of 57 points"), "{text}");
+}
+
+/// The points of a tool were read, but one finger felt the scene.
+#[test]
+fn the_contact_points_of_a_tool_are_fingers() {
+    let folder = Folder::new();
+    let tool =
+        r#""tool": { "radius": 0.01, "points": [[-0.1, 0, 0], [0, 0, 0], [0.1, 0, 0]] }"#;
+    let fingers = BALL.replace("\"bodies\"", &format!("{tool}, \"bodies\""));
+    let scene = folder.write("fingers.json", &fingers);
+    let report = json(&["feel", &scene, "--fast", "--duration", "2", "--json"]);
+    assert_eq!(report["points"], 3);
+    let one = json(&["feel", &scene, "--fast", "--duration", "2", "--json", "--points", "1"]);
+    assert_eq!(one["points"], 1);
+}

@@ -137,6 +137,13 @@ impl<const D: usize> Body<D> {
         self.world_from_body.transform_point(in_body)
     }
 
+    /// Where it takes a pose of the world that moves with it in this tick; none if it does not
+    /// move.
+    pub(crate) fn carried_pose(&self, pose: &Pose<D>) -> Option<Pose<D>> {
+        let in_body = self.world_from_before.inverse() * *pose;
+        self.has_moved.then(|| self.world_from_body * in_body)
+    }
+
     /// The way of a point of the world in this tick, from one place to another, as the body
     /// sees it; none if it stays out of reach of the body by more than `margin` [m].
     pub(crate) fn way_in_body(

@@ -166,9 +166,25 @@ impl<const D: usize> ContactPoint<D> {
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
-        let Setting { options, map, rise_step, is_late } = tick.setting;
         let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
-        let (free, placed) = self.feel(tick, &map.state_to_world(at_device), touch);
+        let in_world = tick.setting.map.state_to_world(at_device);
+        let (free, placed) = self.feel(tick, &in_world, touch);
+        self.give(tick.setting, at_device, touch, (free, placed))
+    }
+
+    /// Fills in the force that is given to the hand; the force to write to the device [N], in
+    /// its coordinates. Of a touch with its wanted force, a force in free space, and whether the
+    /// force should rise anew.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn give(
+        &mut self,
+        setting: &Setting<D>,
+        at_device: PointState<D>,
+        touch: &mut Touch<D>,
+        (free, placed): (Vector<f64, D>, bool),
+    ) -> Vector<f64, D> {
+        let Setting { options, map, rise_step, is_late } = setting;
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
             let PointState { position, velocity } = at_device;

@@ -10,7 +10,8 @@
 //! [`Control`] changes what is touched and sees what happens, and never makes the servo wait.
 //!
 //! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
-//! by a spring, and bodies stop it.
+//! by a spring, and bodies stop it. A servo renders it [instead](Servo::with_tool) of contact
+//! points, or a program with six degrees of freedom steps it itself.
 //!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
@@ -126,7 +127,10 @@ pub use servo::{Servo, ServoOptions};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use thread::{EndedThread, ServoThread, ThreadOptions};
-pub use tool::{MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch};
+pub use tool::{
+    HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolReport, ToolState,
+    ToolTouch,
+};
 pub use tour::Tour;
 pub use velocity::VelocityEstimator;
 pub use workspace::WorkspaceMap;

@@ -5,6 +5,7 @@
 
 use crate::contact_point::Touch;
 use crate::event::Reaction;
+use crate::tool::HeldTool;
 
 /// A running servo, some ticks ago.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Snapshot<const D: usize> {
     pub progress: Progress,
     /// Every contact point.
     pub touches: Vec<Touch<D>>,
+    /// The tool with a shape; none of contact points.
+    pub tool: Option<HeldTool<D>>,
     /// What was done to each body.
     pub reactions: Vec<Reaction<D>>,
     /// Events so far for which the queue had no room.

@@ -14,6 +14,7 @@ use crate::recorder::Energy;
 use crate::safety::{
     Acceptance, Accepted, PortState, SafetyChain, SafetyOptions, SafetyReport,
 };
+use crate::tool::Tool;
 use crate::velocity::VelocityEstimator;
 use crate::workspace::WorkspaceMap;
 
@@ -94,6 +95,28 @@ impl<const D: usize> Protection<D> {
             all.push(worst);
         }
         Ok((bodies, all))
+    }
+
+    /// Likewise the bodies and a tool, together: what the worst layer through the coupling needs
+    /// makes all of them softer.
+    pub(crate) fn accept_tool(
+        &self,
+        mut bodies: Bodies<D>,
+        tool: &mut Tool<D>,
+        rate: f64,
+    ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
+        let mut worst: Option<Accepted> = None;
+        for impedance in bodies.bodies().iter().flat_map(|body| body.surface().impedances()) {
+            let accepted = self.accepted(tool.impedance_on(impedance?)?, rate)?;
+            if worst.as_ref().is_none_or(|worst| accepted.factor < worst.factor) {
+                worst = Some(accepted);
+            }
+        }
+        if let Some(worst) = worst.as_ref().filter(|worst| worst.factor < 1.0) {
+            bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(worst.factor));
+            tool.soften(worst.factor);
+        }
+        Ok((bodies, worst.into_iter().collect()))
     }
 
     fn accepted(&self, impedance: Impedance, rate: f64) -> Result<Accepted, HapticsError> {

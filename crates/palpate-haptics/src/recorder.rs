@@ -6,6 +6,7 @@
 use palpate_field::{Point, Vector};
 
 use crate::servo::Servo;
+use crate::tool::{HeldTool, Tool};
 
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +34,8 @@ pub struct TraceRow<const D: usize> {
     /// Energy that the hand gave to the device and got from it so far, and what the safety
     /// chain kept back [J]; zero of a servo that is not protected.
     pub energy: Energy,
+    /// The tool with a shape that hangs there; none of a contact point.
+    pub tool: Option<HeldTool<D>>,
     /// Evaluations of the shape for this point in this tick.
     pub evaluations: u32,
     /// What the whole tick cost, all points together [ns].
@@ -106,6 +109,7 @@ impl<const D: usize> Recorder<D> {
                 body: touch.body,
                 is_slipping: touch.is_slipping,
                 energy: servo.energy(point),
+                tool: servo.tool().map(Tool::held),
                 evaluations: touch.evaluations,
                 cost_ns: times.cost_ns,
                 lateness_ns: times.lateness_ns,

@@ -9,6 +9,7 @@ use crate::recorder::TickTimes;
 use crate::safety::SafetyReport;
 use crate::servo::Servo;
 use crate::statistics::{Distribution, Times};
+use crate::tool::{ToolReport, ToolTally};
 
 /// A run of the servo in numbers.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -27,7 +28,8 @@ pub struct RunReport {
     pub contact_time: f64,
     /// The largest force on a contact point [N].
     pub largest_force: f64,
-    /// The largest depth a contact point was pressed to [m].
+    /// The largest depth a contact point was pressed to [m]; of a tool with a shape, how far
+    /// bodies held its origin from the hand.
     pub largest_depth: f64,
     /// Evaluations of the shape a tick, all points together.
     pub evaluations: Evaluations,
@@ -44,6 +46,9 @@ pub struct RunReport {
     pub events: EventCounts,
     /// What the safety chain of each contact point did; none of a servo that is not protected.
     pub safety: Vec<SafetyReport>,
+    /// What a tool with a shape felt; none of contact points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool: Option<ToolReport>,
 }
 
 /// How often the shape was evaluated.
@@ -55,7 +60,7 @@ pub struct Evaluations {
     pub mean: f64,
     /// In the tick that needed most.
     pub max: u64,
-    /// Ticks in which a point spent its whole budget.
+    /// Ticks in which a point, or a tool with a shape, spent its whole budget.
     pub budget_spent: u64,
 }
 
@@ -93,6 +98,7 @@ pub(crate) struct Tally {
     cost: Times,
     lateness: Times,
     events: EventCounts,
+    tool: Option<ToolTally>,
 }
 
 impl Tally {
@@ -111,6 +117,7 @@ impl Tally {
             cost: Times::new(),
             lateness: Times::new(),
             events: EventCounts::default(),
+            tool: None,
         }
     }
 
@@ -130,7 +137,11 @@ impl Tally {
         times: TickTimes,
         servo: &Servo<D>,
     ) -> Progress {
-        let (touches, budget) = (servo.touches(), servo.options().probe.budget());
+        let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
+        if let Some(tool) = servo.tool() {
+            budget = tool.options().budget;
+            self.tool.get_or_insert_default().tick(tool);
+        }
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
@@ -185,6 +196,7 @@ impl Tally {
             rows_dropped,
             events: self.events,
             safety,
+            tool: self.tool.as_ref().map(ToolTally::report),
         }
     }
 }

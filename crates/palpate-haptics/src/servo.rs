@@ -20,6 +20,7 @@ use crate::protection::{Port, Protection};
 use crate::proxy::Probe;
 use crate::recorder::Energy;
 use crate::safety::{Accepted, SafetyReport};
+use crate::tool::Tool;
 use crate::workspace::WorkspaceMap;
 
 /// What a servo renders with, and how fast.
@@ -77,6 +78,8 @@ const WAYS: f64 = 32.0;
 pub struct Servo<const D: usize> {
     bodies: Bodies<D>,
     points: Vec<ContactPoint<D>>,
+    /// What is felt at the one point, if it is a tool with a shape.
+    tool: Option<Box<Tool<D>>>,
     touches: Vec<Touch<D>>,
     events: Vec<Event>,
     /// The forces to write [N], in device coordinates.
@@ -108,6 +111,7 @@ impl<const D: usize> Servo<D> {
         Ok(Self {
             bodies: bodies.into(),
             points: vec![ContactPoint::new(options.probe); points],
+            tool: None,
             touches: vec![Touch::NONE; points],
             events: Vec::with_capacity(MOST_EVENTS * points),
             forces: vec![Vector::ZERO; points],
@@ -121,9 +125,50 @@ impl<const D: usize> Servo<D> {
         })
     }
 
+    /// A servo that renders `bodies` to a tool with a shape, which hangs on the one contact point
+    /// of a device: its origin is at the device point, its axes are those of the device.
+    ///
+    /// Rate, rise time and largest force of the servo become the tool's; the probe is not used.
+    /// The [touch](Self::touches) is that of the whole tool, with the origin for its proxy, the
+    /// normal and the body of the contact that pushes hardest, and a wanted force that is limited
+    /// already; the rest is in [`tool`](Self::tool).
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] as [`new`](Self::new).
+    ///
+    /// # Examples
+    ///
+    /// A ball of 62.5 mm pressed 2 mm into the ground:
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::HalfSpace};
+    /// use palpate_haptics::{PointState, Servo, ServoOptions, Shell, Tool, ToolOptions};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+    /// let coupling = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
+    /// let tool = Tool::new(Shell::ball(0.0625)?, coupling)?;
+    /// let mut servo = Servo::with_tool(ground, tool, ServoOptions::default())?;
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.0605, 0.0]))]);
+    /// assert!((servo.forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
+    /// assert_eq!(servo.tool().map(|tool| tool.touch().contacts.len()), Some(1));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn with_tool(
+        bodies: impl Into<Bodies<D>>,
+        tool: Tool<D>,
+        options: ServoOptions,
+    ) -> Result<Self, HapticsError> {
+        let servo = Self::new(bodies, 1, options)?;
+        Ok(Self { tool: Some(Box::new(tool.of_servo(&options))), ..servo })
+    }
+
     /// Stands a safety chain between every contact point and a device; states are read and
     /// forces written in the coordinates of the device from now on. Returns what became of the
-    /// stiffness and damping of each body.
+    /// stiffness and damping of each body; of a tool with a shape, of what is felt through it.
     ///
     /// A device without force feedback needs no protection; its forces are zero.
     ///
@@ -140,7 +185,10 @@ impl<const D: usize> Servo<D> {
             return Ok(Vec::new());
         }
         let rate = self.setting.options.rate;
-        let (bodies, accepted) = protection.accept(self.bodies.clone(), rate)?;
+        let (bodies, accepted) = match &mut self.tool {
+            None => protection.accept(self.bodies.clone(), rate)?,
+            Some(tool) => protection.accept_tool(self.bodies.clone(), tool, rate)?,
+        };
         let profile = DeviceProfile {
             max_force: self.setting.options.max_force,
             ..protection.profile.clone()
@@ -149,6 +197,12 @@ impl<const D: usize> Servo<D> {
         self.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         self.bodies = bodies;
         Ok(accepted)
+    }
+
+    /// The tool with a shape that is rendered to; none of contact points.
+    #[must_use]
+    pub fn tool(&self) -> Option<&Tool<D>> {
+        self.tool.as_deref()
     }
 
     /// Guides every contact point.
@@ -246,6 +300,9 @@ impl<const D: usize> Servo<D> {
         for point in &mut self.points {
             point.proxy.forget_bodies();
         }
+        if let Some(tool) = &mut self.tool {
+            tool.forget_bodies();
+        }
         std::mem::replace(&mut self.bodies, bodies)
     }
 
@@ -257,6 +314,9 @@ impl<const D: usize> Servo<D> {
         // `min` ignores NaN.
         self.setting.options.max_force = self.setting.options.max_force.min(max_force).max(0.0);
         let limit = self.setting.options.max_force;
+        if let Some(tool) = &mut self.tool {
+            tool.limit_force(limit);
+        }
         self.ports().for_each(|port| port.limit_force(limit));
     }
 
@@ -267,9 +327,20 @@ impl<const D: usize> Servo<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does;
     /// evaluates the field at most [`Probe::budget`] times a point, and once more for each
-    /// magnet in reach.
+    /// magnet in reach; for a tool, [`ToolOptions::budget`](crate::ToolOptions::budget) times.
     pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
         self.events.clear();
+        if let Some(tool) = &mut self.tool {
+            let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
+            for (index, ((point, touch), force)) in points.enumerate() {
+                let felt = (&mut **tool, &mut self.bodies);
+                *force = point.tick_tool(felt, &self.setting, state(states, index), touch);
+            }
+            let told = tool.events().iter().take(MOST_EVENTS);
+            self.events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
+            self.tick += 1;
+            return &self.touches;
+        }
         let (mut list, mut reactions) = self.bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         let hand = || hand(&self.touches, states, &self.setting);
@@ -291,10 +362,15 @@ impl<const D: usize> Servo<D> {
     }
 
     /// Does what [`step`](Self::step) would with `states`, on doubles of the contact points:
-    /// nothing comes of it but that the next tick finds its code and data in the caches.
+    /// nothing comes of it but that the next tick finds its code and data in the caches. A tool
+    /// has no double, as to copy it would allocate: the bodies alone are asked where it is.
     ///
     /// Real-time: as [`step`](Self::step).
     pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
+        if let Some(tool) = &self.tool {
+            black_box(self.bodies.everything().look(tool.touch().pose.translation));
+            return;
+        }
         let told = self.events.len();
         let (mut list, reactions) = self.bodies.take_scratch();
         let hand = || hand(&self.touches, states, &self.setting);

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Aabb, Point, Pose, Vector};
+use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::device::PointState;
 use crate::error::{HapticsError, positive};
@@ -109,6 +109,12 @@ impl<const D: usize> WorkspaceMap<D> {
         self.scale
     }
 
+    /// How the device's axes lie in the world.
+    #[must_use]
+    pub fn rotation(&self) -> Rotation<D> {
+        self.world_from_device.rotation
+    }
+
     /// Where a point at the device is in the world [m]. Real-time.
     #[must_use]
     pub fn point_to_world(&self, point: Point<D>) -> Point<D> {
@@ -173,8 +179,6 @@ impl<const D: usize> WorkspaceMap<D> {
 
 #[cfg(test)]
 mod tests {
-    use palpate_field::Rotation;
-
     use super::*;
 
     fn map() -> WorkspaceMap<3> {

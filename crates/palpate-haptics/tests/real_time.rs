@@ -121,6 +121,52 @@ fn a_step_of_a_tool_allocates_and_frees_nothing() {
     assert!(touched > 1000, "{touched}");
 }
 
+/// A tool in a protected servo, on bodies that move and are swapped, with its hand-off.
+#[test]
+fn a_servo_with_a_tool_allocates_and_frees_nothing() {
+    let scene = |count: usize| {
+        let rough = Surface::new(&Material::default()).unwrap();
+        let body = |i: usize| {
+            let place = Pose::translation(Vector([0.05 * i as f64, 0.0, 0.0]));
+            Body::new(ball::<3>(0.04), rough.clone()).and_then(|body| body.at(place))
+        };
+        Bodies::new((0..count).map(body).collect::<Result<_, _>>().unwrap()).unwrap()
+    };
+    let shell = Shell::from_field(&torus(0.03, 0.01), 500, 0.0).unwrap();
+    let tool = Tool::new(shell, ToolOptions::default()).unwrap();
+    let mut servo = Servo::with_tool(scene(6), tool, ServoOptions::default()).unwrap();
+    let profile = DeviceProfile {
+        least_damping: 0.3,
+        encoder_step: 1e-5,
+        max_force: 3.0,
+        ..DeviceProfile::unlimited("example")
+    };
+    servo.protect(&Protection::new(profile)).unwrap();
+    let (mut control, mut end) = handoff(&servo, HandoffOptions { events: 10, bodies: 10 });
+    let (mut contacts, mut events) = (0, 0);
+    for tick in 0..2000_usize {
+        let t = 1e-3 * tick as f64;
+        if tick % 400 == 399 {
+            control.replace_bodies(scene(4 + tick % 3)).unwrap();
+        }
+        let lift = Pose::translation(Vector([0.1, 0.01 * (7.0 * t).sin(), 0.0]));
+        control.set_poses(&[(2, lift)]).unwrap();
+        let height = if tick % 500 == 0 { f64::NAN } else { 0.05 + 0.03 * (5.0 * t).sin() };
+        let states = [PointState::at_rest(Vector([0.1 * t, height, 0.0]))];
+        assert_no_alloc(|| {
+            end.receive(&mut servo);
+            servo.step(&states);
+            end.publish(&servo, &Progress::default());
+        });
+        assert!(servo.forces()[0].norm() <= 3.0 + 1e-9);
+        contacts += usize::from(servo.touches()[0].contact);
+        events += servo.events().len();
+        let held = control.latest().unwrap().tool;
+        assert_eq!(held, servo.tool().map(Tool::held));
+    }
+    assert!(contacts > 500 && events > 20, "{contacts} contacts, {events} events");
+}
+
 /// Twenty bodies that move, with textures, magnets, layers that give way and rings, guides on
 /// each of 24 points, safety chains and estimated velocities, and scenes swapped in between.
 #[test]

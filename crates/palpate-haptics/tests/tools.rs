@@ -6,47 +6,11 @@
 
 mod common;
 
+use common::tools::{STIFFNESS, at, box_mesh, rest, rough, springs, turned};
 use common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
-use palpate_haptics::{
-    Bodies, EventKind, Material, Shell, Surface, Tool, ToolOptions, ToolState, ToolTouch,
-};
-use palpate_mesh::{Mesh, Outline, TriangleMesh};
-
-/// The coupling's stiffness [N/m].
-const STIFFNESS: f64 = 500.0;
-
-/// Springs alone, without limits.
-fn springs() -> ToolOptions {
-    ToolOptions {
-        stiffness: STIFFNESS,
-        damping: 0.0,
-        max_force: f64::INFINITY,
-        max_torque: f64::INFINITY,
-        ..ToolOptions::default()
-    }
-}
-
-/// A box of full edge lengths as a mesh.
-fn box_mesh(edges: [f64; 3]) -> TriangleMesh {
-    let corner = |i: usize| {
-        Vector(std::array::from_fn(|k| edges[k] * if i >> k & 1 == 1 { 0.5 } else { -0.5 }))
-    };
-    let quads =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles =
-        quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
-    Mesh::new((0..8).map(corner).collect(), triangles).unwrap()
-}
-
-fn at<const D: usize>(place: [f64; D]) -> ToolState<D> {
-    ToolState::at_rest(Pose::translation(Vector(place)))
-}
-
-fn turned(axis: [f64; 3], angle: f64, place: [f64; 3]) -> ToolState<3> {
-    let rotation = Rotation::from_axis_angle(Vector(axis), angle).unwrap();
-    ToolState::at_rest(Pose::new(rotation, Vector(place)))
-}
+use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolOptions, ToolState};
+use palpate_mesh::Outline;
 
 /// The least of the field less the radius over all points of the shell.
 fn least_gap<const D: usize>(shell: &Shell<D>, pose: &Pose<D>, shape: &Shape<D>) -> f64 {
@@ -54,18 +18,6 @@ fn least_gap<const D: usize>(shell: &Shell<D>, pose: &Pose<D>, shape: &Shape<D>)
     points
         .map(|point| shape.distance(pose.transform_point(point.centre)) - point.radius)
         .fold(f64::INFINITY, f64::min)
-}
-
-/// Stays at a state until the tool rests.
-fn rest<const D: usize>(
-    tool: &mut Tool<D>,
-    bodies: &mut Bodies<D>,
-    state: &ToolState<D>,
-) -> ToolTouch<D> {
-    for _ in 0..200 {
-        tool.step(bodies, state);
-    }
-    tool.touch().clone()
 }
 
 #[test]
@@ -188,7 +140,9 @@ fn path(size: f64) -> Vec<(Vector<f64, 3>, Vector<f64, 3>, bool)> {
     let shape =
         Shape::union([ball(0.05 * size), cuboid([0.04 * size, 0.12 * size, 0.03 * size])])
             .unwrap();
-    let mut bodies = Bodies::from(shape);
+    // The same force at the same depth, in parts of the scene.
+    let surface = Surface::smooth(STIFFNESS / size, 0.0).unwrap();
+    let mut bodies = body(&shape, surface);
     let edges = [0.03 * size, 0.02 * size, 0.04 * size];
     let shell = Shell::from_mesh(&box_mesh(edges), 300, 0.0005 * size).unwrap();
     let options = ToolOptions { stiffness: STIFFNESS / size, ..springs() };
@@ -334,22 +288,6 @@ fn a_device_that_is_nowhere_touches_nothing() {
     let touch = tool.step(&mut bodies, &at([f64::NAN, 0.05, 0.0]));
     assert_eq!((touch.contact, touch.force), (false, Vector::ZERO));
     assert!(tool.step(&mut bodies, &at([0.0, 0.05, 0.0])).contact);
-}
-
-/// A flat box on rough ground.
-fn rough(shape: &Shape<3>) -> (Bodies<3>, Tool<3>) {
-    let material = Material {
-        static_friction: 0.5,
-        dynamic_friction: 0.25,
-        damping: 0.0,
-        ..Material::default()
-    };
-    let bodies = body(shape, Surface::new(&material).unwrap());
-    let shell = Shell::from_mesh(&box_mesh([0.06, 0.04, 0.05]), 600, 0.0).unwrap();
-    (
-        bodies,
-        Tool::new(shell, ToolOptions { angular_stiffness: Some(5.0), ..springs() }).unwrap(),
-    )
 }
 
 #[test]

@@ -57,6 +57,7 @@ where
     // A scene that was felt has bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
+    let bounds = with_tools(bounds, rows);
     let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
     let of_point = |point| rows.iter().filter(|row| row.point == point).collect::<Vec<_>>();
     let together = count == 1 || count > MOST_CONTACTS;
@@ -93,11 +94,34 @@ where
         ));
     }
     let figure = Figure::new(title).with_caption(caption).with_views(views).with_chart(chart);
+    let figure = match torques(rows)? {
+        Some(torques) => figure.with_chart(torques),
+        None => figure,
+    };
     Ok(if rows.iter().any(|row| row.energy != Energy::default()) {
         figure.with_chart(energies(rows, count as usize)?)
     } else {
         figure
     })
+}
+
+/// Bounds that hold the origins of tools that touch, too: they may be far from what is touched.
+fn with_tools<const D: usize>(bounds: Aabb<D>, rows: &[TraceRow<D>]) -> Aabb<D> {
+    let touching = rows.iter().filter(|row| row.contact && row.tool.is_some());
+    let origins = Aabb::around(touching.map(|row| row.proxy));
+    origins.map_or(bounds, |origins| bounds.union(&origins))
+}
+
+/// The torque of a tool over time; none of contact points.
+fn torques<const D: usize>(rows: &[TraceRow<D>]) -> Result<Option<Chart>, PlotError> {
+    let every = rows.len().div_ceil(MOST_POINTS).max(1);
+    let torque = |row: &TraceRow<D>| Some([row.time_s, 1e3 * row.tool?.torque.norm()]);
+    let torques: Vec<_> = rows.iter().step_by(every).filter_map(torque).collect();
+    if torques.is_empty() {
+        return Ok(None);
+    }
+    let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("torque", "mN·m"));
+    Ok(Some(chart.with_series(Series::new("torque", torques)?)))
 }
 
 /// The energies of all contact points together over time.
@@ -181,6 +205,8 @@ fn overlaid<const D: usize>(
         }
     }
     let rows = contacts.iter().flat_map(|contact| &contact.points).flatten();
+    let has_tool = rows.clone().any(|row| row.tool.is_some());
+    let followed = if has_tool { "tool's origin" } else { "proxy" };
     let forces = rows.map(|row| row.force.norm());
     let shortened = if D < 3 { 1.0 } else { ARROWS_OF_VIEWS };
     let full_length = shortened * forces.fold(0.0, f64::max);
@@ -189,7 +215,7 @@ fn overlaid<const D: usize>(
         let hand: Pieces = hand.flat_map(|hand| hand.near).collect();
         let hand = Polyline::of_pieces(contact.name("hand"), hand)?;
         isolines = isolines
-            .with_polyline(Polyline::of_pieces(contact.name("proxy"), proxy)?)
+            .with_polyline(Polyline::of_pieces(contact.name(followed), proxy)?)
             .with_polyline(hand.with_dash(Dash::Dotted));
         let arrows = arrows(slice, contact, spacing);
         if !arrows.is_empty() {

@@ -7,20 +7,25 @@ use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
 use palpate::haptics::{HandPath, HapticsError, Interpolation, WorkspaceMap};
 use palpate::scene::BuiltScene;
 
+use super::tool::Held;
 use crate::arguments::DeviceChoice;
 use crate::input;
 use crate::outcome::Failure;
 
 /// Where the workspace of the device lies: where the scene says, or else, that of a simulated
-/// device, so that it holds the scene.
+/// device, so that it holds the scene, or what holds the places of a tool.
 pub(super) fn map<const D: usize>(
-    scene: &BuiltScene<D>,
+    (scene, tool): (&BuiltScene<D>, Option<&Held<D>>),
     choice: &DeviceChoice,
 ) -> Result<WorkspaceMap<D>, Failure> {
     let map = match (scene.workspace, choice) {
         (Some((pose, scale)), _) => WorkspaceMap::new(pose, scale),
         (None, DeviceChoice::Simulated(profile)) => {
-            WorkspaceMap::fitting(input::bounds(scene)?, profile.workspace_radius)
+            let bounds = match tool {
+                Some(tool) => tool.bounds,
+                None => input::bounds(scene)?,
+            };
+            WorkspaceMap::fitting(bounds, profile.workspace_radius)
         }
         (None, _) => return Ok(WorkspaceMap::default()),
     };

@@ -8,12 +8,14 @@ mod held;
 mod nearness;
 mod report;
 mod slices;
+mod tool;
 mod vibration;
 
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use palpate::devices::profile_named;
+use palpate::field::{Rotation, Vector};
 use palpate::haptics::{
     Acceptance, Accepted, Bodies, Body, Ending, Guide, HandPath, HapticsError, Interpolation,
     Pace, Probe, Progress, Protection, Recorder, RunOptions, Servo, ServoOptions, Surface,
@@ -78,17 +80,25 @@ where
         servo_options(named.tool.as_ref(), (options, &choice)).map_err(Failure::input)?;
     // Before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
-    let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
-    let paths = paths(scene, (points, options), &servo_options)?;
+    let tool = tool::of_scene(named, scene, options)?;
+    let paths = match &tool {
+        Some(tool) if options.path.is_none() => {
+            vec![tool.path(options.duration.unwrap_or(DURATION))?]
+        }
+        _ => paths(scene, (named.tool.as_ref(), options), &servo_options)?,
+    };
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
     let contacts = paths.len();
+    let map = held::map((scene, tool.as_ref()), &choice)?;
     let mut servo = bodies(scene, options)
-        .and_then(|bodies| Servo::new(bodies, contacts, servo_options))
+        .and_then(|bodies| match tool {
+            Some(held) => Servo::with_tool(bodies, held.tool, servo_options),
+            None => Servo::new(bodies, contacts, servo_options),
+        })
         .map_err(Failure::input)?;
     let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
     servo.guide(&guides.map_err(Failure::input)?);
-    let map = held::map(scene, &choice)?;
     let mut device = held::device(&choice, paths, &map).map_err(Failure::input)?;
     let protection = Protection {
         map,
@@ -137,7 +147,11 @@ where
     if options.json {
         let mut json = serde_json::to_value(&outcome)?;
         json["device"] = device.profile().name.as_ref().into();
-        json["bodies"] = accepted_as_json(scene, &accepted)?;
+        if servo.tool().is_some() {
+            json["coupling"] = serde_json::to_value(accepted.first())?;
+        } else {
+            json["bodies"] = accepted_as_json(scene, &accepted)?;
+        }
         writeln!(out, "{json:#}")?;
     } else {
         write!(out, "{}", report::text(name, &outcome, (&servo, device.profile(), &accepted)))?;
@@ -205,16 +219,19 @@ fn bodies<const D: usize>(
     Bodies::new(scene.bodies.iter().map(body).collect::<Result<_, _>>()?)
 }
 
-/// The paths of the contact points: from the file, or tours of the scene one
-/// behind the other.
+/// The paths of the contact points: from the file, or tours of the scene, those of the tool's
+/// points beside each other, others one behind the other.
 fn paths<const D: usize>(
     scene: &BuiltScene<D>,
-    (points, options): (usize, &FeelOptions),
+    (tool, options): (Option<&Tool>, &FeelOptions),
     servo: &ServoOptions,
 ) -> Result<Vec<HandPath<D>>, Failure> {
     if let Some(path) = &options.path {
         return hand_csv::read(path);
     }
+    let beside = beside(scene, tool.filter(|_| options.points.is_none()));
+    let default = if options.scene.is_none() { FINGERS } else { 1 };
+    let points = if beside.is_empty() { options.points.unwrap_or(default) } else { 1 };
     if points > MOST_CONTACTS {
         let problem = format!("at most {MOST_CONTACTS} points, got {points}");
         return Err(Failure::input(problem));
@@ -225,12 +242,23 @@ fn paths<const D: usize>(
         .and_then(|tour| tour.with_probe_radius(servo.probe.radius()))
         .and_then(|tour| tour.over(&scene.whole))
         .map_err(Failure::input)?;
-    (0..points)
-        .map(|contact| {
-            let ahead = LAG * contact as f64;
-            let times = tour.times().iter().map(|time| time - ahead).collect();
-            HandPath::new(times, tour.positions().to_vec(), Interpolation::Smooth)
-        })
-        .map(|path| path.map_err(Failure::input))
-        .collect()
+    let moved = |ahead: f64, by: Vector<f64, D>| {
+        let times = tour.times().iter().map(|time| time - ahead).collect();
+        let positions = tour.positions().iter().map(|point| *point + by).collect();
+        HandPath::new(times, positions, Interpolation::Smooth).map_err(Failure::input)
+    };
+    if beside.is_empty() {
+        (0..points).map(|contact| moved(LAG * contact as f64, Vector::ZERO)).collect()
+    } else {
+        beside.into_iter().map(|arm| moved(0.0, arm)).collect()
+    }
+}
+
+/// Where the contact points of a tool are, from where the hand is; none if it has none.
+fn beside<const D: usize>(scene: &BuiltScene<D>, tool: Option<&Tool>) -> Vec<Vector<f64, D>> {
+    let rotation = scene.workspace.map_or_else(Rotation::identity, |(pose, _)| pose.rotation);
+    let points = tool.map_or(&[][..], |tool| tool.points.as_slice());
+    // A scene that was built has points of its own dimension.
+    let arm = |point: &Vec<f64>| point.as_slice().try_into().ok().map(Vector);
+    points.iter().filter_map(arm).map(|arm| rotation.rotate(arm)).collect()
 }

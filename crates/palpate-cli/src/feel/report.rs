@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use palpate::haptics::{
     Accepted, Body, DeviceProfile, Ending, PassivityReport, Progress, Rule, RunReport,
-    SafetyReport, Servo, Surface,
+    SafetyReport, Servo, Surface, ToolReport,
 };
 
 use crate::times::{quantiles, write_histogram};
@@ -26,7 +26,11 @@ pub(crate) fn live_line(progress: &Progress) -> String {
 }
 
 pub(crate) fn title(name: &str, report: &RunReport) -> String {
-    let points = if report.points == 1 { "one point" } else { "several points" };
+    let points = match (&report.tool, report.points) {
+        (Some(_), _) => "a tool",
+        (None, 1) => "one point",
+        (None, _) => "several points",
+    };
     format!("{}, felt with {points}", file_name(name))
 }
 
@@ -54,17 +58,31 @@ fn write_report<const D: usize>(
 ) -> std::fmt::Result {
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
-    writeln!(out, "{name}, felt with {} contact point(s)", report.points)?;
-    writeln!(
+    match &report.tool {
+        Some(tool) => {
+            let plural = if tool.points == 1 { "" } else { "s" };
+            writeln!(out, "{name}, felt with a tool of {} point{plural}", tool.points)?;
+        }
+        None => writeln!(out, "{name}, felt with {} contact point(s)", report.points)?,
+    }
+    write!(
         out,
-        "  stiffness {} N/m, damping {} N·s/m, at most {} N, probe of {} mm",
+        "  stiffness {} N/m, damping {} N·s/m, at most {} N, ",
         range(surfaces().map(Surface::stiffness)),
         range(surfaces().map(Surface::damping)),
         options.max_force,
-        1e3 * options.probe.radius(),
     )?;
+    match &report.tool {
+        Some(tool) => writeln!(
+            out,
+            "through a coupling of {} N/m, {} N·s/m",
+            rounded(tool.stiffness),
+            rounded(tool.damping),
+        )?,
+        None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
+    }
     writeln!(out, "  device         {}", profile.name)?;
-    write_accepted(out, accepted)?;
+    write_accepted(out, accepted, report.tool.is_some())?;
     match &report.ending {
         Ending::Finished => {}
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
@@ -84,6 +102,9 @@ fn write_report<const D: usize>(
     )?;
     writeln!(out, "  largest force  {:.3} N", report.largest_force)?;
     writeln!(out, "  largest depth  {:.3} mm", 1e3 * report.largest_depth)?;
+    if let Some(tool) = &report.tool {
+        write_tool(out, tool)?;
+    }
     let evaluations = &report.evaluations;
     writeln!(
         out,
@@ -119,22 +140,43 @@ fn write_report<const D: usize>(
     Ok(())
 }
 
-/// What became of bodies that the device cannot render, and why.
-fn write_accepted(out: &mut String, accepted: &[Accepted]) -> std::fmt::Result {
+/// What became of bodies, or of the coupling of a tool, that the device cannot render, and why.
+fn write_accepted(out: &mut String, accepted: &[Accepted], has_tool: bool) -> std::fmt::Result {
     let scaled = || accepted.iter().filter(|accepted| accepted.factor < 1.0);
     let Some(softest) = scaled().min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
         return Ok(());
     };
     let condition = softest.rule.map_or("", Rule::condition);
-    let (count, all) = (scaled().count(), accepted.len());
-    writeln!(
-        out,
-        "                 {count} of {all} bodies made softer, at most {:.3} times as stiff: \
-         {condition}",
-        softest.factor
-    )?;
+    let what = if has_tool {
+        "coupling and bodies made softer".to_owned()
+    } else {
+        format!("{} of {} bodies made softer, at most", scaled().count(), accepted.len())
+    };
+    let factor = softest.factor;
+    writeln!(out, "                 {what} {factor:.3} times as stiff: {condition}")?;
     if softest.assumed.contains(&"least_damping") {
         writeln!(out, "                 the device's least damping b is assumed")?;
+    }
+    Ok(())
+}
+
+/// What a tool felt beside force and depth.
+fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
+    writeln!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
+    writeln!(
+        out,
+        "  contacts       {:.2} on average in contact, {} at most",
+        tool.mean_contacts, tool.most_contacts
+    )?;
+    writeln!(
+        out,
+        "  resolution     {:.3} mm, in the worst tick {:.3} mm; {} ticks with a coarser shell",
+        1e3 * tool.resolution,
+        1e3 * tool.coarsest_resolution,
+        tool.degraded_ticks,
+    )?;
+    if tool.covered_ticks > 0 {
+        writeln!(out, "                 {} ticks covered by bodies", tool.covered_ticks)?;
     }
     Ok(())
 }

@@ -146,6 +146,7 @@ mod tests {
             body: 0,
             is_slipping: false,
             energy: palpate::haptics::Energy::default(),
+            tool: None,
             evaluations: 1,
             cost_ns: 0,
             lateness_ns: 0,

@@ -165,15 +165,27 @@ impl Strata {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force(&self, level: usize, depth: f64) -> f64 {
+        self.integral((level, f64::INFINITY), depth)
+    }
+
+    /// The force of the springs `depth` [m] below the surface, none of them stiffer than `most`
+    /// [N/m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn force_up_to(&self, most: f64, depth: f64) -> f64 {
+        self.integral((0, most), depth)
+    }
+
+    fn integral(&self, (level, most): (usize, f64), depth: f64) -> f64 {
         let top = self.top(level).unwrap_or(&self.outermost);
-        let (mut force, mut stiffness, mut from) = (0.0, top.stiffness, 0.0);
+        let (mut force, mut stiffness, mut from) = (0.0, top.stiffness.min(most), 0.0);
         for layer in self.deeper.iter().skip(level) {
             let begins = layer.depth - top.depth;
             if begins >= depth {
                 break;
             }
             force += stiffness * (begins - from);
-            (stiffness, from) = (layer.stiffness, begins);
+            (stiffness, from) = (layer.stiffness.min(most), begins);
         }
         force + stiffness * (depth - from)
     }

@@ -76,10 +76,10 @@ impl<const D: usize> Settler<D> {
         (pose, wish): (&Pose<D>, &Twist<D>),
         lengths: Lengths,
     ) -> Hold<D> {
-        if !self.find_cones((scan, nearby), (pose, wish)) {
+        let away = wish.stacked(lengths.unit);
+        if !self.find_cones((scan, nearby), (pose, wish), length(&away)) {
             return Hold::None;
         }
-        let away = wish.stacked(lengths.unit);
         let found = self.solve((pose, away), lengths, self.is_slipping);
         let moves = length(&found.motion);
         // Written so that NaN sticks.
@@ -114,11 +114,13 @@ impl<const D: usize> Settler<D> {
         Some((self.cones.get(index)?, self.rows.get(row)?))
     }
 
-    /// Lists the contacts that held the tool; `false` if none of them has friction.
+    /// Lists the contacts that held the tool; `false` if none of them has friction at that depth
+    /// [m].
     fn find_cones(
         &mut self,
         (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
         (pose, wish): (&Pose<D>, &Twist<D>),
+        depth: f64,
     ) -> bool {
         self.cones.clear();
         let mut has_friction = false;
@@ -130,7 +132,7 @@ impl<const D: usize> Settler<D> {
             if !(normal.is_finite() && gap.is_finite()) {
                 continue;
             }
-            let friction = body.surface().strata.at(0, 0.0).friction;
+            let friction = body.surface().strata.at(0, depth).friction;
             has_friction |= friction.fixed.max(friction.slipping) > 0.0;
             let sides = along_surface(normal, wish, seen.centre - pose.translation);
             let (point, centre, body) = (*number, seen.centre, seen.body);

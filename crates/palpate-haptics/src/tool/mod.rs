@@ -12,8 +12,14 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod batch;
+mod carry;
 mod closest;
+mod felt;
 mod friction;
+mod from_data;
+mod in_servo;
+mod obstacle;
+mod report;
 mod room;
 mod scan;
 mod settle;
@@ -25,20 +31,22 @@ mod sweep;
 mod twist;
 
 use palpate_field::{Pose, Vector};
-use palpate_query::Contact;
 
 use crate::bodies::Bodies;
 use crate::error::{HapticsError, positive};
-use crate::event::{Event, EventKind, Reaction};
-use crate::guide::limit::{Motion, damped};
+use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
+use felt::Before;
+pub use in_servo::HeldTool;
+pub use report::ToolReport;
+pub(crate) use report::ToolTally;
 use room::Room;
 use scan::Scan;
-use settle::{Lengths, Push, Settler};
+use settle::{Lengths, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{ToolOptions, ToolState, ToolTouch};
-use twist::{Twist, cross, in_space};
+use twist::Twist;
 
 /// Bodies fewer than this are all near.
 const FEW: usize = 5;
@@ -61,7 +69,7 @@ const AT_REST: f64 = 1e-3;
 /// walls thinner than two skins would not hold the tool.
 const SKIN: f64 = 1e-3;
 
-/// Events of a tool in a tick at most: a leave and a touch.
+/// Events of a tool in a tick at most: a leave and a touch, or a change of its hold.
 const MOST_EVENTS: usize = 2;
 
 /// A rigid tool that the hand moves, and that bodies stop.
@@ -82,9 +90,29 @@ const MOST_EVENTS: usize = 2;
 /// ```
 ///
 /// with the velocities `u` [m/s] and `Ω` [rad/s] that the device says, and those of the tool from
-/// its last two poses; the damper acts in contact alone and never makes the hand be pulled in. The
-/// stiffness of a body's [`Surface`](crate::Surface) is not part of it: rigid bodies meet, and
-/// the coupling yields. Its friction is.
+/// its last two poses; this damper acts in contact alone and never makes the hand be pulled in.
+///
+/// # What is felt of a material
+///
+/// Where the tool rests does not depend on how soft the bodies are: rigid bodies meet, and the
+/// coupling yields. How much it gives does. With the depth `d = √(‖v‖² + (κ/K) ‖ω‖²)`, which is
+/// the distance from the device's pose to the nearest free one, a body bears of the coupling's
+/// force and torque, damper and all, the part
+///
+/// ```text
+/// s(d) = ∫₀ᵈ min(K, K_body) / (K d)
+/// ```
+///
+/// with the stiffness `K_body` of its layer at each depth: a body that is softer than the coupling
+/// is felt as a contact point feels it, a harder one as the coupling. So a tool that touches one
+/// body without friction feels the force of a potential; of several, each counts as much as it
+/// pushes. The damping and the viscosity of the layer act at the place of each contact, as much
+/// as it pushes, on the device's velocity relative to the body; its friction holds the tool back.
+///
+/// Not felt are: layers that give way, which would have to give way under a part of the tool
+/// alone; magnets, whose pull is that of a place and not of a surface; textures of kind *height*
+/// and rings of impacts, which are those of one contact, and contacts of a tool come and go from
+/// point to point. Textures of kind *displacement* are part of a body's shape.
 ///
 /// # What is promised
 ///
@@ -96,7 +124,8 @@ const MOST_EVENTS: usize = 2;
 /// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
 ///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].
 ///
-/// A body that moves is not followed on its way: it pushes the tool out from where it is after
+/// A body that moves carries the tool that rests on it, as far as no other one is in the way. One
+/// that meets the tool is not followed on its way: it pushes the tool out from where it is after
 /// the tick. So it should move less in a tick than half of what it is thick.
 ///
 /// # Examples
@@ -133,7 +162,13 @@ pub struct Tool<const D: usize> {
     pose: Option<Pose<D>>,
     /// The part of the force that is given, in [0, 1].
     rise: f64,
+    /// The part of the coupling's force that the bodies bear, in [0, 1].
+    part: f64,
     touch: ToolTouch<D>,
+    /// How fast the device moves relative to the body that pushes hardest [m/s].
+    hand_velocity: Vector<f64, D>,
+    /// The body that the tool rests on.
+    carrier: Option<u32>,
     events: Room<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
@@ -159,7 +194,10 @@ impl<const D: usize> Tool<D> {
             settler: Settler::new(shell.points().len()),
             pose: None,
             rise: 1.0,
+            part: 1.0,
             touch: ToolTouch::new(shell.points().len()),
+            hand_velocity: Vector::ZERO,
+            carrier: None,
             events: Room::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
@@ -197,6 +235,7 @@ impl<const D: usize> Tool<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
         self.scan.forget();
+        self.carrier = None;
     }
 
     /// One tick: moves the tool as far towards `device` as `bodies` let it, and gives the force
@@ -216,7 +255,14 @@ impl<const D: usize> Tool<D> {
         if device.is_usable() {
             self.follow(bodies, (&mut list, &mut reactions), device);
         } else {
+            if bodies.has_moved {
+                // What moves meanwhile is not where it was when the hand comes back.
+                self.forget_bodies();
+            }
+            let was = Before::of(&self.touch);
             self.touch.lose();
+            self.hand_velocity = Vector::ZERO;
+            self.tell_changes(was, 0.0);
         }
         bodies.put_back((list, reactions));
         bodies.settle();
@@ -242,9 +288,13 @@ impl<const D: usize> Tool<D> {
         if nearby.has_moved() {
             self.scan.forget();
         }
+        let carry = self.carrier(&nearby, &start, &device.pose);
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
+        let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
         let lengths = self.lengths(&nearby, &start, (&motion, moved));
         self.scan.begin(&self.shell, self.options.budget);
+        let start =
+            carry.map_or(start, |carry| self.carried(&nearby, (start, &carry), lengths));
         let parts = (&self.shell, &mut self.scan, &nearby);
         self.settler.settle(parts, (start, device.pose), lengths);
         let rest = &self.settler.rest;
@@ -257,7 +307,7 @@ impl<const D: usize> Tool<D> {
         }
         let before = self.pose.unwrap_or(rest.pose);
         self.pose = Some(rest.pose);
-        self.write_touch(device, &before);
+        self.write_touch(&nearby, device, &before);
         self.react(&nearby, reactions);
     }
 
@@ -280,124 +330,4 @@ impl<const D: usize> Tool<D> {
         let still = (AT_REST * moved).max(tolerance);
         Lengths { unit, tolerance, still, skin, horizon }
     }
-
-    /// What is felt.
-    fn write_touch(&mut self, device: &ToolState<D>, before: &Pose<D>) {
-        let (rest, options) = (&self.settler.rest, &self.options);
-        let touch = &mut self.touch;
-        let was = touch.body.filter(|_| touch.contact);
-        touch.device = device.pose;
-        touch.pose = rest.pose;
-        touch.contact = rest.is_outside && !rest.pushes.is_empty();
-        touch.is_slipping = touch.contact && self.settler.is_slipping;
-        touch.is_covered = !rest.is_outside;
-        touch.evaluations = self.scan.evaluations();
-        touch.points_known = rest.known;
-        let levels = self.scan.levels();
-        let finest = levels.checked_sub(1).and_then(|last| self.shell.levels.get(last));
-        touch.resolution = match finest {
-            Some(end) if rest.is_outside => self.shell.resolution(*end),
-            _ => f64::INFINITY,
-        };
-        touch.is_degraded = levels < self.shell.levels.len();
-        touch.contacts.clear();
-        if touch.contact {
-            for push in &rest.pushes {
-                let point = self.shell.points().get(push.point as usize);
-                let radius = point.map_or(0.0, |point| point.radius);
-                touch.contacts.push(Contact {
-                    point_a: push.centre - push.normal * radius,
-                    point_b: push.centre - push.normal * (radius + push.gap),
-                    normal: -push.normal,
-                    gap: push.gap,
-                    id: u64::from(push.body) << 32 | u64::from(push.point),
-                });
-            }
-        }
-        let hardest = rest.pushes.iter().fold(None, |hardest, push| match hardest {
-            Some((_, most)) if most >= push.push => hardest,
-            _ => Some((push, push.push)),
-        });
-        touch.body = hardest.filter(|_| touch.contact).map(|(push, _)| push.body);
-
-        let stretch = Twist::between(&device.pose, &rest.pose);
-        let moved = Twist::between(before, &rest.pose);
-        touch.velocity = moved.linear * options.rate;
-        let spins = moved.angular * options.rate;
-        (touch.force, touch.torque) = if touch.contact {
-            let force = Motion {
-                spring: stretch.linear * options.stiffness,
-                damper: (device.velocity - touch.velocity) * -options.damping,
-            };
-            let torque = Motion {
-                spring: stretch.angular * self.angular_stiffness,
-                damper: (device.angular_velocity - spins) * -options.angular_damping,
-            };
-            let rise = self.rise;
-            self.rise = (rise + 1.0 / (options.rate * options.rise_time)).min(1.0);
-            let force = damped(&not_pulling(force), options.max_force) * rise;
-            (force, damped(&not_pulling(torque), options.max_torque) * rise)
-        } else {
-            (Vector::ZERO, Vector::ZERO)
-        };
-        if !touch.contact && rest.is_outside {
-            self.rise = 1.0;
-        }
-        let is = touch.body;
-        if was != is {
-            let none = Event { tick: self.tick, point: 0, body: 0, kind: EventKind::Leave };
-            if let Some(body) = was {
-                self.events.push(Event { body, ..none });
-            }
-            if let (Some(body), Some((push, _))) = (is, hardest) {
-                let speed = speed_at(push, device);
-                self.events.push(Event { body, kind: EventKind::Touch { speed }, ..none });
-            }
-        }
-    }
-
-    /// Gives the bodies what the hand gets, the other way: to each what its contacts push, and
-    /// its share of what the damper and the limits change.
-    fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {
-        if !self.touch.contact {
-            return;
-        }
-        let pushes = &self.settler.rest.pushes;
-        let origin = self.touch.pose.translation;
-        let stiffness = self.options.stiffness * self.rise;
-        let mut force = self.touch.force;
-        let mut torque = self.touch.torque;
-        let whole: f64 = pushes.iter().map(|push| push.push).sum();
-        for push in pushes {
-            let pushed = push.normal * (stiffness * push.push);
-            force -= pushed;
-            torque -= cross(in_space(push.centre - origin), in_space(pushed));
-        }
-        for push in pushes {
-            let place = nearby.body(push.body).map(|body| body.world_from_body().translation);
-            let reaction = reactions.get_mut(push.body as usize);
-            let Some((place, reaction)) = place.zip(reaction) else { continue };
-            let share = push.push / whole;
-            reaction.add(push.normal * (-stiffness * push.push), push.centre - place);
-            reaction.add(force * -share, origin - place);
-            reaction.torque -= torque * share;
-        }
-    }
-}
-
-/// The same with a damper that at most takes away what the spring pushes.
-fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
-    let Some(along) = motion.spring.normalized() else {
-        return Motion { damper: Vector::ZERO, ..motion };
-    };
-    let pulls = -(motion.damper.dot(along) + motion.spring.norm());
-    let damper = if pulls > 0.0 { motion.damper + along * pulls } else { motion.damper };
-    Motion { damper, ..motion }
-}
-
-/// How fast the device brings a contact to its body, along the normal [m/s].
-fn speed_at<const D: usize>(push: &Push<D>, device: &ToolState<D>) -> f64 {
-    let arm = in_space(push.centre - device.pose.translation);
-    let velocity = in_space(device.velocity) + cross(device.angular_velocity, arm);
-    (-velocity.dot(in_space(push.normal))).max(0.0)
 }

@@ -144,6 +144,8 @@ pub struct ToolTouch<const D: usize> {
     pub contact: bool,
     /// The body that pushes hardest, by its number; none without contact.
     pub body: Option<u32>,
+    /// The unit normal of that body where it pushes, pointing out; zero without contact.
+    pub normal: Vector<f64, D>,
     /// The contacts that push, at most six: from the tool (a) to a body (b).
     pub contacts: Vec<Contact<D>>,
     /// `true` if the tool moves along the bodies against friction; `false` if friction holds it,
@@ -178,6 +180,7 @@ impl<const D: usize> ToolTouch<D> {
             torque: Vector::ZERO,
             contact: false,
             body: None,
+            normal: Vector::ZERO,
             contacts: Vec::with_capacity(FREEDOMS),
             is_slipping: false,
             is_covered: false,
@@ -193,6 +196,7 @@ impl<const D: usize> ToolTouch<D> {
     pub(super) fn lose(&mut self) {
         (self.force, self.torque, self.velocity) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
         (self.contact, self.body, self.evaluations) = (false, None, 0);
+        (self.normal, self.is_slipping) = (Vector::ZERO, false);
         self.contacts.clear();
     }
 }

@@ -6,6 +6,7 @@
 #![allow(dead_code, unused_imports, reason = "each test uses a part")]
 
 mod cases;
+pub(crate) mod tools;
 pub(crate) mod wild;
 
 use arbitrary::Unstructured;

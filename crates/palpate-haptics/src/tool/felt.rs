@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What the hand feels of a tool at rest, and what is done to the bodies.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Pose, Vector};
+use palpate_query::Contact;
+
+use super::Tool;
+use super::settle::Push;
+use super::state::{ToolState, ToolTouch};
+use super::twist::{Twist, cross, in_place, in_space};
+use crate::event::{Event, EventKind, Reaction};
+use crate::guide::limit::{Motion, damped};
+use crate::nearby::Nearby;
+
+/// What the bodies that push make of the coupling.
+struct Yielding<const D: usize> {
+    /// The part of the coupling's force that they bear, in [0, 1].
+    part: f64,
+    /// The force of their own dampers [N].
+    force: Vector<f64, D>,
+    /// Its torque about the tool's origin [N·m].
+    torque: Vector<f64, 3>,
+}
+
+/// A contact before this tick, as far as events tell of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Before {
+    body: Option<u32>,
+    is_slipping: bool,
+}
+
+impl Before {
+    pub(super) fn of<const D: usize>(touch: &ToolTouch<D>) -> Self {
+        let body = touch.body.filter(|_| touch.contact);
+        Self { body, is_slipping: touch.is_slipping }
+    }
+}
+
+impl<const D: usize> Tool<D> {
+    /// What is felt where the tool rests, which was at `before` in the last tick.
+    pub(super) fn write_touch(
+        &mut self,
+        nearby: &Nearby<'_, D>,
+        device: &ToolState<D>,
+        before: &Pose<D>,
+    ) {
+        let was = Before::of(&self.touch);
+        self.write_rest(device);
+        let rest = &self.settler.rest;
+        let moved = Twist::between(before, &rest.pose);
+        self.touch.velocity = moved.linear * self.options.rate;
+        let hardest = hardest(&rest.pushes).filter(|_| self.touch.contact).copied();
+        self.touch.body = hardest.map(|push| push.body);
+        self.touch.normal = hardest.map_or(Vector::ZERO, |push| push.normal);
+        self.carrier = self.touch.body;
+        self.hand_velocity = device.velocity;
+        if let Some(push) = &hardest {
+            self.hand_velocity -=
+                self.body_velocity(nearby, push.body, device.pose.translation);
+        }
+        self.write_force(nearby, device, &moved);
+        let speed = hardest.map_or(0.0, |push| {
+            (-self.speed_at(nearby, &push, device).dot(push.normal)).max(0.0)
+        });
+        self.tell_changes(was, speed);
+    }
+
+    /// Where it rests, and how well that is known.
+    fn write_rest(&mut self, device: &ToolState<D>) {
+        let (rest, touch) = (&self.settler.rest, &mut self.touch);
+        touch.device = device.pose;
+        touch.pose = rest.pose;
+        touch.contact = rest.is_outside && !rest.pushes.is_empty();
+        touch.is_slipping = touch.contact && self.settler.is_slipping;
+        touch.is_covered = !rest.is_outside;
+        touch.evaluations = self.scan.evaluations();
+        touch.points_known = rest.known;
+        let levels = self.scan.levels();
+        let finest = levels.checked_sub(1).and_then(|last| self.shell.levels.get(last));
+        touch.resolution = match finest {
+            Some(end) if rest.is_outside => self.shell.resolution(*end),
+            _ => f64::INFINITY,
+        };
+        touch.is_degraded = levels < self.shell.levels.len();
+        touch.contacts.clear();
+        if !touch.contact {
+            return;
+        }
+        for push in &rest.pushes {
+            let point = self.shell.points().get(push.point as usize);
+            let radius = point.map_or(0.0, |point| point.radius);
+            touch.contacts.push(Contact {
+                point_a: push.centre - push.normal * radius,
+                point_b: push.centre - push.normal * (radius + push.gap),
+                normal: -push.normal,
+                gap: push.gap,
+                id: u64::from(push.body) << 32 | u64::from(push.point),
+            });
+        }
+    }
+
+    /// The force and the torque of a tool that moved by `moved` in this tick.
+    fn write_force(&mut self, nearby: &Nearby<'_, D>, device: &ToolState<D>, moved: &Twist<D>) {
+        if !self.touch.contact {
+            (self.touch.force, self.touch.torque) = (Vector::ZERO, Vector::ZERO);
+            if self.settler.rest.is_outside {
+                self.rise = 1.0;
+            }
+            return;
+        }
+        let options = &self.options;
+        let stretch = Twist::between(&device.pose, &self.touch.pose);
+        let yielding = self.yielding(nearby, device, &stretch);
+        let velocity = device.velocity - self.touch.velocity;
+        let spins = device.angular_velocity - moved.angular * options.rate;
+        let part = yielding.part;
+        let force = Motion {
+            spring: stretch.linear * (options.stiffness * part),
+            damper: velocity * (-options.damping * part),
+        };
+        let torque = Motion {
+            spring: stretch.angular * (self.angular_stiffness * part),
+            damper: spins * (-options.angular_damping * part),
+        };
+        let force = and_damper(not_pulling(force), yielding.force);
+        let torque = and_damper(not_pulling(torque), yielding.torque);
+        let rise = self.rise;
+        self.touch.force = damped(&force, options.max_force) * rise;
+        self.touch.torque = damped(&torque, options.max_torque) * rise;
+        self.rise = (rise + 1.0 / (options.rate * options.rise_time)).min(1.0);
+        self.part = part;
+    }
+
+    /// How the bodies that push yield to a stretch of the coupling, each as much as it pushes.
+    ///
+    /// With `d = √(‖v‖² + ℓ²‖ω‖²)` for the depth, a body bears `∫ min(K, K_body)` over it: a
+    /// function of the distance from the device to the nearest pose that is free, so that the
+    /// force of one body has a potential, and no steeper than the coupling.
+    fn yielding(
+        &self,
+        nearby: &Nearby<'_, D>,
+        device: &ToolState<D>,
+        stretch: &Twist<D>,
+    ) -> Yielding<D> {
+        let (mut part, mut force, mut torque) = (0.0, Vector::ZERO, Vector::ZERO);
+        let stiffness = self.options.stiffness;
+        let depth = self.depth(stretch);
+        let pushes = &self.settler.rest.pushes;
+        let whole: f64 = pushes.iter().map(|push| push.push).sum();
+        for push in pushes {
+            let share = push.push / whole;
+            let Some(body) = nearby.body(push.body) else { continue };
+            let strata = &body.surface().strata;
+            let borne = strata.force_up_to(stiffness, depth) / (stiffness * depth);
+            // Written so that NaN, of no depth, is all of it.
+            part += share * if borne < 1.0 { borne } else { 1.0 };
+            let layer = strata.at(0, depth);
+            let velocity = self.speed_at(nearby, push, device);
+            let approach = (-velocity.dot(push.normal)).max(0.0);
+            let damper = push.normal * (layer.damping * approach) - velocity * layer.viscosity;
+            let arm = in_space(push.centre - self.touch.pose.translation);
+            force += damper * share;
+            torque += cross(arm, in_space(damper * share));
+        }
+        Yielding { part, force, torque }
+    }
+
+    /// How far a stretch of the coupling is, with angles as lengths [m].
+    fn depth(&self, stretch: &Twist<D>) -> f64 {
+        let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
+        stretch.stacked(unit).iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// How fast the hand moves the place of a contact, as its body sees it [m/s].
+    fn speed_at(
+        &self,
+        nearby: &Nearby<'_, D>,
+        push: &Push<D>,
+        device: &ToolState<D>,
+    ) -> Vector<f64, D> {
+        let arm = in_space(push.centre - self.touch.pose.translation);
+        let turning = in_place(cross(device.angular_velocity, arm));
+        device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
+    }
+
+    /// How fast a body moves at a place [m/s].
+    fn body_velocity(
+        &self,
+        nearby: &Nearby<'_, D>,
+        body: u32,
+        place: Vector<f64, D>,
+    ) -> Vector<f64, D> {
+        match nearby.body(body).filter(|body| body.has_moved()) {
+            Some(body) => (body.carried(place) - place) * self.options.rate,
+            None => Vector::ZERO,
+        }
+    }
+
+    /// Tells of what is new since the last tick.
+    pub(super) fn tell_changes(&mut self, was: Before, speed: f64) {
+        let is = Before::of(&self.touch);
+        let mut tell = |body, kind| {
+            self.events.push(Event { tick: self.tick, point: 0, body, kind });
+        };
+        match (was.body, is.body) {
+            (Some(before), Some(body)) if before == body => {
+                if was.is_slipping != is.is_slipping {
+                    let slips = is.is_slipping;
+                    tell(body, if slips { EventKind::Slip } else { EventKind::Stick });
+                }
+            }
+            (before, body) => {
+                before.into_iter().for_each(|body| tell(body, EventKind::Leave));
+                body.into_iter().for_each(|body| tell(body, EventKind::Touch { speed }));
+            }
+        }
+    }
+
+    /// Gives the bodies what the hand gets, the other way: to each what its contacts push, and
+    /// its share of what dampers and limits change.
+    pub(super) fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {
+        if !self.touch.contact {
+            return;
+        }
+        let pushes = &self.settler.rest.pushes;
+        let origin = self.touch.pose.translation;
+        let stiffness = self.options.stiffness * self.part * self.rise;
+        let mut force = self.touch.force;
+        let mut torque = self.touch.torque;
+        let whole: f64 = pushes.iter().map(|push| push.push).sum();
+        for push in pushes {
+            let pushed = push.normal * (stiffness * push.push);
+            force -= pushed;
+            torque -= cross(in_space(push.centre - origin), in_space(pushed));
+        }
+        for push in pushes {
+            let place = nearby.body(push.body).map(|body| body.world_from_body().translation);
+            let reaction = reactions.get_mut(push.body as usize);
+            let Some((place, reaction)) = place.zip(reaction) else { continue };
+            let share = push.push / whole;
+            reaction.add(push.normal * (-stiffness * push.push), push.centre - place);
+            reaction.add(force * -share, origin - place);
+            reaction.torque -= torque * share;
+        }
+    }
+}
+
+/// The contact that pushes hardest.
+fn hardest<const D: usize>(pushes: &[Push<D>]) -> Option<&Push<D>> {
+    pushes.iter().fold(None, |hardest: Option<&Push<D>>, push| match hardest {
+        Some(hardest) if hardest.push >= push.push => Some(hardest),
+        _ => Some(push),
+    })
+}
+
+/// The same with a damper that at most takes away what the spring pushes.
+fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
+    let Some(along) = motion.spring.normalized() else {
+        return Motion { damper: Vector::ZERO, ..motion };
+    };
+    let pulls = -(motion.damper.dot(along) + motion.spring.norm());
+    let damper = if pulls > 0.0 { motion.damper + along * pulls } else { motion.damper };
+    Motion { damper, ..motion }
+}
+
+/// The same with one more damper.
+fn and_damper<const N: usize>(motion: Motion<N>, damper: Vector<f64, N>) -> Motion<N> {
+    Motion { damper: motion.damper + damper, ..motion }
+}

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Where a tool of a fixed orientation cannot be: the obstacle of its configuration space.
+
+use palpate_field::{Rotation, Shape};
+
+use super::Shell;
+use crate::error::HapticsError;
+
+impl<const D: usize> Shell<D> {
+    /// Where the origin of a tool turned by `rotation` cannot be, as a field `g` of that origin:
+    /// in the region where `g` is at most the [radius](crate::ShellPoint::radius) of its points.
+    ///
+    /// Lozano-Pérez, "Spatial planning: a configuration space approach" (1983). With the centres
+    /// `c` of the first `points` of the shell, one at least, and the field `f` of `shape`,
+    ///
+    /// ```text
+    /// g(x) = min f(x + R c)
+    /// ```
+    ///
+    /// So a [`Tour`](crate::Tour) over it, with that radius for its probe's, is one over `shape`
+    /// that presses the tool as deep as a probe.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Shape`] if the shape is nested too deeply.
+    ///
+    /// ```
+    /// use palpate_field::{Rotation, Shape, Vector, kernel::Ball};
+    /// use palpate_haptics::Shell;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::from_kernel(Ball::new(0.05)?);
+    /// let rod = Shell::capsule([Vector([0.0, 0.0]), Vector([0.0, 0.1])], 0.01, 11)?;
+    /// let obstacle = rod.obstacle(&Rotation::identity(), &ball, 11)?;
+    /// // 0.02 m below the lower end of the ball, the upper end of the rod is as far away.
+    /// assert!((obstacle.distance(Vector([0.0, -0.17])) - 0.02).abs() < 1e-15);
+    /// assert!((obstacle.distance(Vector([0.0, 0.07])) - 0.02).abs() < 1e-15);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn obstacle(
+        &self,
+        rotation: &Rotation<D>,
+        shape: &Shape<D>,
+        points: usize,
+    ) -> Result<Shape<D>, HapticsError> {
+        let points = self.points().iter().take(points.max(1));
+        let moved =
+            points.map(|point| shape.clone().translated(-rotation.rotate(point.centre)));
+        Ok(Shape::union(moved.collect::<Result<Vec<_>, _>>()?)?)
+    }
+}

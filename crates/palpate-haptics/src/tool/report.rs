@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a tool felt in a run.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use super::Tool;
+
+/// A tool with a shape in a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct ToolReport {
+    /// Points of its shell.
+    pub points: u32,
+    /// How far the tool's surface may be from the balls of the whole shell [m].
+    pub resolution: f64,
+    /// The coupling's stiffness [N/m].
+    pub stiffness: f64,
+    /// The coupling's damping [N·s/m].
+    pub damping: f64,
+    /// The largest torque on the hand [N·m].
+    pub largest_torque: f64,
+    /// The most contacts that pushed in a tick.
+    pub most_contacts: u32,
+    /// How many pushed on average in the ticks with a contact.
+    pub mean_contacts: f64,
+    /// Ticks whose budget did not allow all levels of the shell.
+    pub degraded_ticks: u64,
+    /// How far the tool's surface may have been from balls that were known to be outside, in the
+    /// worst tick in which the tool was not covered [m].
+    pub coarsest_resolution: f64,
+    /// Ticks in which bodies covered the tool.
+    pub covered_ticks: u64,
+}
+
+/// Counts while a run runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ToolTally {
+    report: ToolReport,
+    contacts: u64,
+    contact_ticks: u64,
+}
+
+impl ToolTally {
+    /// Counts a tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn tick<const D: usize>(&mut self, tool: &Tool<D>) {
+        let (held, shell, report) = (tool.held(), tool.shell(), &mut self.report);
+        report.points = shell.points().len() as u32;
+        report.resolution = shell.resolution(shell.points().len());
+        report.stiffness = tool.options().stiffness;
+        report.damping = tool.options().damping;
+        report.largest_torque = report.largest_torque.max(held.torque.norm());
+        report.most_contacts = report.most_contacts.max(held.contacts);
+        report.degraded_ticks += u64::from(held.is_degraded);
+        report.covered_ticks += u64::from(held.is_covered);
+        if held.resolution.is_finite() {
+            report.coarsest_resolution = report.coarsest_resolution.max(held.resolution);
+        }
+        self.contacts += u64::from(held.contacts);
+        self.contact_ticks += u64::from(held.contacts > 0);
+    }
+
+    pub(crate) fn report(&self) -> ToolReport {
+        let ticks = self.contact_ticks.max(1) as f64;
+        ToolReport { mean_contacts: self.contacts as f64 / ticks, ..self.report }
+    }
+}
