@@ -12,6 +12,9 @@ use crate::error::{HapticsError, not_negative, positive};
 use crate::run::ticks;
 use crate::statistics::{Distribution, Times};
 
+/// Warm-ups before a deadline: on a clock that stands still, they would never end.
+const MOST_WARM_UPS: u32 = 64;
+
 /// Waits for deadlines a period apart.
 #[derive(Debug)]
 pub(crate) struct Pacer {
@@ -33,16 +36,25 @@ impl Pacer {
         Self { period: Duration::from_secs_f64(1.0 / rate), deadline: clock.now() }
     }
 
-    /// Waits for the next deadline; `warm_up` is called that long before it. A deadline met
+    /// Waits for the next deadline. From `ahead` of it on, `warm_up` is called again and again,
+    /// as often as there is time for, but at most [`MOST_WARM_UPS`] times; and once even if it
+    /// is late, which costs no more than what follows would cost for being cold. A deadline met
     /// more than a period late moves all later ones, so that nothing hurries after lost time.
     pub(crate) fn wait(
         &mut self,
         clock: &mut dyn Clock,
         ahead: Duration,
-        warm_up: impl FnOnce(),
+        mut warm_up: impl FnMut(),
     ) -> Late {
         clock.wait_until(self.deadline.saturating_sub(ahead));
-        warm_up();
+        for _ in 0..MOST_WARM_UPS {
+            let start = clock.now();
+            warm_up();
+            let end = clock.now();
+            if end + (end.saturating_sub(start)) >= self.deadline {
+                break;
+            }
+        }
         clock.wait_until(self.deadline);
         let late = clock.now().saturating_sub(self.deadline);
         let is_missed = late > self.period;

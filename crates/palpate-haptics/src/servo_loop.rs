@@ -21,11 +21,9 @@ use crate::report::{Ending, RunReport, Tally};
 use crate::run::Pace;
 use crate::servo::Servo;
 
-/// How long before a tick it is rehearsed.
-const REHEARSAL: Duration = Duration::from_micros(50);
-
-/// How often: the first time loads what is cold, the others teach predictors.
-const REHEARSALS: u32 = 3;
+/// How long before a tick it is rehearsed, again and again: the first time loads what is cold,
+/// the others teach predictors.
+const REHEARSAL: Duration = Duration::from_micros(60);
 
 /// A servo and a device, and what goes on beside them.
 pub(crate) struct ServoLoop<'a, const D: usize> {
@@ -130,9 +128,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             let (position, velocity) = (*position + *velocity * period, *velocity);
             *expected = PointState { position, velocity };
         }
-        for _ in 0..REHEARSALS {
-            self.servo.rehearse(&self.expected);
-        }
+        self.servo.rehearse(&self.expected);
     }
 
     /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's

@@ -13,7 +13,7 @@ use palpate_field::{Point, Vector};
 use crate::error::{HapticsError, not_negative, positive};
 
 /// The longest window, in periods. A longer one is quieter at constant speed, and no faster
-/// anywhere: the work of a tick grows with its square.
+/// anywhere.
 const LONGEST: usize = 16;
 
 /// What is allowed beyond a step, as a part of it: positions in steps may be just a step off a
@@ -82,8 +82,8 @@ impl<const D: usize> VelocityEstimator<D> {
     /// Zero for the first position. One that is not finite forgets all before it, and gives
     /// zero.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic; at most 16² comparisons an
-    /// axis.
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most 16 positions
+    /// an axis.
     #[must_use]
     pub fn update(&mut self, position: Point<D>) -> Vector<f64, D> {
         if !position.is_finite() {
@@ -96,14 +96,25 @@ impl<const D: usize> VelocityEstimator<D> {
         }
         self.known = (self.known + 1).min(LONGEST + 1);
         let longest = if self.step > 0.0 { self.known - 1 } else { (self.known - 1).min(1) };
+        // A line from the newest position passes all of a window, by a step at most, if its way
+        // in a period is between these.
+        let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
         let mut velocity = Vector::ZERO;
         self.window = 0;
-        for window in 1..=longest {
-            match self.fit(position, window) {
-                Some(fitted) => velocity = fitted,
-                None => break,
+        for (window, oldest) in self.positions.iter().enumerate().skip(1).take(longest) {
+            let per_window = 1.0 / window as f64;
+            let (way, step) = ((position - *oldest) * per_window, self.step * per_window);
+            let mut is_on_line = true;
+            for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
+                // Written so that NaN ends the window.
+                is_on_line &= *least <= *way && *way <= *most;
+                (*least, *most) = (least.max(way - step), most.min(way + step));
             }
-            self.window = window;
+            let fitted = way * self.rate;
+            if !is_on_line || !fitted.is_finite() {
+                break;
+            }
+            (velocity, self.window) = (fitted, window);
         }
         velocity
     }
@@ -118,21 +129,6 @@ impl<const D: usize> VelocityEstimator<D> {
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
-    }
-
-    /// The velocity over `window` periods; `None` if the positions are not on its line.
-    fn fit(&self, newest: Point<D>, window: usize) -> Option<Vector<f64, D>> {
-        let oldest = *self.positions.get(window)?;
-        let way = (newest - oldest) * (1.0 / window as f64);
-        let between = self.positions.iter().enumerate().take(window).skip(1);
-        for (periods, position) in between {
-            let off = (newest - way * periods as f64 - *position).abs();
-            // Written so that NaN, of a way that overflows, ends the window.
-            if !off.0.iter().all(|off| *off <= self.step) {
-                return None;
-            }
-        }
-        Some(way * self.rate).filter(Vector::is_finite)
     }
 }
 

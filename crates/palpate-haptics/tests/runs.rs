@@ -155,10 +155,10 @@ fn hash(pace: Pace) -> u64 {
     let mut servo = lively_servo();
     let shape = servo.bodies().bodies()[0].shape().clone();
     let bounds = shape.promise().bounds.unwrap().aabb;
-    let path = Tour::new(bounds, 4.0).unwrap().over(&shape).unwrap();
+    let path = Tour::new(bounds, 2.0).unwrap().over(&shape).unwrap();
     let mut device = RecordedDevice::new(vec![path]).unwrap();
-    let mut recorder = Recorder::new(4000);
-    let options = RunOptions { recorder: Some(&mut recorder), pace, ..RunOptions::new(4.0) };
+    let mut recorder = Recorder::new(2000);
+    let options = RunOptions { recorder: Some(&mut recorder), pace, ..RunOptions::new(2.0) };
     run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     let numbers = recorder.rows().iter().flat_map(|row| [row.proxy.0, row.force.0].concat());
     numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
