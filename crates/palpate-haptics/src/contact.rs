@@ -7,7 +7,8 @@
 //! to the device above them is approached and the field is asked there, until the point asked
 //! for is the point that was asked: Newton's method on the conditions of the closest point, and
 //! on creases an active-set method. Salisbury and Tarr, "Haptic rendering of surfaces defined by
-//! implicit functions" (1997), track one tangent plane in the same way.
+//! implicit functions" (1997), track one tangent plane in the same way. How the surface bends is
+//! learnt from the turns of its normal and kept, so that a goal is on the bend, and mostly right.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -74,6 +75,9 @@ const ABOVE: f64 = 0.1;
 /// rounds it.
 const MOST_BEND: f64 = 2.0;
 
+/// Likewise of a hollow, which nothing rounds. What is sharper is a crease.
+const MOST_HOLLOW: f64 = 16.0;
+
 /// A wall is the same if the bend tells the turn of its normal up to this part.
 const SAME_WALL: f64 = 0.2;
 
@@ -84,9 +88,6 @@ const LEAST_WAY: f64 = 1e-3;
 /// Nor does one that does not lead along the surface: the square of twice the sine of its angle
 /// to it.
 const ALONG: f64 = 0.01;
-
-/// Likewise of a hollow, which nothing rounds. What is sharper is a crease.
-const MOST_HOLLOW: f64 = 16.0;
 
 /// What is known of the surface near a proxy.
 #[derive(Clone, Debug)]
@@ -290,7 +291,6 @@ impl<const D: usize> Slide<'_, D> {
 
     /// Learns how the surface bends between the last two tangent points, of which this is the
     /// later. Where it bends as was known, it is one wall, of which this plane is the latest.
-    #[inline(always)]
     fn learn_bend(
         &mut self,
         sampler: &Sampler<'_, D>,
@@ -318,7 +318,6 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// The goal on a tangent plane, moved on and down for the bend of the surface.
-    #[inline(always)]
     fn over_the_bend(
         &self,
         (foot, normal): (Point<D>, Vector<f64, D>),
@@ -345,7 +344,6 @@ impl<const D: usize> Slide<'_, D> {
     }
 
     /// The best point found, and whether the device is below the surface.
-    #[inline(always)]
     fn rest(&self, sampler: &mut Sampler<'_, D>) -> Rest<D> {
         let (normal, _) = sampler.tangent(&self.best, self.normal);
         let contact = sampler.is_below(self.device).unwrap_or(false);
