@@ -85,6 +85,7 @@ pub struct Servo<const D: usize> {
     /// The forces to write [N], in device coordinates.
     forces: Vec<Vector<f64, D>>,
     setting: Setting<D>,
+    protection: Option<Box<Protection<D>>>,
     /// Ticks done.
     tick: u64,
 }
@@ -112,6 +113,7 @@ impl<const D: usize> Servo<D> {
             bodies: bodies.into(),
             points: vec![ContactPoint::new(options.probe); points],
             tool: None,
+            protection: None,
             touches: vec![Touch::NONE; points],
             events: Vec::with_capacity(MOST_EVENTS * points),
             forces: vec![Vector::ZERO; points],
@@ -196,7 +198,14 @@ impl<const D: usize> Servo<D> {
         let port = Protection { profile, ..protection.clone() }.port(&accepted, rate)?;
         self.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         self.bodies = bodies;
+        self.protection = Some(Box::new(protection.clone()));
         Ok(accepted)
+    }
+
+    /// What stands between the servo and its device, if it is protected.
+    #[must_use]
+    pub fn protection(&self) -> Option<&Protection<D>> {
+        self.protection.as_deref()
     }
 
     /// The tool with a shape that is rendered to; none of contact points.
@@ -291,8 +300,9 @@ impl<const D: usize> Servo<D> {
     /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
     /// where freeing is allowed.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently. If
-    /// the servo is protected, make them ready for the device first: [`Protection::accept`].
+    /// A contact point that the new bodies cover is placed anew, and its force rises gently. A
+    /// [protected](Self::protect) servo renders them as they are: make them ready for its device
+    /// first, by [`Protection::accept`]. A [`Control`](crate::Control) does.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]

@@ -12,9 +12,9 @@ use std::time::Duration;
 use common::{ball, body, half_space};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, ClockDriver, Device, DeviceLost, DeviceProfile, Ending, EventKind,
-    HandoffOptions, HapticsError, PointState, Priority, Probe, Servo, ServoOptions,
-    ServoThread, Surface, ThreadOptions, VirtualClock,
+    Acceptance, Bodies, Body, ClockDriver, Device, DeviceLost, DeviceProfile, Ending,
+    EventKind, HandoffOptions, HapticsError, PointState, Priority, Probe, Protection, Servo,
+    ServoOptions, ServoThread, Surface, ThreadOptions, VirtualClock, handoff,
 };
 
 const TICK: Duration = Duration::from_millis(1);
@@ -102,6 +102,29 @@ fn plain() -> ThreadOptions {
 
 fn up(way: f64) -> Pose<2> {
     Pose::translation(Vector([0.0, way]))
+}
+
+#[test]
+fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
+    // Once they went as they were, whatever the device could render.
+    let profile = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
+    for acceptance in [Acceptance::Scaled, Acceptance::Strict] {
+        let mut servo =
+            servo(body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()), 1);
+        let protection = Protection { acceptance, ..Protection::new(profile.clone()) };
+        servo.protect(&protection).unwrap();
+        let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
+        // 2 b / T is 128 N/m.
+        let replaced = control.replace_bodies(floor(0.0));
+        end.receive(&mut servo);
+        let stiffness = servo.bodies().bodies()[0].surface().stiffness();
+        match acceptance {
+            Acceptance::Scaled => {
+                assert_eq!((replaced.unwrap()[0].factor, stiffness), (0.25, 128.0));
+            }
+            _ => assert!(replaced.is_err() && stiffness == 64.0),
+        }
+    }
 }
 
 #[test]

@@ -14,6 +14,8 @@ use crate::bodies::{Bodies, is_usable};
 use crate::error::{HapticsError, not_negative};
 use crate::event::Event;
 use crate::live::Snapshot;
+use crate::protection::Protection;
+use crate::safety::Accepted;
 
 /// Changes what a running servo renders, and sees what it does. From [`handoff`](crate::handoff)
 /// or a [`ServoThread`](crate::ServoThread).
@@ -28,30 +30,41 @@ pub struct Control<const D: usize> {
     /// Bodies of the newest scene.
     pub(super) bodies: usize,
     pub(super) most_bodies: usize,
+    /// What a servo that is protected is protected by, and its rate [Hz].
+    pub(super) protection: Option<(Protection<D>, f64)>,
 }
 
 impl<const D: usize> Control<D> {
     /// Renders `bodies` from the next tick on, instead of all before. Poses set before were
     /// those of the old ones.
     ///
-    /// A [protected](crate::Servo::protect) servo renders them as they are:
-    /// [`Protection::accept`](crate::Protection::accept) says what its device can render.
+    /// To a [protected](crate::Servo::protect) servo they go as its device can render them:
+    /// returned is what became of the stiffness and damping of each. To another they go as they
+    /// are, and nothing is returned.
     ///
     /// # Errors
     ///
-    /// [`HapticsError::TooManyBodies`] if there are more than the hand-off has room for.
-    pub fn replace_bodies(&mut self, bodies: impl Into<Bodies<D>>) -> Result<(), HapticsError> {
+    /// [`HapticsError::TooManyBodies`] if there are more than the hand-off has room for; as
+    /// [`Protection::accept`].
+    pub fn replace_bodies(
+        &mut self,
+        bodies: impl Into<Bodies<D>>,
+    ) -> Result<Vec<Accepted>, HapticsError> {
         let bodies = bodies.into();
         let count = bodies.bodies().len();
         if count > self.most_bodies {
             return Err(HapticsError::TooManyBodies { bodies: count, most: self.most_bodies });
         }
+        let (bodies, accepted) = match &self.protection {
+            Some((protection, rate)) => protection.accept(bodies, *rate)?,
+            None => (bodies, Vec::new()),
+        };
         self.bodies = count;
         self.edit(|edits| {
             edits.poses.clear();
             edits.bodies = Some(bodies);
         });
-        Ok(())
+        Ok(accepted)
     }
 
     /// Moves bodies, all of them before the same tick. Of several poses for a body before a

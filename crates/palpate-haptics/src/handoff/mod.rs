@@ -88,8 +88,16 @@ pub fn handoff<const D: usize>(
     let (writer, reader) = latest(snapshot);
     let (producer, consumer) = rtrb::RingBuffer::new(options.events);
     let flags = Arc::new(Flags::default());
-    let control =
-        Control { sender, reader, events: consumer, flags: flags.clone(), bodies, most_bodies };
+    let rate = servo.options().rate;
+    let control = Control {
+        sender,
+        reader,
+        events: consumer,
+        flags: flags.clone(),
+        bodies,
+        most_bodies,
+        protection: servo.protection().map(|protection| (protection.clone(), rate)),
+    };
     let end = ServoEnd {
         receiver,
         writer,
