@@ -25,27 +25,25 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 #[must_use]
 pub fn centre_weights<const N: usize, const D: usize>(vertices: &[Point<D>; N]) -> [f64; N] {
     const { assert!(N == 2 || N == 3, "segments and triangles") };
-    let mut weights = [0.5; N];
-    if N == 3 {
-        let squared = |i: usize, k: usize| {
-            let edge = vertices[i] - vertices[k];
-            edge.dot(edge)
-        };
-        let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
-        let sum: f64 = edges.iter().sum();
-        let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
-        let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
-        let whole: f64 = parts.iter().sum();
-        if parts[longest] > 0.0 && whole.is_normal() {
-            let scale = 1.0 / whole;
-            for (weight, part) in weights.iter_mut().zip(parts) {
-                *weight = part * scale;
-            }
-        } else {
-            weights[longest] = 0.0;
-        }
+    if N == 2 {
+        return [0.5; N];
     }
-    weights
+    let squared = |i: usize, k: usize| {
+        let edge = vertices[i] - vertices[k];
+        edge.dot(edge)
+    };
+    let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
+    let sum: f64 = edges.iter().sum();
+    let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
+    let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
+    let whole: f64 = parts.iter().sum();
+    let is_acute = parts[longest] > 0.0 && whole.is_normal();
+    // Chosen without branches, which would be guessed wrongly half the time.
+    let scale = if is_acute { 1.0 / whole } else { 0.0 };
+    std::array::from_fn(|k| {
+        let of_edge = if k == longest { 0.0 } else { 0.5 };
+        if is_acute { parts[k] * scale } else { of_edge }
+    })
 }
 
 /// The smallest ball around a segment or a triangle, its radius rounded up.
