@@ -66,11 +66,11 @@ pub(crate) fn drag<const D: usize>(
         return free(sampler, ground);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
-    let stuck = Rest { sample: start, normal, contact: true };
+    let stuck = || Rest { sample: start, normal, contact: true };
     let Some(goal) =
         held_back(device, stretch - normal * height, depth, (most, friction.slipping))
     else {
-        return (stuck, Hold::Stick);
+        return (stuck(), Hold::Stick);
     };
     let rest = slide(sampler, start, normal, (goal, motion), ground);
     let pull = rest.sample.point - goal;
@@ -88,7 +88,7 @@ pub(crate) fn drag<const D: usize>(
     // All its walls together press with the part of the stretch across it.
     let pressed = rest.normal * stretch.dot(rest.normal) + across * stretch.dot(across);
     match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
-        None => (stuck, Hold::Stick),
+        None => (stuck(), Hold::Stick),
         Some(goal) => {
             (slide(sampler, rest.sample, rest.normal, (goal, motion), ground), Hold::Slip)
         }
