@@ -6,9 +6,10 @@
 
 mod common;
 
+use common::protected;
 use common::wild::{bodies, servo, step};
 use palpate_field::Vector;
-use palpate_haptics::{DeviceProfile, PointState, Protection, Servo};
+use palpate_haptics::{PointState, Servo};
 
 const TICKS: u32 = 6000;
 
@@ -32,22 +33,6 @@ fn hash<const D: usize>(servo: &mut Servo<D>) -> u64 {
         }
     }
     hash
-}
-
-/// The same behind a device that sees steps.
-fn protected<const D: usize>(mut servo: Servo<D>) -> Servo<D> {
-    let profile = DeviceProfile {
-        max_force: 4.0,
-        continuous_force: 1.5,
-        max_force_rate: 2000.0,
-        mass: 0.05,
-        least_damping: 0.3,
-        friction: 0.1,
-        encoder_step: 1e-5,
-        ..DeviceProfile::unlimited("golden")
-    };
-    servo.protect(&Protection::new(profile)).unwrap();
-    servo
 }
 
 /// Compares with what was; shown as it stands in this file.

@@ -8,7 +8,7 @@ mod common;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use common::wild::{bodies, servo, step};
-use common::{ball, cuboid, torus};
+use common::{ball, cuboid, protected, torus};
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, DeviceProfile, HandoffOptions, Material, PointState, Progress, Protection,
@@ -172,18 +172,7 @@ fn a_servo_with_a_tool_allocates_and_frees_nothing() {
 #[test]
 fn a_step_with_everything_at_once_allocates_and_frees_nothing() {
     const POINTS: usize = 24;
-    let mut servo = servo::<3>(20, POINTS, 1.0);
-    let profile = DeviceProfile {
-        max_force: 4.0,
-        continuous_force: 1.5,
-        max_force_rate: 2000.0,
-        mass: 0.05,
-        least_damping: 0.3,
-        friction: 0.1,
-        encoder_step: 1e-5,
-        ..DeviceProfile::unlimited("everything")
-    };
-    servo.protect(&Protection::new(profile)).unwrap();
+    let mut servo = protected(servo::<3>(20, POINTS, 1.0));
     let mut states = [PointState::at_rest(Vector::ZERO); POINTS];
     let mut next = Some(bodies::<3>(20, 1.0));
     let (mut contacts, mut events) = (0, 0);

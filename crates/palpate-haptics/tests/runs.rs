@@ -8,12 +8,12 @@ mod common;
 
 use std::time::Duration;
 
-use common::{ball, cuboid, half_space};
+use common::{ball, cuboid, half_space, protected};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Clock, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError,
-    Interpolation, Material, Pace, PointState, Probe, Protection, RecordedDevice, Recorder,
-    RunOptions, Servo, ServoOptions, Surface, Tour, VirtualClock, run, run_on,
+    Interpolation, Material, Pace, PointState, Probe, RecordedDevice, Recorder, RunOptions,
+    Servo, ServoOptions, Surface, Tour, VirtualClock, run, run_on,
 };
 use palpate_scene::{Impact, Layer, PopThrough};
 
@@ -138,16 +138,7 @@ fn lively_servo() -> Servo<3> {
     };
     let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
     let bodies = Bodies::new(vec![body]).unwrap();
-    let mut servo = Servo::new(bodies, 1, ServoOptions::default()).unwrap();
-    let profile = DeviceProfile {
-        mass: 0.05,
-        least_damping: 0.3,
-        friction: 0.1,
-        encoder_step: 1e-5,
-        ..DeviceProfile::unlimited("lively")
-    };
-    servo.protect(&Protection::new(profile)).unwrap();
-    servo
+    protected(Servo::new(bodies, 1, ServoOptions::default()).unwrap())
 }
 
 /// Every bit of a run: FNV-1a.

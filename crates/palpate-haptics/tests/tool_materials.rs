@@ -6,7 +6,7 @@
 
 mod common;
 
-use common::tools::{STIFFNESS, at, box_mesh, rest, rough, springs, turned};
+use common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, smooth, springs};
 use common::{ball, body, cuboid, half_space};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
@@ -55,15 +55,6 @@ fn pressed(material: &Material, depth: f64, velocity: [f64; 3]) -> ToolTouch<3> 
     touch
 }
 
-fn smooth() -> Material {
-    Material {
-        static_friction: 0.0,
-        dynamic_friction: 0.0,
-        damping: 0.0,
-        ..Material::default()
-    }
-}
-
 #[test]
 fn the_layers_of_a_body_are_felt_as_far_as_the_coupling_bears_them() {
     let layer =
@@ -93,11 +84,7 @@ fn a_closed_path_over_a_soft_layered_body_gives_no_energy() {
     let shell = Shell::from_mesh(&box_mesh([0.03, 0.02, 0.04]), 300, 0.001).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     let ticks = 20_000;
-    let state = |tick: i32| {
-        let t = std::f64::consts::TAU * f64::from(tick) / f64::from(ticks);
-        let place = Vector([0.012 * t.sin(), 0.055 + 0.004 * t.cos(), 0.01 * (2.0 * t).sin()]);
-        (place, turned([0.0, 0.0, 1.0], 0.0, place.0))
-    };
+    let state = |tick: i32| on_a_loop(f64::from(tick) / f64::from(ticks));
     tool.step(&mut bodies, &at([0.0, 0.2, 0.0]));
     rest(&mut tool, &mut bodies, &state(0).1);
     let (mut work, mut last, mut force) = (0.0, state(0).0, tool.touch().force);

@@ -9,6 +9,7 @@ mod common;
 
 use std::time::Duration;
 
+use common::tools::smooth;
 use common::{ball, body, half_space};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
@@ -30,15 +31,6 @@ fn rod() -> Tool<3> {
 
 fn ground(material: Material) -> Bodies<3> {
     body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&material).unwrap())
-}
-
-fn smooth() -> Material {
-    Material {
-        static_friction: 0.0,
-        dynamic_friction: 0.0,
-        damping: 0.0,
-        ..Material::default()
-    }
 }
 
 fn at(x: f64, y: f64) -> PointState<3> {

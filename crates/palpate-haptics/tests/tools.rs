@@ -6,7 +6,7 @@
 
 mod common;
 
-use common::tools::{STIFFNESS, at, box_mesh, rest, rough, springs, turned};
+use common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, springs, turned};
 use common::{ball, body, cuboid, half_space};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 use palpate_haptics::{Bodies, EventKind, Shell, Surface, Tool, ToolOptions, ToolState};
@@ -209,11 +209,7 @@ fn a_closed_path_gives_no_energy() {
     let shell = Shell::from_mesh(&box_mesh([0.03, 0.02, 0.04]), 300, 0.001).unwrap();
     let mut tool = Tool::new(shell, springs()).unwrap();
     let ticks = 20_000;
-    let state = |tick: i32| {
-        let t = std::f64::consts::TAU * f64::from(tick) / f64::from(ticks);
-        let place = Vector([0.012 * t.sin(), 0.055 + 0.004 * t.cos(), 0.01 * (2.0 * t).sin()]);
-        (place, turned([0.0, 0.0, 1.0], 0.0, place.0))
-    };
+    let state = |tick: i32| on_a_loop(f64::from(tick) / f64::from(ticks));
     tool.step(&mut bodies, &at([0.0, 0.2, 0.0]));
     rest(&mut tool, &mut bodies, &state(0).1);
     let (mut work, mut last, mut most) = (0.0, state(0).0, 0.0_f64);

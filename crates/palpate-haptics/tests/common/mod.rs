@@ -13,7 +13,9 @@ use arbitrary::Unstructured;
 pub(crate) use cases::cases;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{CustomField, Point, Promise, Rotation, Shape, Vector};
-use palpate_haptics::{Bodies, Body, Following, Probe, Proxy, Surface};
+use palpate_haptics::{
+    Bodies, Body, DeviceProfile, Following, Probe, Protection, Proxy, Servo, Surface,
+};
 
 /// A ball of `radius`.
 pub(crate) fn ball<const D: usize>(radius: f64) -> Shape<D> {
@@ -65,6 +67,22 @@ pub(crate) fn scaled<const D: usize>(
 ) -> Shape<D> {
     let promise = Promise::lipschitz(shape.promise().bounds, lipschitz);
     Shape::custom(Scaled { shape: shape.clone(), factor, promise })
+}
+
+/// The same servo behind a device that sees steps, with a safety chain.
+pub(crate) fn protected<const D: usize>(mut servo: Servo<D>) -> Servo<D> {
+    let profile = DeviceProfile {
+        max_force: 4.0,
+        continuous_force: 1.5,
+        max_force_rate: 2000.0,
+        mass: 0.05,
+        least_damping: 0.3,
+        friction: 0.1,
+        encoder_step: 1e-5,
+        ..DeviceProfile::unlimited("protected")
+    };
+    servo.protect(&Protection::new(profile)).unwrap();
+    servo
 }
 
 pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {

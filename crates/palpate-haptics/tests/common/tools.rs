@@ -58,6 +58,23 @@ pub(crate) fn rest<const D: usize>(
     tool.touch().clone()
 }
 
+/// A spring alone.
+pub(crate) fn smooth() -> Material {
+    Material {
+        static_friction: 0.0,
+        dynamic_friction: 0.0,
+        damping: 0.0,
+        ..Material::default()
+    }
+}
+
+/// Where a tool is at a part of a closed path over the top of a ball of 50 mm.
+pub(crate) fn on_a_loop(part: f64) -> (Vector<f64, 3>, ToolState<3>) {
+    let t = std::f64::consts::TAU * part;
+    let place = Vector([0.012 * t.sin(), 0.055 + 0.004 * t.cos(), 0.01 * (2.0 * t).sin()]);
+    (place, turned([0.0, 0.0, 1.0], 0.0, place.0))
+}
+
 /// A flat box on rough ground.
 pub(crate) fn rough(shape: &Shape<3>) -> (Bodies<3>, Tool<3>) {
     let material = Material {
