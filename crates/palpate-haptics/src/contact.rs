@@ -16,7 +16,7 @@ use palpate_field::{Point, Vector};
 
 use crate::bend::Bend;
 use crate::half_spaces::HalfSpace;
-use crate::planes::{Known, Planes};
+use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
 /// The proxy rests when its next move would change the stretch, and so the force, by less than
@@ -227,10 +227,11 @@ impl<const D: usize> Slide<'_, D> {
         let foot = here.point - normal * gap;
         self.learn_bend(sampler, (foot, normal));
         let wall = HalfSpace { point: foot, normal };
-        let goal = match self.planes.learn(here.point, wall, gap) {
-            Known::OneAlone => Some(wall.closest(device)),
-            Known::Several => self.planes.closest(device),
-        };
+        self.planes.learn(here.point, wall, gap);
+        // Of one alone not from memory, which waits for what was just written.
+        let is_one = self.planes.is_one();
+        let goal =
+            if is_one { Some(wall.closest(device)) } else { self.planes.closest(device) };
         let Some(mut goal) = goal else { return Turn::Cornered };
 
         let is_outside = here.gap >= -sampler.tolerance();

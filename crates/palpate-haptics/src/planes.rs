@@ -26,15 +26,6 @@ struct Wall<const D: usize> {
     sunk: f64,
 }
 
-/// How many planes are known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Known {
-    /// The one that was learnt last.
-    OneAlone,
-    /// It and others.
-    Several,
-}
-
 /// Up to [`CAPACITY`] tangent planes of the offset surface about one place.
 ///
 /// A crease of a concave shape is where several planes hold the proxy, but a field shows one at
@@ -101,12 +92,7 @@ impl<const D: usize> Planes<D> {
     /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
     /// by the angle between the normals (see [`LEFT_BEHIND`]).
     #[inline(always)]
-    pub(crate) fn learn(
-        &mut self,
-        seen_from: Point<D>,
-        half_space: HalfSpace<D>,
-        gap: f64,
-    ) -> Known {
+    pub(crate) fn learn(&mut self, seen_from: Point<D>, half_space: HalfSpace<D>, gap: f64) {
         let HalfSpace { point: foot, normal } = half_space;
         self.retain(|wall| {
             let (way, turn) = (wall.foot - foot, wall.half_space.normal - normal);
@@ -123,7 +109,6 @@ impl<const D: usize> Planes<D> {
             }
             stays
         });
-        let known = if self.count == 0 { Known::OneAlone } else { Known::Several };
         match self.walls.get_mut(self.count) {
             Some(place) => {
                 // Field by field: a copy of a whole waits for its parts to be written.
@@ -135,7 +120,6 @@ impl<const D: usize> Planes<D> {
             }
             None => self.replace_loosest(Wall { half_space, foot, sunk: 0.0 }),
         }
-        known
     }
 
     /// Puts `wall` in the place of the plane farthest below its foot.
