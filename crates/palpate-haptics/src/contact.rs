@@ -146,9 +146,12 @@ pub(crate) fn slide<const D: usize>(
         device,
         planes,
         failed_lifts: 0,
+        least: squared(start.point - device),
         trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
         motion,
-        last: None,
+        is_first: true,
+        last_foot: start.point,
+        last_normal: normal,
     };
     if start.tangent.is_none() {
         if slide.go(sampler, start.point) == Turn::Spent {
@@ -156,7 +159,6 @@ pub(crate) fn slide<const D: usize>(
         }
         slide.best = slide.here;
     }
-    let mut least = squared(slide.best.point - device);
     loop {
         match slide.turn(sampler) {
             Turn::Moved => slide.trust *= 2.0,
@@ -166,19 +168,19 @@ pub(crate) fn slide<const D: usize>(
             }
             // Between facing walls no plane leaves room: less of a step does not get there.
             Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
+                slide.keep_best(sampler);
                 let gone = squared(slide.here.point - slide.best.point).sqrt();
                 slide.trust =
                     0.125 * if gone > 0.0 { slide.trust.min(gone) } else { slide.trust };
-                (*slide.bend, slide.last) = (Bend::FLAT, None);
+                (*slide.bend, slide.is_first) = (Bend::FLAT, true);
                 slide.planes.clear();
                 slide.failed_lifts = MOST_FAILED_LIFTS;
                 slide.here = slide.best;
             }
-            Turn::Cornered | Turn::Spent => return slide.rest(sampler),
-        }
-        let distance = squared(slide.here.point - device);
-        if distance < least && slide.here.gap >= -sampler.tolerance() {
-            (slide.best, least) = (slide.here, distance);
+            Turn::Cornered | Turn::Spent => {
+                slide.keep_best(sampler);
+                return slide.rest(sampler);
+            }
         }
     }
 }
@@ -190,8 +192,11 @@ fn squared<const D: usize>(way: Vector<f64, D>) -> f64 {
 struct Slide<'a, const D: usize> {
     bend: &'a mut Bend<D>,
     here: Sample<D>,
-    /// The point closest to the device that is on or above the surface.
+    /// The point closest to the device that is on or above the surface, of those that were
+    /// left again.
     best: Sample<D>,
+    /// Its squared distance to the device [m²].
+    least: f64,
     normal: Vector<f64, D>,
     device: Point<D>,
     planes: &'a mut Planes<D>,
@@ -202,8 +207,11 @@ struct Slide<'a, const D: usize> {
     /// The longest move that is tried [m]: a crease of bent walls is known to second order in
     /// it. It starts with the motion of the hand and doubles with each move.
     trust: f64,
-    /// Where the last tangent plane touched, and its normal.
-    last: Option<(Point<D>, Vector<f64, D>)>,
+    /// Whether there was no tangent plane yet.
+    is_first: bool,
+    /// Where the last tangent plane touched.
+    last_foot: Point<D>,
+    last_normal: Vector<f64, D>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -222,7 +230,7 @@ impl<const D: usize> Slide<'_, D> {
     fn turn(&mut self, sampler: &mut Sampler<'_, D>) -> Turn {
         let (here, device) = (self.here, self.device);
         let (normal, gap) = sampler.tangent(&here, self.normal);
-        let is_new = self.last.is_none();
+        let is_new = self.is_first;
         self.normal = normal;
         let foot = here.point - normal * gap;
         self.learn_bend(sampler, (foot, normal));
@@ -274,6 +282,7 @@ impl<const D: usize> Slide<'_, D> {
         if is_far && self.failed_lifts < MOST_FAILED_LIFTS {
             let up = self.planes.up().unwrap_or(normal);
             if let Some(above) = lift(sampler, &here, up, LIFT * length) {
+                self.keep_best(sampler);
                 self.here = above;
                 return Turn::Moved;
             }
@@ -286,8 +295,18 @@ impl<const D: usize> Slide<'_, D> {
     #[inline(always)]
     fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Turn {
         let Some(sample) = sampler.gradient(point) else { return Turn::Spent };
+        self.keep_best(sampler);
         self.here = sample;
         Turn::Moved
+    }
+
+    /// Keeps this point, which is left, if it is the best.
+    #[inline(always)]
+    fn keep_best(&mut self, sampler: &Sampler<'_, D>) {
+        let distance = squared(self.here.point - self.device);
+        if distance < self.least && self.here.gap >= -sampler.tolerance() {
+            (self.best, self.least) = (self.here, distance);
+        }
     }
 
     /// Learns how the surface bends between the last two tangent points, of which this is the
@@ -297,8 +316,14 @@ impl<const D: usize> Slide<'_, D> {
         sampler: &Sampler<'_, D>,
         (foot, normal): (Point<D>, Vector<f64, D>),
     ) {
-        let Some((last_foot, last_normal)) = self.last.replace((foot, normal)) else { return };
-        let (way, turn) = (foot - last_foot, normal - last_normal);
+        let (way, turn) = (foot - self.last_foot, normal - self.last_normal);
+        let last_normal = self.last_normal;
+        // Each on its own: a copy of both waits for its parts to be written.
+        self.last_foot = foot;
+        self.last_normal = normal;
+        if std::mem::replace(&mut self.is_first, false) {
+            return;
+        }
         let (length, turned) = (squared(way), squared(turn));
         let untold = self.bend.untold(way, turn);
         let is_told = |untold, turned| squared(untold) <= SAME_WALL * SAME_WALL * turned;

@@ -95,7 +95,7 @@ pub(crate) struct Setting<const D: usize> {
 
 /// What all contact points see in a tick.
 pub(crate) struct Tick<'a, const D: usize> {
-    nearby: Nearby<'a, D>,
+    nearby: &'a Nearby<'a, D>,
     setting: &'a Setting<D>,
     /// An event of this point in this tick, to be filled in.
     event: Event,
@@ -104,7 +104,7 @@ pub(crate) struct Tick<'a, const D: usize> {
 
 impl<'a, const D: usize> Tick<'a, D> {
     pub(crate) fn new(
-        nearby: Nearby<'a, D>,
+        nearby: &'a Nearby<'a, D>,
         setting: &'a Setting<D>,
         tick: u64,
         events: &'a mut Vec<Event>,

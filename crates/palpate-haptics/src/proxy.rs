@@ -138,9 +138,9 @@ pub struct Following<const D: usize> {
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Bodies::from(Shape::from_kernel(Ball::new(0.05)?));
 /// let mut proxy = Proxy::new(Probe::new(0.0)?);
-/// proxy.follow(ball.everything(), Vector([0.0, 0.06, 0.0]));
+/// proxy.follow(&ball.everything(), Vector([0.0, 0.06, 0.0]));
 /// let device = Vector([0.048 * 0.6, 0.048 * 0.8, 0.0]);
-/// let following = proxy.follow(ball.everything(), device);
+/// let following = proxy.follow(&ball.everything(), device);
 ///
 /// assert!(following.contact);
 /// assert!((following.proxy - Vector([0.03, 0.04, 0.0])).norm() < 1e-7);
@@ -228,7 +228,7 @@ impl<const D: usize> Proxy<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
-    pub fn follow(&mut self, nearby: Nearby<'_, D>, device: Point<D>) -> Following<D> {
+    pub fn follow(&mut self, nearby: &Nearby<'_, D>, device: Point<D>) -> Following<D> {
         let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
@@ -240,7 +240,7 @@ impl<const D: usize> Proxy<D> {
             return Following { contact: false, body, ..following };
         }
         let carried =
-            if nearby.has_moved() { self.carried(&nearby, [last, device]) } else { last };
+            if nearby.has_moved() { self.carried(nearby, [last, device]) } else { last };
         let farther = carried.dot(carried).max(device.dot(device)).sqrt();
         let extent = farther + 2.0 * self.probe.radius;
         let squared = |way: Vector<f64, D>| way.dot(way);
@@ -344,7 +344,7 @@ impl<const D: usize> Proxy<D> {
         sampler: &mut Sampler<'_, D>,
         [from, to]: [Point<D>; 2],
     ) -> Option<Point<D>> {
-        let nearby = *sampler.nearby();
+        let nearby = sampler.nearby();
         let touched = self.at.filter(|_| self.contact).map(|at| at.body);
         let is_carried = from != to;
         let mut pushed = None;

@@ -69,7 +69,7 @@ pub(crate) struct Tangent<const D: usize> {
 /// moves between evaluated points stay in the region, and the constant holds all along them.
 #[derive(Debug)]
 pub(crate) struct Sampler<'a, const D: usize> {
-    nearby: Nearby<'a, D>,
+    nearby: &'a Nearby<'a, D>,
     pierced: Pierced,
     radius: f64,
     skin: f64,
@@ -84,7 +84,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// For a probe of `radius` [m] that moves between points at most `extent` [m] from the
     /// origin.
     pub(crate) fn new(
-        (nearby, pierced): (Nearby<'a, D>, Pierced),
+        (nearby, pierced): (&'a Nearby<'a, D>, Pierced),
         radius: f64,
         budget: u32,
         extent: f64,
@@ -101,8 +101,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// What is near.
-    pub(crate) fn nearby(&self) -> &Nearby<'a, D> {
-        &self.nearby
+    pub(crate) fn nearby(&self) -> &'a Nearby<'a, D> {
+        self.nearby
     }
 
     /// From now on a hand is through these layers.

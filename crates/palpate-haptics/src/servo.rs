@@ -355,7 +355,7 @@ impl<const D: usize> Servo<D> {
         reactions.fill(Reaction::NONE);
         let hand = || hand(&self.touches, states, &self.setting);
         let nearby = nearby(&self.bodies, hand, &mut list);
-        let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
+        let mut tick = Tick::new(&nearby, &self.setting, self.tick, &mut self.events);
         let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
         for (index, ((point, touch), force)) in points.enumerate() {
             *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
@@ -385,7 +385,7 @@ impl<const D: usize> Servo<D> {
         let (mut list, reactions) = self.bodies.take_scratch();
         let hand = || hand(&self.touches, states, &self.setting);
         let nearby = nearby(&self.bodies, hand, &mut list);
-        let mut tick = Tick::new(nearby, &self.setting, self.tick, &mut self.events);
+        let mut tick = Tick::new(&nearby, &self.setting, self.tick, &mut self.events);
         for (index, (point, touch)) in self.points.iter().zip(&self.touches).enumerate() {
             let (mut double, mut touch) = (point.double(), *touch);
             black_box(double.tick(tick.of_point(0), state(states, index), &mut touch));

@@ -33,7 +33,7 @@ fn slides<const D: usize>(
     for tick in 0..LANDING + TICKS {
         let device = hand(1e-4 * f64::from(tick));
         let Following { proxy, evaluations, contact, .. } =
-            proxy.follow(bodies.everything(), device);
+            proxy.follow(&bodies.everything(), device);
         if tick >= LANDING {
             assert!(contact, "{device:?}");
             seen.mean += f64::from(evaluations) / f64::from(TICKS);
@@ -120,8 +120,8 @@ fn a_blend_is_followed() {
     let closest = |device: Point<3>| {
         // Where a hand that waits is led to.
         let mut here = proxy(0.002);
-        here.follow(bodies.everything(), device + Vector([0.0, 0.05, 0.0]));
-        (0..50).fold(device, |_, _| here.follow(bodies.everything(), device).proxy)
+        here.follow(&bodies.everything(), device + Vector([0.0, 0.05, 0.0]));
+        (0..50).fold(device, |_, _| here.follow(&bodies.everything(), device).proxy)
     };
     let hand = |way: f64| Vector([way - 0.01, 0.024 + 0.01 * (1.0 - way / 1e-3).max(0.0), 0.0]);
     let seen = slides(&blend, proxy(0.002), hand, closest);
@@ -139,9 +139,9 @@ fn a_hand_that_spends_its_budget_in_a_body_stays_in_contact() {
     let rough = Shape::union([floor, wave]).unwrap();
     let bodies = Bodies::from(rough);
     let mut proxy = Proxy::new(Probe::new(0.0).unwrap().with_budget(8).unwrap());
-    proxy.follow(bodies.everything(), Vector([0.0, 0.01]));
+    proxy.follow(&bodies.everything(), Vector([0.0, 0.01]));
     for tick in 0..300 {
         let device = Vector([3e-4 * f64::from(tick), -0.002]);
-        assert!(proxy.follow(bodies.everything(), device).contact, "{tick}");
+        assert!(proxy.follow(&bodies.everything(), device).contact, "{tick}");
     }
 }

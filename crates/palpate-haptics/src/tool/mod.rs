@@ -321,7 +321,7 @@ impl<const D: usize> Tool<D> {
         let reach = self.shell.reach();
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
-        let place = (*nearby, Pierced::default());
+        let place = (nearby, Pierced::default());
         let sampler = Sampler::new(place, self.radius, 0, extent);
         let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
         let skin = sampler.skin().max(SKIN * reach);

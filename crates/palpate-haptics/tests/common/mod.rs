@@ -96,7 +96,7 @@ pub(crate) trait FollowShape<const D: usize> {
 
 impl<const D: usize> FollowShape<D> for Proxy<D> {
     fn follow_shape(&mut self, shape: &Shape<D>, device: Point<D>) -> Following<D> {
-        self.follow(Bodies::from(shape.clone()).everything(), device)
+        self.follow(&Bodies::from(shape.clone()).everything(), device)
     }
 }
 
