@@ -17,7 +17,8 @@ mod scenes;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
+use palpate::field::InstructionSet;
 
 /// Measures palpate beside its peers.
 #[derive(Debug, Parser)]
@@ -25,6 +26,28 @@ use clap::{Parser, Subcommand};
 struct Arguments {
     #[command(subcommand)]
     suite: Suite,
+    /// The vector instructions that our fields use; the widest of the machine unless told.
+    #[arg(long, global = true)]
+    instructions: Option<Instructions>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Instructions {
+    Baseline,
+    Avx2,
+    Avx512,
+}
+
+impl Instructions {
+    /// Uses these from now on.
+    fn select(self) -> Result<(), String> {
+        let set = match self {
+            Self::Baseline => InstructionSet::Baseline,
+            Self::Avx2 => InstructionSet::Avx2,
+            Self::Avx512 => InstructionSet::Avx512,
+        };
+        if set.select() { Ok(()) } else { Err(format!("this machine has no {set:?}")) }
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -53,7 +76,12 @@ enum Suite {
 }
 
 fn main() -> ExitCode {
-    let (measured, bars, is_part, json) = match Arguments::parse().suite {
+    let Arguments { suite, instructions } = Arguments::parse();
+    if let Some(Err(error)) = instructions.map(Instructions::select) {
+        eprintln!("palpate-bench: {error}");
+        return ExitCode::FAILURE;
+    }
+    let (measured, bars, is_part, json) = match suite {
         Suite::Fields { json } => (fields::measure(), bars::FIELDS, false, json),
         Suite::Collide { json, only } => {
             (collide::measure(only.as_deref()), bars::COLLIDE, only.is_some(), json)

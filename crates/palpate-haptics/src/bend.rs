@@ -51,6 +51,14 @@ impl<const D: usize> Bend<D> {
         }
     }
 
+    /// `true` if the [way](Self::way) to the point closest to a device at a depth of which this
+    /// is the square [m²] is at most twice as long as on the tangent plane: as `d ‖S‖ ≤ 1/2`.
+    #[inline]
+    pub(crate) fn at_most_doubles(&self, squared_depth: f64) -> bool {
+        let squared = self.rows.iter().fold(0.0, |sum, row| sum + row.dot(*row));
+        squared_depth * squared <= 0.25
+    }
+
     /// The way to the point closest to a device at `depth` [m] below the surface, for which it
     /// would be `along` on the tangent plane, itself not included; none if the closest point is
     /// not near.
@@ -112,6 +120,8 @@ mod tests {
         // At a depth of half the radius, twice as far across the axis, as far along it.
         let way = cylinder().way(Vector([0.001, 0.0, 0.002]), 0.125).unwrap();
         assert!((way - Vector([0.002, 0.0, 0.002])).norm() < 1e-15);
+        assert!(cylinder().at_most_doubles(0.125 * 0.125));
+        assert!(!cylinder().at_most_doubles(0.126 * 0.126));
         // Past the axis there is none.
         assert_eq!(cylinder().way(Vector([0.001, 0.0, 0.0]), 0.5), None);
     }

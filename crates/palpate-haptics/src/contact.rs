@@ -245,15 +245,19 @@ impl<const D: usize> Slide<'_, D> {
         let is_outside = here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
         // up for on a flat wall, which needs one evaluation and no more.
+        let stretch = squared(device - here.point);
         let left = if is_new {
             0.0
         } else {
-            let of_stretch = AT_REST * AT_REST * squared(device - here.point);
-            of_stretch.min((LEFT_TO_GO * self.motion).powi(2))
+            (AT_REST * AT_REST * stretch).min((LEFT_TO_GO * self.motion).powi(2))
         };
         let at_rest = sampler.tolerance().powi(2) + left;
         let on_plane = squared(goal - here.point);
-        if !is_outside || MOST_GAIN * MOST_GAIN * on_plane > at_rest {
+        let is_to_go = |gain: f64| gain * gain * on_plane > at_rest;
+        if !is_outside
+            || is_to_go(2.0)
+            || is_to_go(MOST_GAIN) && !self.bend.at_most_doubles(stretch)
+        {
             goal = self.over_the_bend((foot, normal), goal, sampler.tolerance());
         }
         if is_outside && squared(goal - here.point) <= at_rest {

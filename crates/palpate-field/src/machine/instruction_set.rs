@@ -129,9 +129,13 @@ where
     match InstructionSet::in_use() {
         // SAFETY: in_use() returns only sets for which is_available() found
         // every feature that the function is compiled with.
-        InstructionSet::Avx512 => return unsafe { with_avx512(job, a, b, count, out) },
-        // SAFETY: as above.
-        InstructionSet::Avx2 => return unsafe { with_avx2(job, a, b, count, out) },
+        InstructionSet::Avx512 if Out::WIDTH > Out::LINE => {
+            return unsafe { with_avx512(job, a, b, count, out) };
+        }
+        // SAFETY: as above; AVX-512 includes AVX2.
+        InstructionSet::Avx512 | InstructionSet::Avx2 => {
+            return unsafe { with_avx2(job, a, b, count, out) };
+        }
         InstructionSet::Baseline => {}
     }
     baseline(job, a, b, count, out);

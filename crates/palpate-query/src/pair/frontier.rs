@@ -3,7 +3,6 @@
 
 //! Boxes still to be looked at, the one of which least is known first.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::cell::Cell;
@@ -21,11 +20,34 @@ pub(crate) struct Frontier<const D: usize> {
     drift: f64,
 }
 
-/// A box's lower bound and its place.
-#[derive(Clone, Copy, Debug)]
-struct Key {
-    lower: f64,
-    place: u32,
+/// A box's lower bound, in the upper half, and its place: all bits turned over, so that the
+/// least bound, and of equal ones the first place, is the largest key. One number, since a heap
+/// that compares numbers needs no branches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Key(u128);
+
+/// The sign of a double.
+const SIGN: u64 = 1 << 63;
+
+impl Key {
+    #[inline]
+    fn new(lower: f64, place: u32) -> Self {
+        // As [`f64::total_cmp`] orders: negative numbers backwards, before the others.
+        let bits = lower.to_bits();
+        let ordered = bits ^ if bits & SIGN == 0 { SIGN } else { u64::MAX };
+        Self(!(u128::from(ordered) << 64 | u128::from(place)))
+    }
+
+    #[inline]
+    fn lower(self) -> f64 {
+        let ordered = (!self.0 >> 64) as u64;
+        f64::from_bits(ordered ^ if ordered & SIGN == 0 { u64::MAX } else { SIGN })
+    }
+
+    #[inline]
+    fn place(self) -> u32 {
+        !self.0 as u32
+    }
 }
 
 impl<const D: usize> Frontier<D> {
@@ -67,7 +89,7 @@ impl<const D: usize> Frontier<D> {
 
     /// The least of the lower bounds; infinite if there are no boxes.
     pub(crate) fn lowest(&self) -> f64 {
-        self.heap.peek().map_or(f64::INFINITY, |key| key.lower - self.drift)
+        self.heap.peek().map_or(f64::INFINITY, |key| key.lower() - self.drift)
     }
 
     #[inline]
@@ -82,45 +104,39 @@ impl<const D: usize> Frontier<D> {
                 self.cells.len() as u32 - 1
             }
         };
-        self.heap.push(Key { lower: cell.lower + self.drift, place });
+        self.heap.push(Key::new(cell.lower + self.drift, place));
     }
 
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<Cell<D>> {
-        let Key { lower, place } = self.heap.pop()?;
-        self.free.push(place);
-        Some(Cell { lower: lower - self.drift, ..self.cells[place as usize] })
+        let key = self.heap.pop()?;
+        self.free.push(key.place());
+        Some(Cell { lower: key.lower() - self.drift, ..self.cells[key.place() as usize] })
     }
 
     /// Takes all boxes out, in no order.
     pub(crate) fn drain(&mut self) -> impl Iterator<Item = Cell<D>> {
         let (cells, drift) = (&self.cells, self.drift);
-        self.heap.drain().map(move |Key { lower, place }| Cell {
-            lower: lower - drift,
-            ..cells[place as usize]
-        })
+        self.heap
+            .drain()
+            .map(move |key| Cell { lower: key.lower() - drift, ..cells[key.place() as usize] })
     }
 }
 
-/// The box of which least is known comes first.
-impl Ord for Key {
-    #[inline]
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower).then(other.place.cmp(&self.place))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_bound_comes_first_and_of_equal_ones_the_first_place() {
+        let bounds = [2.0, -1.5, f64::INFINITY, 0.0, -0.0, f64::NEG_INFINITY, -1.5, 1e-300];
+        let mut keys: Vec<Key> = (0..8).map(|i| Key::new(bounds[i], i as u32)).collect();
+        keys.sort_by(|a, b| b.cmp(a));
+        let mut expected: Vec<usize> = (0..8).collect();
+        expected.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
+        for (key, place) in keys.into_iter().zip(expected) {
+            assert_eq!(key.place() as usize, place);
+            assert_eq!(key.lower().to_bits(), bounds[place].to_bits());
+        }
     }
 }
-
-impl PartialOrd for Key {
-    #[inline]
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Key {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Key {}
