@@ -83,6 +83,7 @@ mod proxy;
 mod recorded;
 mod recorder;
 mod report;
+mod rotation;
 mod run;
 mod safety;
 mod sampler;
@@ -100,7 +101,7 @@ mod workspace;
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use contact_point::Touch;
-pub use device::{Device, DeviceLost, DeviceProfile, PointState};
+pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
 pub use error::{HapticsError, not_negative, positive};
 pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
@@ -118,10 +119,11 @@ pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use recorded::RecordedDevice;
 pub use recorder::{Energy, Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
+pub use rotation::{turn_between, turned};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use safety::{
     Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
-    SafetyChain, SafetyOptions, SafetyReport, WatchdogReport,
+    SafetyChain, SafetyOptions, SafetyReport, TurningReport, WatchdogReport,
 };
 pub use servo::{Servo, ServoOptions};
 pub use statistics::{Bucket, Distribution};
