@@ -200,7 +200,7 @@ pub(crate) enum DeviceChoice {
     /// A hand that follows its path whatever the force.
     Recorded,
     /// A device of this profile in a hand that gives way.
-    Simulated(DeviceProfile),
+    Simulated(Box<DeviceProfile>),
     /// Fingers without force feedback.
     Glove,
 }
@@ -213,7 +213,8 @@ impl FromStr for DeviceChoice {
             None if text == "recorded" => Ok(Self::Recorded),
             None if text == "glove" => Ok(Self::Glove),
             Some(("simulated", name)) => {
-                profile_named(name).map(Self::Simulated).map_err(|unknown| unknown.to_string())
+                let profile = profile_named(name).map_err(|unknown| unknown.to_string())?;
+                Ok(Self::Simulated(Box::new(profile)))
             }
             _ => Err(format!("{text:?} is not recorded, simulated:NAME or glove")),
         }

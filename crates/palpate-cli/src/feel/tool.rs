@@ -3,8 +3,8 @@
 
 //! The tool of a scene, if it has a shape, and where the built-in hand takes it.
 
-use palpate::field::{Aabb, Rotation, Shape};
-use palpate::haptics::{HandPath, Tool, Tour};
+use palpate::field::{Aabb, Rotation, Shape, Vector};
+use palpate::haptics::{HandPath, Interpolation, Tool, Tour};
 use palpate::scene::BuiltScene;
 
 use crate::arguments::FeelOptions;
@@ -13,6 +13,16 @@ use crate::outcome::Failure;
 
 /// Points of the tool that the built-in hand thinks of: those of the coarsest shell.
 const POINTS: usize = 16;
+
+/// How far the built-in hand turns the tool about an axis, to and fro [rad]: enough to be felt,
+/// and not so much that the tour leads it elsewhere.
+const SWING: f64 = 0.15;
+
+/// In what times it does, about each axis [s]: none a multiple of another.
+const SWINGS: [f64; 3] = [3.1, 4.3, 5.7];
+
+/// Points of that path a second.
+const SWING_POINTS: f64 = 20.0;
 
 /// A tool with a shape, and where its origin cannot be.
 pub(super) struct Held<const D: usize> {
@@ -59,4 +69,15 @@ impl<const D: usize> Held<D> {
             .and_then(|tour| tour.over(&self.obstacle))
             .map_err(Failure::input)
     }
+}
+
+/// How the built-in hand turns a device that turns, for `duration` [s].
+pub(super) fn turns(duration: f64) -> Result<HandPath<3>, Failure> {
+    let steps = (SWING_POINTS * duration).ceil().max(1.0) as usize;
+    let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();
+    let turn = |time: &f64| {
+        Vector(SWINGS.map(|period| SWING * (std::f64::consts::TAU * time / period).sin()))
+    };
+    let turns = times.iter().map(turn).collect();
+    HandPath::new(times, turns, Interpolation::Smooth).map_err(Failure::input)
 }
