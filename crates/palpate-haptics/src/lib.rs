@@ -11,7 +11,8 @@
 //!
 //! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
 //! by a spring, and bodies stop it. A servo renders it [instead](Servo::with_tool) of contact
-//! points, or a program with six degrees of freedom steps it itself.
+//! points; on a device that turns, with six degrees of freedom, it turns with the hand and gives
+//! it a torque.
 //!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches

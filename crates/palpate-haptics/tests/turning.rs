@@ -6,14 +6,18 @@
 
 mod common;
 
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
 use common::tools::smooth;
 use common::{body, cases, half_space};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError,
     Interpolation, Material, Pace, PointState, Protection, RecordedDevice, Recorder, Rule,
-    RunOptions, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, TurnState,
-    TurningProfile, WorkspaceMap, run, turn_between, turned,
+    RunOptions, Servo, ServoOptions, ServoThread, Shell, Surface, ThreadOptions, Tool,
+    ToolOptions, TurnState, TurningProfile, VirtualClock, WorkspaceMap, run, turn_between,
+    turned,
 };
 
 const STIFFNESS: f64 = 500.0;
@@ -444,4 +448,70 @@ fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
     assert_eq!(torque, Vector::ZERO);
     assert!((servo.held_tool().unwrap().torque[2] - wanted).abs() < 1e-6);
     assert_eq!(servo.safety()[0].turning, None);
+}
+
+/// Shows what is written, from wherever it runs.
+struct Shown(RecordedDevice<3>, Arc<Mutex<Vector<f64, 3>>>);
+
+impl Device<3> for Shown {
+    fn points(&self) -> usize {
+        1
+    }
+
+    fn profile(&self) -> &DeviceProfile {
+        self.0.profile()
+    }
+
+    fn read(&mut self, time: f64, points: &mut [PointState<3>]) -> Result<(), DeviceLost> {
+        self.0.read(time, points)
+    }
+
+    fn write(&mut self, forces: &[Vector<f64, 3>]) -> Result<(), DeviceLost> {
+        self.0.write(forces)
+    }
+
+    fn read_turn(&mut self) -> Result<Option<TurnState<3>>, DeviceLost> {
+        self.0.read_turn()
+    }
+
+    fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
+        *self.1.lock().unwrap() = torque;
+        self.0.write_torque(torque)
+    }
+}
+
+#[test]
+fn another_thread_limits_and_stops_the_torque() {
+    let written = Arc::new(Mutex::new(Vector::ZERO));
+    let turns = HandPath::new(
+        vec![0.0, 0.1],
+        vec![Vector::ZERO, Vector([0.0, 0.0, -0.3])],
+        Interpolation::Linear,
+    );
+    let places = HandPath::new(vec![0.0, 0.1], vec![up(0.1), up(0.005)], Interpolation::Linear);
+    let recorded = RecordedDevice::new(vec![places.unwrap()]).unwrap();
+    let device = Box::new(Shown(recorded.with_turns(turns.unwrap()), written.clone()));
+    let servo = servo::<3>(rigid(), coupling());
+    let (clock, mut driver) = VirtualClock::driven();
+    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+    let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
+    let mut torque_after = |milliseconds| {
+        driver.advance(Duration::from_millis(milliseconds));
+        written.lock().unwrap().norm()
+    };
+    let (_, wanted) = lever(0.005, 0.3);
+    assert!((torque_after(200) - wanted).abs() < 1e-6);
+    thread.control().limit_torque(0.03).unwrap();
+    assert!((torque_after(2) - 0.03).abs() < 1e-12);
+    let held = thread.control().latest().unwrap().tool.unwrap();
+    assert!((held.given.unwrap().norm() - 0.03).abs() < 1e-12);
+    let switch = thread.control().stop_switch();
+    switch.stop();
+    assert_eq!(torque_after(2), 0.0);
+    switch.release();
+    assert!((torque_after(2) - 0.03).abs() < 1e-12);
+    assert!(thread.control().limit_torque(-1.0).is_err());
+    drop(driver);
+    drop(thread.end());
+    assert_eq!(*written.lock().unwrap(), Vector::ZERO);
 }

@@ -116,11 +116,14 @@ struct Edits<const D: usize> {
     poses: Vec<Option<Pose<D>>>,
     /// The largest force on a contact point [N].
     max_force: f64,
+    /// The largest torque on a tool's device [N·m].
+    max_torque: f64,
 }
 
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
-        Self { bodies: None, poses: Vec::new(), max_force: f64::INFINITY }
+        let none = f64::INFINITY;
+        Self { bodies: None, poses: Vec::new(), max_force: none, max_torque: none }
     }
 }
 

@@ -45,6 +45,7 @@ impl<const D: usize> ServoEnd<D> {
             }
         }
         servo.limit_force(edits.max_force);
+        servo.limit_torque(edits.max_torque);
         self.receiver.give_back(parcel);
     }
 

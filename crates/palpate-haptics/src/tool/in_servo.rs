@@ -85,13 +85,13 @@ impl<const D: usize> Tool<D> {
     }
 
     /// What the hand feels about axes, where bodies bear a `part` of the coupling, and have a
-    /// `damping` [N·s/m] on the tool's longest arm.
+    /// `damping` [N·s/m] on the longest arm on which it acts.
     pub(crate) fn turning_on(
         &self,
         part: f64,
         damping: f64,
     ) -> Result<Impedance, HapticsError> {
-        let reach = self.shell.reach();
+        let reach = self.arms * self.shell.reach();
         let damping = self.options.angular_damping + damping * reach * reach;
         Impedance::new(self.angular_stiffness * part, damping)
     }
