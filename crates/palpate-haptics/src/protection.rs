@@ -300,17 +300,21 @@ pub(crate) struct TurningPort<const D: usize> {
 }
 
 impl<const D: usize> TurningPort<D> {
-    /// The state of the device with the best angular velocity that is known, as
+    /// How the device is turned, with the best angular velocity that is known, as
     /// [`Port::state`]; and the sum of all turns so far [rad].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn state(&mut self, turn: TurnState<D>) -> (TurnState<D>, Vector<f64, 3>) {
+    pub(crate) fn state(
+        &mut self,
+        turn: Option<TurnState<D>>,
+    ) -> (Option<TurnState<D>>, Vector<f64, 3>) {
+        let Some(mut turn) = turn else { return (None, self.angle) };
         let last = self.last.replace(turn.orientation).unwrap_or(turn.orientation);
         self.angle += turn_between(&last, &turn.orientation);
-        if !self.has_steps {
-            return (turn, self.angle);
+        if self.has_steps {
+            turn.angular_velocity = self.estimator.update(self.angle);
         }
-        (TurnState { angular_velocity: self.estimator.update(self.angle), ..turn }, self.angle)
+        (Some(turn), self.angle)
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.

@@ -36,6 +36,8 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     expected: Vec<PointState<D>>,
     /// The forces of an emergency, and of the end.
     no_forces: Vec<Vector<f64, D>>,
+    /// The device said how it is turned: it is written a torque.
+    is_turned: bool,
     tally: Tally,
 }
 
@@ -67,6 +69,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             states: vec![PointState::at_rest(Vector::ZERO); points],
             expected: vec![PointState::at_rest(Vector::ZERO); points],
             no_forces: vec![Vector::ZERO; points],
+            is_turned: false,
             tally,
         }
     }
@@ -144,13 +147,14 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         }
         self.device.read(time_s, &mut self.states)?;
         let turn = self.device.read_turn()?;
+        self.is_turned |= turn.is_some();
         self.servo.set_turn(turn);
         let start = clock.now();
         self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
         let is_stopped = self.end.as_ref().is_some_and(|end| end.is_stopped());
         self.device.write(if is_stopped { &self.no_forces } else { self.servo.forces() })?;
-        if turn.is_some() {
+        if self.is_turned {
             self.device.write_torque(if is_stopped {
                 Vector::ZERO
             } else {

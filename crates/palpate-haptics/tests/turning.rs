@@ -278,6 +278,11 @@ fn the_largest_torque_keeps_its_direction() {
     servo.protect(&protection).unwrap();
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.125])).norm() < 1e-9, "{torque:?}");
+    let mut planar = self::servo::<2>(rigid(), coupling());
+    let turning = TurningProfile { max_torque: 0.125, ..TurningProfile::unlimited() };
+    planar.protect(&Protection { rise_time: 0.0, ..Protection::new(device(turning)) }).unwrap();
+    let (_, flat) = brought(&mut planar, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
+    assert!((flat - torque).norm() < 1e-9, "{flat:?}");
     let report = servo.safety()[0].clone();
     let limit = report.turning.unwrap().torque_limit;
     assert!((limit.largest - (0.4 - 0.125)).abs() < 1e-6, "{limit:?}");
@@ -514,4 +519,22 @@ fn another_thread_limits_and_stops_the_torque() {
     drop(driver);
     drop(thread.end());
     assert_eq!(*written.lock().unwrap(), Vector::ZERO);
+}
+
+#[test]
+fn a_device_that_no_longer_says_how_it_is_turned_gets_no_torque() {
+    let mut servo = servo::<3>(rigid(), coupling());
+    let profile = DeviceProfile { max_force_rate: 50.0, ..device(limits()) };
+    servo.protect(&Protection { rise_time: 0.0, ..Protection::new(profile) }).unwrap();
+    brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
+    let (mut force, mut torque) = (servo.forces()[0], servo.torque());
+    assert!(torque.norm() > 0.01);
+    servo.set_turn(None);
+    for _ in 0..100 {
+        servo.step(&[PointState::at_rest(up(0.01))]);
+        assert!((servo.forces()[0] - force).norm() <= 0.05 * (1.0 + 1e-9));
+        assert!((servo.torque() - torque).norm() <= 0.02 * (1.0 + 1e-9));
+        (force, torque) = (servo.forces()[0], servo.torque());
+    }
+    assert_eq!((torque, servo.held_tool().unwrap().given), (Vector::ZERO, None));
 }

@@ -99,7 +99,9 @@ where
     let map = held::map((scene, tool.as_ref()), &choice)?;
     let mut servo = bodies(scene, options)
         .and_then(|bodies| match tool {
-            Some(held) => Servo::with_tool(bodies, held.tool, servo_options),
+            Some(held) => {
+                Servo::with_tool(bodies, held.tool_for(&choice, map.scale())?, servo_options)
+            }
             None => Servo::new(bodies, contacts, servo_options),
         })
         .map_err(Failure::input)?;

@@ -4,10 +4,10 @@
 //! The tool of a scene, if it has a shape, and where the built-in hand takes it.
 
 use palpate::field::{Aabb, Rotation, Shape, Vector};
-use palpate::haptics::{HandPath, Interpolation, Tool, Tour};
+use palpate::haptics::{HandPath, HapticsError, Interpolation, Tool, Tour};
 use palpate::scene::BuiltScene;
 
-use crate::arguments::FeelOptions;
+use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::input::{self, Named};
 use crate::outcome::Failure;
 
@@ -61,6 +61,22 @@ pub(super) fn of_scene<const D: usize>(
 }
 
 impl<const D: usize> Held<D> {
+    /// The tool with the torque that a device gives, if it does: arms in the world are `scale`
+    /// times those at the device.
+    pub(super) fn tool_for(
+        self,
+        choice: &DeviceChoice,
+        scale: f64,
+    ) -> Result<Tool<D>, HapticsError> {
+        let DeviceChoice::Simulated(profile) = choice else { return Ok(self.tool) };
+        match &profile.turning {
+            Some(turning) if turning.max_torque > 0.0 => {
+                self.tool.with_max_torque(scale * turning.max_torque)
+            }
+            _ => Ok(self.tool),
+        }
+    }
+
     /// A tour of `duration` [s] that presses the tool as deep as it would a probe.
     pub(super) fn path(&self, duration: f64) -> Result<HandPath<D>, Failure> {
         let radius = self.tool.shell().points().first().map_or(0.0, |point| point.radius);

@@ -187,12 +187,9 @@ impl<const D: usize> Hung<D> {
     ) -> Vector<f64, D> {
         let map = &setting.map;
         let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
-        let (turn, angle) = match (self.turn, &mut self.port) {
-            (Some(turn), Some(port)) => {
-                let (turn, angle) = port.state(turn);
-                (Some(turn), angle)
-            }
-            (turn, _) => (turn, Vector::ZERO),
+        let (turn, angle) = match &mut self.port {
+            Some(port) => port.state(self.turn),
+            None => (self.turn, Vector::ZERO),
         };
         let PointState { position, velocity } = map.state_to_world(at_device);
         let (rotation, angular_velocity) = match &turn {
@@ -218,14 +215,10 @@ impl<const D: usize> Hung<D> {
             is_slipping: felt.is_slipping,
             evaluations: felt.evaluations,
         };
-        let Some(turn) = turn else {
-            (self.torque, self.given) = (Vector::ZERO, None);
-            return point.give(setting, at_device, touch, (free, false));
-        };
-        let torque = map.torque_to_device(felt.torque);
+        let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
         let force = if let Some(chain) = self.chain() {
             let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
-            let spin = turn.angular_velocity;
+            let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
             let state = WrenchState {
                 position: Both { along: at_device.position, about: angle },
                 velocity: Both { along: at_device.velocity, about: spin },
@@ -242,7 +235,7 @@ impl<const D: usize> Hung<D> {
             self.torque = limited(torque, most);
             point.give(setting, at_device, touch, (free, false))
         };
-        self.given = Some(map.torque_to_world(self.torque));
+        self.given = turn.map(|_| map.torque_to_world(self.torque));
         force
     }
 }

@@ -210,6 +210,17 @@ impl<const D: usize> Tool<D> {
         })
     }
 
+    /// The same with another largest torque on the hand [N·m]; infinite for none.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if it is not positive.
+    pub fn with_max_torque(mut self, max_torque: f64) -> Result<Self, HapticsError> {
+        self.options.max_torque = max_torque;
+        self.options.check()?;
+        Ok(self)
+    }
+
     /// What it touches with.
     #[must_use]
     pub fn shell(&self) -> &Shell<D> {
