@@ -151,9 +151,9 @@ pub(crate) struct FeelOptions {
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (it follows its path whatever the force),
-    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`), or
-    /// glove (no force feedback). On the built-in gallery simulated:omega, else recorded, if
-    /// left out.
+    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`; one that
+    /// turns, as sigma7, turns a tool with a shape), or glove (no force feedback). On the
+    /// built-in gallery simulated:omega, else recorded, if left out.
     #[arg(long)]
     pub(crate) device: Option<DeviceChoice>,
     /// How many contact points the built-in hand has; those of the scene's tool, or 10 on the

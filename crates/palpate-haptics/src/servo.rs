@@ -236,8 +236,8 @@ impl<const D: usize> Servo<D> {
     ///
     /// # Examples
     ///
-    /// A rod of 10 cm lies on the ground, turned into it by 0.1 rad: it is held level, and its
-    /// coupling of 1 N·m/rad turns the hand back.
+    /// A rod of 10 cm is pressed onto the ground by 1 cm and turned by 0.1 rad: it stays flat, and
+    /// its coupling of 1 N·m/rad turns the hand back.
     ///
     /// ```
     /// use palpate_field::{Rotation, Shape, Vector, kernel::HalfSpace};
@@ -248,22 +248,16 @@ impl<const D: usize> Servo<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
-    /// let coupling = ToolOptions {
-    ///     stiffness: 1e4,
-    ///     angular_stiffness: Some(1.0),
-    ///     max_force: 1e3,
-    ///     ..ToolOptions::default()
-    /// };
-    /// let tool = Tool::new(rod, coupling)?;
-    /// let options = ServoOptions { max_force: 1e3, ..ServoOptions::default() };
-    /// let mut servo = Servo::with_tool(ground, tool, options)?;
-    /// let on_the_ground = [PointState::at_rest(Vector([0.0, 0.001]))];
-    /// for tick in 0..100 {
-    ///     let angle = 0.001 * f64::from(tick + 1);
-    ///     servo.set_turn(Some(TurnState::at_rest(Rotation::from_angle(angle)?)));
-    ///     servo.step(&on_the_ground);
+    /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
+    /// let mut servo =
+    ///     Servo::with_tool(ground, Tool::new(rod, coupling)?, ServoOptions::default())?;
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
+    /// for tick in 1..=100 {
+    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
+    ///     servo.set_turn(Some(TurnState::at_rest(orientation)));
+    ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009]))]);
     /// }
-    /// assert!((servo.torque() - Vector([0.0, 0.0, -0.1])).norm() < 0.01);
+    /// assert!((servo.torque() - Vector([0.0, 0.0, -0.1])).norm() < 1e-6);
     /// # Ok(())
     /// # }
     /// ```
