@@ -151,9 +151,9 @@ pub(crate) struct FeelOptions {
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (it follows its path whatever the force),
-    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`), or
-    /// glove (no force feedback). On the built-in gallery simulated:omega, else recorded, if
-    /// left out.
+    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`; one that
+    /// turns, as sigma7, turns a tool with a shape), or glove (no force feedback). On the
+    /// built-in gallery simulated:omega, else recorded, if left out.
     #[arg(long)]
     pub(crate) device: Option<DeviceChoice>,
     /// How many contact points the built-in hand has; those of the scene's tool, or 10 on the
@@ -200,7 +200,7 @@ pub(crate) enum DeviceChoice {
     /// A hand that follows its path whatever the force.
     Recorded,
     /// A device of this profile in a hand that gives way.
-    Simulated(DeviceProfile),
+    Simulated(Box<DeviceProfile>),
     /// Fingers without force feedback.
     Glove,
 }
@@ -213,7 +213,8 @@ impl FromStr for DeviceChoice {
             None if text == "recorded" => Ok(Self::Recorded),
             None if text == "glove" => Ok(Self::Glove),
             Some(("simulated", name)) => {
-                profile_named(name).map(Self::Simulated).map_err(|unknown| unknown.to_string())
+                let profile = profile_named(name).map_err(|unknown| unknown.to_string())?;
+                Ok(Self::Simulated(Box::new(profile)))
             }
             _ => Err(format!("{text:?} is not recorded, simulated:NAME or glove")),
         }

@@ -5,23 +5,23 @@
 
 use std::io::Write;
 
-use palpate::devices::{DeviceProfile, PROFILES};
+use palpate::devices::{DeviceProfile, PROFILES, TurningProfile};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
 
-/// A number of a profile.
-struct Column {
+/// A number of a profile, along axes or about them.
+struct Column<P: 'static> {
     /// The field.
     key: &'static str,
     unit: &'static str,
     /// Two lines above the column; the unit is the third.
     head: [&'static str; 2],
-    of: fn(&DeviceProfile) -> f64,
+    of: fn(&P) -> f64,
 }
 
-const COLUMNS: [Column; 10] = [
+const COLUMNS: [Column<DeviceProfile>; 10] = [
     Column { key: "max_force", unit: "N", head: ["largest", "force"], of: |p| p.max_force },
     Column {
         key: "continuous_force",
@@ -66,6 +66,53 @@ const COLUMNS: [Column; 10] = [
     },
 ];
 
+const TURNING: [Column<TurningProfile>; 9] = [
+    Column {
+        key: "max_torque",
+        unit: "N·m",
+        head: ["largest", "torque"],
+        of: |p| p.max_torque,
+    },
+    Column {
+        key: "continuous_torque",
+        unit: "N·m",
+        head: ["lasting", "torque"],
+        of: |p| p.continuous_torque,
+    },
+    Column {
+        key: "max_torque_rate",
+        unit: "N·m/s",
+        head: ["torque", "rate"],
+        of: |p| p.max_torque_rate,
+    },
+    Column {
+        key: "max_stiffness",
+        unit: "N·m/rad",
+        head: ["stiff-", "ness"],
+        of: |p| p.max_stiffness,
+    },
+    Column {
+        key: "max_damping",
+        unit: "N·m·s/rad",
+        head: ["damp-", "ing"],
+        of: |p| p.max_damping,
+    },
+    Column { key: "inertia", unit: "kg·m²", head: ["", "inertia"], of: |p| p.inertia },
+    Column {
+        key: "least_damping",
+        unit: "N·m·s/rad",
+        head: ["its own", "damping"],
+        of: |p| p.least_damping,
+    },
+    Column { key: "friction", unit: "N·m", head: ["fric-", "tion"], of: |p| p.friction },
+    Column {
+        key: "encoder_step",
+        unit: "rad",
+        head: ["encoder", "step"],
+        of: |p| p.encoder_step,
+    },
+];
+
 pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let mut out = std::io::stdout().lock();
     if options.json {
@@ -73,49 +120,80 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
         writeln!(out, "{:#}", Value::Array(rows))?;
         return Ok(Outcome::Yes);
     }
-    let width = PROFILES.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
-    let lines: [fn(&Column) -> &str; 3] = [|c| c.head[0], |c| c.head[1], |c| c.unit];
-    for line in lines {
-        let heads: String = COLUMNS.iter().map(|c| format!("{:>9}", line(c))).collect();
-        writeln!(out, "{:width$}{heads}", "")?;
-    }
-    for (name, profile) in &PROFILES {
-        let cells: String = COLUMNS.iter().map(|column| cell(column, profile)).collect();
-        writeln!(out, "{name:width$}{cells}")?;
-    }
+    let along: Vec<_> =
+        PROFILES.iter().map(|(name, profile)| (*name, profile, &*profile.assumed)).collect();
+    write_table(&mut out, &COLUMNS, &along, 9)?;
+    writeln!(out, "those that turn, about their axes; without a torque, they sense it alone")?;
+    let about = PROFILES.iter().filter_map(|(name, profile)| {
+        profile.turning.as_ref().map(|turning| (*name, turning, &*turning.assumed))
+    });
+    write_table(&mut out, &TURNING, &about.collect::<Vec<_>>(), 10)?;
     writeln!(out, "~ assumed, not from the source; stiffness and damping are those at 1 kHz")?;
     for (name, profile) in &PROFILES {
         writeln!(out, "{name}: {}; source: {}", profile.name, profile.source)?;
+        if let Some(turning) = &profile.turning {
+            writeln!(out, "{name}, about its axes: source: {}", turning.source)?;
+        }
     }
     writeln!(out, "{} devices", PROFILES.len())?;
     Ok(Outcome::Yes)
 }
 
-fn is_assumed(column: &Column, profile: &DeviceProfile) -> bool {
-    profile.assumed.contains(&column.key)
+/// A row for each profile, with its name and what of it is assumed; columns `wide` places wide.
+fn write_table<P>(
+    out: &mut impl Write,
+    columns: &[Column<P>],
+    rows: &[(&str, &P, &[&str])],
+    wide: usize,
+) -> std::io::Result<()> {
+    let width = rows.iter().map(|(name, ..)| name.len()).max().unwrap_or_default();
+    let lines: [fn(&Column<P>) -> &str; 3] = [|c| c.head[0], |c| c.head[1], |c| c.unit];
+    for line in lines {
+        let heads: String = columns.iter().map(|c| format!("{:>wide$}", line(c))).collect();
+        writeln!(out, "{:width$}{heads}", "")?;
+    }
+    for (name, profile, assumed) in rows {
+        let cell = |c: &Column<P>| cell((c.of)(profile), assumed.contains(&c.key));
+        let cells: String = columns.iter().map(|c| format!("{:>wide$}", cell(c))).collect();
+        writeln!(out, "{name:width$}{cells}")?;
+    }
+    Ok(())
 }
 
-/// A number in 9 places, with a sign before it if it is assumed.
-fn cell(column: &Column, profile: &DeviceProfile) -> String {
-    let value = (column.of)(profile);
-    let mark = if is_assumed(column, profile) { "~" } else { "" };
-    let number = if value < 1e-3 { format!("{value:e}") } else { value.to_string() };
-    format!("{:>9}", format!("{mark}{number}"))
+/// A number with a sign before it if it is assumed.
+fn cell(value: f64, is_assumed: bool) -> String {
+    let mark = if is_assumed { "~" } else { "" };
+    let is_small = value < 1e-3 && value != 0.0;
+    let number = if is_small { format!("{value:e}") } else { value.to_string() };
+    format!("{mark}{number}")
 }
 
 fn described(name: &str, profile: &DeviceProfile) -> Value {
-    let number = |column: &Column| {
-        let number = json!({
-            "value": (column.of)(profile),
-            "unit": column.unit,
-            "assumed": is_assumed(column, profile),
-        });
-        (column.key.to_owned(), number)
-    };
     let mut row = Map::new();
     row.insert("name".to_owned(), name.into());
     row.insert("device".to_owned(), profile.name.as_ref().into());
-    row.extend(COLUMNS.iter().map(number));
+    row.extend(numbers(&COLUMNS, profile, &profile.assumed));
     row.insert("source".to_owned(), profile.source.as_ref().into());
+    if let Some(turning) = &profile.turning {
+        let mut about: Map<_, _> = numbers(&TURNING, turning, &turning.assumed).collect();
+        about.insert("source".to_owned(), turning.source.as_ref().into());
+        row.insert("turning".to_owned(), about.into());
+    }
     Value::Object(row)
+}
+
+/// The numbers of a profile with their units.
+fn numbers<P>(
+    columns: &[Column<P>],
+    profile: &P,
+    assumed: &[&str],
+) -> impl Iterator<Item = (String, Value)> {
+    columns.iter().map(move |column| {
+        let number = json!({
+            "value": (column.of)(profile),
+            "unit": column.unit,
+            "assumed": assumed.contains(&column.key),
+        });
+        (column.key.to_owned(), number)
+    })
 }

@@ -14,8 +14,9 @@ use crate::outcome::Failure;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The names of the columns; those of a tool with a shape are the last.
-pub(crate) fn header<const D: usize>(has_tool: bool) -> Vec<String> {
+/// The names of the columns; those of a tool with a shape are the last, and after them those of a
+/// device that turns.
+pub(crate) fn header<const D: usize>(has_tool: bool, turns_hand: bool) -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "point".to_owned()];
     let vectors =
         [("device", "_m"), ("proxy", "_m"), ("wanted", "_n"), ("force", "_n"), ("normal", "")];
@@ -30,6 +31,9 @@ pub(crate) fn header<const D: usize>(has_tool: bool) -> Vec<String> {
             names.extend(turns::<_, D>(AXES).map(|axis| format!("{vector}_{axis}{unit}")));
         }
         names.extend(["contacts", "resolution_m", "degraded"].map(str::to_owned));
+    }
+    if turns_hand {
+        names.extend(turns::<_, D>(AXES).map(|axis| format!("given_torque_{axis}_nm")));
     }
     names
 }
@@ -64,6 +68,9 @@ fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
             tool.resolution.to_string(),
             tool.is_degraded.to_string(),
         ]);
+        if let Some(Vector(given)) = tool.given {
+            fields.extend(turns::<_, D>(given).map(|x| x.to_string()));
+        }
     }
     fields
 }
@@ -76,8 +83,10 @@ pub(crate) fn write<const D: usize>(
     let wrong = |error: csv::Error| Failure::file(path, error);
     let file = File::create(path).map_err(|error| Failure::file(path, error))?;
     let mut writer = csv::Writer::from_writer(file);
-    let has_tool = recorder.rows().iter().any(|row| row.tool.is_some());
-    writer.write_record(header::<D>(has_tool)).map_err(wrong)?;
+    let tools = || recorder.rows().iter().filter_map(|row| row.tool.as_ref());
+    let (has_tool, turns_hand) =
+        (tools().next().is_some(), tools().any(|tool| tool.given.is_some()));
+    writer.write_record(header::<D>(has_tool, turns_hand)).map_err(wrong)?;
     for row in recorder.rows() {
         writer.write_record(fields(row)).map_err(wrong)?;
     }

@@ -21,10 +21,18 @@ fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
     assert_eq!(omega["max_force"], force);
     assert_eq!(omega["least_damping"]["assumed"], true);
     assert!(omega["source"].as_str().unwrap().contains("CHAI3D 3.3.0"));
+    assert!(omega.get("turning").is_none());
+    let sigma = all.iter().find(|device| device["name"] == "sigma7").unwrap();
+    let torque = serde_json::json!({ "value": 0.2, "unit": "N·m", "assumed": false });
+    assert_eq!(sigma["turning"]["max_torque"], torque);
+    assert_eq!(sigma["turning"]["inertia"]["assumed"], true);
     let table = text(&palpate(&["devices"]));
     let row = table.lines().find(|line| line.starts_with("omega ")).unwrap();
     let cells: Vec<_> = row.split_whitespace().collect();
     assert_eq!(cells[1..5], ["12", "~12", "~6000", "5000"]);
+    let rows: Vec<_> = table.lines().filter(|line| line.starts_with("sigma7 ")).collect();
+    let cells: Vec<_> = rows[1].split_whitespace().collect();
+    assert_eq!(cells[1..5], ["0.2", "~0.2", "~100", "1"]);
     assert!(table.contains("\nomega: Force Dimension omega; source: "));
     assert!(table.ends_with(&format!("{} devices\n", all.len())));
 }
@@ -293,6 +301,38 @@ fn a_stylus_tours_a_cup_and_is_drawn() {
     let text =
         text(&palpate(&["feel", "scenes/stylus_in_cup.json", "--fast", "--duration", "1"]));
     assert!(text.contains("felt with a tool of 57 points"), "{text}");
+}
+
+#[test]
+fn a_stylus_turns_with_a_device_that_turns() {
+    let folder = Folder::new();
+    let (trace, plot) = (folder.name("trace.csv"), folder.name("turn.svg"));
+    let arguments = ["feel", "scenes/stylus_in_cup.json", "--fast", "--duration", "5"];
+    let on = |device: &str, more: &[&str]| {
+        json(&[&arguments[..], &["--json", "--device", device], more].concat())
+    };
+    let report = on("simulated:sigma7", &["--trace", &trace, "--plot", &plot]);
+    let written = report["tool"]["largest_torque_written"].as_f64().unwrap();
+    assert!(written > 0.01 && written <= 0.2, "{report}");
+    let turning = &report["safety"][0]["turning"];
+    assert_eq!(turning["largest_torque"], written);
+    assert_eq!(report["angular_coupling"]["rule"], "max_angular_stiffness");
+    assert_eq!(report["angular_coupling"], turning["impedance"]);
+    let rows = std::fs::read_to_string(&trace).unwrap();
+    let header: Vec<_> = rows.lines().next().unwrap().split(',').collect();
+    let given = ["given_torque_x_nm", "given_torque_y_nm", "given_torque_z_nm"];
+    assert!(header.ends_with(&given), "{header:?}");
+    assert!(rows.lines().all(|row| row.split(',').count() == header.len()));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(words(&svg).contains(&"given to the hand"));
+    // One that senses turns alone, one that does not turn.
+    let senses = on("simulated:omega6", &[]);
+    assert_eq!(senses["tool"]["largest_torque_written"], 0.0);
+    assert!(senses["safety"][0].get("turning").is_none());
+    let still = on("simulated:omega", &[]);
+    assert!(still["tool"].get("largest_torque_written").is_none());
+    let text = text(&palpate(&[&arguments[..], &["--device", "simulated:sigma7"]].concat()));
+    assert!(text.contains("written to the device") && text.contains("softer about axes"));
 }
 
 /// The points of a tool were read, but one finger felt the scene.

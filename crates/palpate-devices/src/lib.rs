@@ -5,7 +5,8 @@
 //!
 //! [`profile_named`] knows the limits of real devices, each with its source. A
 //! [`SimulatedDevice`] moves as such a device does in a [`Hand`]: with mass, damping, friction,
-//! encoders, and forces that are held between two writes. Its motion is integrated in closed
+//! encoders, and forces that are held between two writes; one of six degrees of freedom turns
+//! likewise, and holds a torque. Its motion is integrated in closed
 //! form, so the energy that a servo puts into the hand is known to the last digits. A [`Glove`]
 //! has many fingers that follow hand paths.
 //!
@@ -51,12 +52,15 @@ mod motion;
 mod oscillator;
 mod profiles;
 mod simulated;
+mod turning;
+mod wrists;
 
 pub use glove::Glove;
 pub use hand::Hand;
 pub use motion::Energies;
 pub use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HandPath, PointState, RecordedDevice,
+    Device, DeviceLost, DeviceProfile, HandPath, PointState, RecordedDevice, TurnState,
+    TurningProfile,
 };
 pub use profiles::{PROFILES, UnknownDevice, profile_named};
 pub use simulated::SimulatedDevice;

@@ -34,7 +34,8 @@ const HALVINGS: u32 = 60;
 /// kinetic = servo + hand − viscous − friction
 /// ```
 ///
-/// up to rounding: each term is integrated on its own.
+/// up to rounding: each term is integrated on its own. What turns adds its own, with torques for
+/// forces and angles for lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
     /// The work of the servo's forces on device and hand, `∫ F·dx`. Positive: the virtual world

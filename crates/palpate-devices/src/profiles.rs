@@ -8,16 +8,19 @@
 //! rest is assumed and named so: of the order of makers' data sheets, and coherent with what is
 //! published. The least damping is `K T / 2` at `T` = 1 ms, the least for which the largest
 //! stiffness `K` is passive (Colgate and Schenkel 1997); friction and encoder step satisfy
-//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); all of the force comes in 2 ms.
+//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); all of the force comes in 2 ms. Of those that turn,
+//! likewise, about their worst axis; each says where its numbers are from.
 
 use std::borrow::Cow;
 
-use palpate_haptics::DeviceProfile;
+use palpate_haptics::{DeviceProfile, TurningProfile};
+
+use crate::wrists::{OMEGA, PREMIUM, SIGMA, VIRTUOSE_6D, turning};
 
 /// Where numbers are from, and which are not.
-struct Origin {
-    source: &'static str,
-    assumed: &'static [&'static str],
+pub(crate) struct Origin {
+    pub(crate) source: &'static str,
+    pub(crate) assumed: &'static [&'static str],
 }
 
 const DRIVERS: Origin = Origin {
@@ -67,13 +70,37 @@ struct Assumed {
 }
 
 /// How often a second a force rises from nothing to all of it [1/s]: in 2 ms.
-const FORCE_RISES: f64 = 500.0;
+pub(crate) const FORCE_RISES: f64 = 500.0;
+
+const VIRTUOSE: Origin = Origin {
+    source: "forces: the maker's data sheet",
+    assumed: &[
+        "max_force_rate",
+        "max_stiffness",
+        "max_damping",
+        "workspace_radius",
+        "mass",
+        "least_damping",
+        "friction",
+        "encoder_step",
+    ],
+};
 
 const fn profile(
     origin: &Origin,
     name: &'static str,
     published: Published,
     assumed: Assumed,
+) -> DeviceProfile {
+    turning_profile((origin, name), published, assumed, None)
+}
+
+/// Of a device that turns, if it does.
+const fn turning_profile(
+    (origin, name): (&Origin, &'static str),
+    published: Published,
+    assumed: Assumed,
+    turning: Option<TurningProfile>,
 ) -> DeviceProfile {
     DeviceProfile {
         name: Cow::Borrowed(name),
@@ -87,6 +114,7 @@ const fn profile(
         least_damping: assumed.least_damping,
         friction: assumed.friction,
         encoder_step: assumed.encoder_step,
+        turning,
         source: Cow::Borrowed(origin.source),
         assumed: Cow::Borrowed(origin.assumed),
     }
@@ -98,9 +126,9 @@ const fn profile(
 /// use palpate_devices::PROFILES;
 ///
 /// let at_least = |newtons: f64| PROFILES.iter().filter(|(_, p)| p.max_force >= newtons).count();
-/// assert_eq!((PROFILES.len(), at_least(20.0)), (11, 3));
+/// assert_eq!((PROFILES.len(), at_least(20.0)), (16, 4));
 /// ```
-pub static PROFILES: [(&str, DeviceProfile); 11] = [
+pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "touch",
         profile(
@@ -148,9 +176,8 @@ pub static PROFILES: [(&str, DeviceProfile); 11] = [
     ),
     (
         "premium15",
-        profile(
-            &DRIVERS,
-            "Phantom Premium 1.5 6DOF",
+        turning_profile(
+            (&DRIVERS, "Phantom Premium 1.5 6DOF"),
             Published { force: 8.5, stiffness: 800.0, damping: 5.0, workspace: 0.12 },
             Assumed {
                 continuous_force: 1.4,
@@ -159,6 +186,7 @@ pub static PROFILES: [(&str, DeviceProfile); 11] = [
                 friction: 0.04,
                 encoder_step: 3e-5,
             },
+            Some(turning(&PREMIUM)),
         ),
     ),
     (
@@ -178,9 +206,8 @@ pub static PROFILES: [(&str, DeviceProfile); 11] = [
     ),
     (
         "premium30",
-        profile(
-            &DRIVERS,
-            "Phantom Premium 3.0 6DOF",
+        turning_profile(
+            (&DRIVERS, "Phantom Premium 3.0 6DOF"),
             Published { force: 22.0, stiffness: 1000.0, damping: 5.0, workspace: 0.25 },
             Assumed {
                 continuous_force: 3.0,
@@ -189,6 +216,7 @@ pub static PROFILES: [(&str, DeviceProfile); 11] = [
                 friction: 0.2,
                 encoder_step: 2e-5,
             },
+            Some(turning(&PREMIUM)),
         ),
     ),
     (
@@ -266,6 +294,81 @@ pub static PROFILES: [(&str, DeviceProfile); 11] = [
             },
         ),
     ),
+    (
+        "omega6",
+        turning_profile(
+            (&DRIVERS, "Force Dimension omega.6"),
+            Published { force: 12.0, stiffness: 5000.0, damping: 30.0, workspace: 0.075 },
+            Assumed {
+                continuous_force: 12.0,
+                mass: 0.25,
+                least_damping: 2.5,
+                friction: 0.1,
+                encoder_step: 1e-5,
+            },
+            Some(turning(&OMEGA)),
+        ),
+    ),
+    (
+        "omega7",
+        turning_profile(
+            (&DRIVERS, "Force Dimension omega.7"),
+            Published { force: 12.0, stiffness: 5000.0, damping: 30.0, workspace: 0.075 },
+            Assumed {
+                continuous_force: 12.0,
+                mass: 0.25,
+                least_damping: 2.5,
+                friction: 0.1,
+                encoder_step: 1e-5,
+            },
+            Some(turning(&OMEGA)),
+        ),
+    ),
+    (
+        "sigma7",
+        turning_profile(
+            (&DRIVERS, "Force Dimension sigma.7"),
+            Published { force: 12.0, stiffness: 4000.0, damping: 30.0, workspace: 0.075 },
+            Assumed {
+                continuous_force: 12.0,
+                mass: 0.3,
+                least_damping: 2.0,
+                friction: 0.15,
+                encoder_step: 1e-5,
+            },
+            Some(turning(&SIGMA)),
+        ),
+    ),
+    (
+        "lambda7",
+        turning_profile(
+            (&DRIVERS, "Force Dimension lambda.7"),
+            Published { force: 12.0, stiffness: 8000.0, damping: 30.0, workspace: 0.1125 },
+            Assumed {
+                continuous_force: 12.0,
+                mass: 0.35,
+                least_damping: 4.0,
+                friction: 0.2,
+                encoder_step: 1e-5,
+            },
+            Some(turning(&SIGMA)),
+        ),
+    ),
+    (
+        "virtuose6d",
+        turning_profile(
+            (&VIRTUOSE, "Haption Virtuose 6D"),
+            Published { force: 35.0, stiffness: 2000.0, damping: 30.0, workspace: 0.3 },
+            Assumed {
+                continuous_force: 10.0,
+                mass: 1.0,
+                least_damping: 1.0,
+                friction: 0.5,
+                encoder_step: 6e-5,
+            },
+            Some(turning(&VIRTUOSE_6D)),
+        ),
+    ),
 ];
 
 /// The profile of the device that the command line calls `name`.
@@ -335,6 +438,36 @@ mod tests {
     }
 
     #[test]
+    fn every_profile_that_turns_is_coherent() {
+        let mut torques = 0;
+        for (name, profile) in &PROFILES {
+            let Some(turning) = &profile.turning else { continue };
+            let always = [turning.inertia, turning.least_damping, turning.friction];
+            assert!(always.iter().all(|x| *x > 0.0 && x.is_finite()), "{name}");
+            assert!(turning.encoder_step > 0.0 && !turning.source.is_empty(), "{name}");
+            let of_torque = [
+                turning.max_torque,
+                turning.continuous_torque,
+                turning.max_torque_rate,
+                turning.max_stiffness,
+                turning.max_damping,
+            ];
+            if turning.max_torque > 0.0 {
+                torques += 1;
+                assert!(of_torque.iter().all(|x| *x > 0.0 && x.is_finite()), "{name}");
+                assert!(turning.continuous_torque <= turning.max_torque, "{name}");
+                let passive = 2000.0 * turning.least_damping;
+                assert!(turning.max_stiffness <= passive * (1.0 + f64::EPSILON), "{name}");
+                let seen = 2.0 * turning.friction / turning.encoder_step;
+                assert!(turning.max_stiffness <= seen, "{name}");
+            } else {
+                assert_eq!(of_torque, [0.0; 5], "{name}");
+            }
+        }
+        assert_eq!(torques, 5);
+    }
+
+    #[test]
     fn every_name_is_found_and_once() {
         for (name, profile) in &PROFILES {
             assert_eq!(&profile_named(name).unwrap(), profile);
@@ -347,6 +480,11 @@ mod tests {
         for (name, profile) in &PROFILES {
             let shown = format!("{profile:?}");
             for field in profile.assumed.iter() {
+                assert!(shown.contains(&format!("{field}: ")), "{name}: {field}");
+            }
+            let shown = format!("{:?}", profile.turning);
+            let turning = profile.turning.iter().flat_map(|turning| turning.assumed.iter());
+            for field in turning {
                 assert!(shown.contains(&format!("{field}: ")), "{name}: {field}");
             }
         }

@@ -7,11 +7,13 @@
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, PointState, limited, not_negative,
+    Device, DeviceLost, DeviceProfile, HapticsError, PointState, TurnState, limited,
+    not_negative,
 };
 
 use crate::hand::Hand;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
+use crate::turning::Turning;
 
 /// Reads closer than this are one [s]: over less, a difference says nothing of a velocity.
 const SHORTEST: f64 = 1e-9;
@@ -31,6 +33,10 @@ const SHORTEST: f64 = 1e-9;
 /// The velocity read is the difference of the last two positions read, over the time between
 /// them: with an encoder step Δ it comes in steps of Δ times the rate. Damping wants a better
 /// estimate than this, over a window.
+///
+/// A device whose profile [turns](DeviceProfile::turning), held by one hand, is turned by it about
+/// each axis likewise: inertia, damping, friction, encoder steps of its turn as a vector, and a
+/// torque that is held. Its inertia is the same about every axis.
 ///
 /// It starts at rest where its hand wants to be at the time of the first read. Profile limits
 /// other than the largest force are for the servo to keep.
@@ -66,6 +72,8 @@ const SHORTEST: f64 = 1e-9;
 pub struct SimulatedDevice<const D: usize> {
     profile: DeviceProfile,
     points: Vec<SimulatedPoint<D>>,
+    /// How it turns, if it does.
+    turning: Option<Turning<D>>,
     /// The time of the last read [s].
     time: Option<f64>,
 }
@@ -92,7 +100,8 @@ impl<const D: usize> SimulatedDevice<D> {
     /// [`HapticsError::NoContactPoint`] if there is no hand. [`HapticsError::Number`] if the
     /// profile's mass, least damping, friction or encoder step is negative or not finite, its
     /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k / M)`
-    /// of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4 / s.
+    /// of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4 / s;
+    /// likewise of what turns.
     pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, HapticsError> {
         if hands.is_empty() {
             return Err(HapticsError::NoContactPoint);
@@ -101,6 +110,10 @@ impl<const D: usize> SimulatedDevice<D> {
         if profile.max_force != f64::INFINITY {
             not_negative("max_force", profile.max_force, "N")?;
         }
+        let turning = match (&profile.turning, hands.as_slice()) {
+            (Some(turning), [hand]) => Some(Turning::new(turning, hand)?),
+            _ => None,
+        };
         let points = hands.into_iter().map(|hand| {
             let body = Body::new(&Parts {
                 masses: (profile.mass, hand.mass()),
@@ -120,7 +133,7 @@ impl<const D: usize> SimulatedDevice<D> {
             })
         });
         let points = points.collect::<Result<_, HapticsError>>()?;
-        Ok(Self { profile, points, time: None })
+        Ok(Self { profile, points, turning, time: None })
     }
 
     /// Where each contact point is and how fast, as no encoder sees it.
@@ -128,25 +141,41 @@ impl<const D: usize> SimulatedDevice<D> {
         self.points.iter().map(SimulatedPoint::state)
     }
 
+    /// How the device is turned and how fast, as no encoder sees it; none of one that does not
+    /// turn.
+    #[must_use]
+    pub fn turn(&self) -> Option<TurnState<D>> {
+        self.turning.as_ref().map(Turning::state)
+    }
+
+    /// The torque held [N·m]: that written last, cut to the largest.
+    #[must_use]
+    pub fn torque(&self) -> Vector<f64, 3> {
+        self.turning.as_ref().map_or(Vector::ZERO, Turning::torque)
+    }
+
     /// The forces held [N]: those written last, cut to the largest.
     pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
         self.points.iter().map(|point| point.force)
     }
 
-    /// Where the energy went, all contact points together, up to the last read.
+    /// Where the energy went, all contact points and what turns together, up to the last read.
     #[must_use]
     pub fn energies(&self) -> Energies {
         let mut sum = Energies::default();
         for point in &self.points {
             sum.add(&point.energies);
         }
+        if let Some(turning) = &self.turning {
+            sum.add(turning.energies());
+        }
         sum
     }
 
-    /// The work that the servo's forces did on device and hand from the start to the last read,
-    /// `∑ ∫ F·dx` over all contact points [J].
+    /// The work that the servo's forces and torques did on device and hand from the start to the
+    /// last read, `∑ ∫ F·dx + ∫ τ·dθ` over all contact points [J].
     ///
-    /// Exact, as the force is constant over each way. Positive: the virtual world gave energy
+    /// Exact, as force and torque are constant over each way. Positive: the virtual world gave energy
     /// out, as even a plain spring does when its force is held over a way that goes on. The
     /// device's own damping and friction may take that; what they leave is
     /// [`energy_to_hand`](Self::energy_to_hand).
@@ -165,14 +194,15 @@ impl<const D: usize> SimulatedDevice<D> {
         -self.energies().hand
     }
 
-    /// What moves now, device and hands, `∑ ½ M v²` [J].
+    /// What moves now, device and hands, `∑ ½ M v² + ½ I ω²` [J].
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
         let of = |point: &SimulatedPoint<D>| {
             let velocity = point.state().velocity;
             0.5 * point.body.mass() * velocity.dot(velocity)
         };
-        self.points.iter().map(of).sum()
+        let turning = self.turning.as_ref().map_or(0.0, Turning::kinetic_energy);
+        self.points.iter().map(of).sum::<f64>() + turning
     }
 }
 
@@ -241,11 +271,17 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
                 for point in &mut self.points {
                     point.start(time, encoder_step);
                 }
+                if let Some(turning) = &mut self.turning {
+                    turning.start(time);
+                }
                 self.time = time.is_finite().then_some(time);
             }
             Some(last) if time - last >= SHORTEST && time <= f64::MAX => {
                 for point in &mut self.points {
                     point.advance(last, time, encoder_step);
+                }
+                if let Some(turning) = &mut self.turning {
+                    turning.advance(last, time);
                 }
                 self.time = Some(time);
             }
@@ -262,6 +298,20 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
+        }
+        Ok(())
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+        Ok(self.turning.as_ref().map(Turning::reading))
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A torque that is not finite is
+    /// none.
+    fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
+        if let Some(turning) = &mut self.turning {
+            turning.write(torque);
         }
         Ok(())
     }

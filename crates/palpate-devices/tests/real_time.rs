@@ -10,7 +10,10 @@ use palpate_devices::{
 };
 use palpate_field::kernel::Ball;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{Interpolation, Pace, RunOptions, Servo, ServoOptions, run};
+use palpate_haptics::{
+    Interpolation, Pace, Protection, RunOptions, Servo, ServoOptions, Shell, Tool, ToolOptions,
+    run,
+};
 
 /// Aborts on an allocation where none is allowed.
 #[global_allocator]
@@ -51,6 +54,34 @@ fn reading_and_writing_allocate_nothing() {
             glove.write(&forces).unwrap();
         });
     }
+}
+
+#[test]
+fn a_tick_of_a_tool_that_turns_allocates_nothing() {
+    let turns = vec![Vector([0.0; 3]), Vector([0.3, 0.1, -0.4]), Vector([0.0, 0.5, 0.2])];
+    let turns = HandPath::new(vec![0.0, 0.7, 1.5], turns, Interpolation::Smooth).unwrap();
+    let hand = Hand::new(stroke()).with_turns(turns);
+    let mut device =
+        SimulatedDevice::new(profile_named("sigma7").unwrap(), vec![hand]).unwrap();
+    let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
+    let rod = Shell::capsule([Vector([-0.05, 0.0, 0.0]), Vector([0.05, 0.0, 0.0])], 4e-3, 21);
+    let tool = Tool::new(rod.unwrap(), ToolOptions::default()).unwrap();
+    let mut servo = Servo::with_tool(ball, tool, ServoOptions::default()).unwrap();
+    servo.protect(&Protection::new(device.profile().clone())).unwrap();
+    let (mut points, mut largest) = ([PointState::at_rest(Vector::ZERO)], 0.0_f64);
+    for tick in 0..2000 {
+        assert_no_alloc(|| {
+            device.read(f64::from(tick) * 1e-3, &mut points).unwrap();
+            let turn = device.read_turn().unwrap();
+            servo.set_turn(turn);
+            servo.limit_torque(0.15);
+            servo.step(&points);
+            device.write(servo.forces()).unwrap();
+            device.write_torque(servo.torque()).unwrap();
+        });
+        largest = largest.max(device.torque().norm());
+    }
+    assert!(largest > 1e-3 && largest <= 0.15, "{largest} N·m");
 }
 
 #[test]

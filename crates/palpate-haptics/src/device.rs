@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-use palpate_field::{Point, Vector};
+use palpate_field::{Point, Rotation, Vector};
 
 /// One contact point of a device, as read in a tick. Coordinates of the device, which are those
 /// of the world unless a servo [protects](crate::Protection) it with a map.
@@ -28,6 +28,24 @@ impl<const D: usize> PointState<D> {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.velocity.is_finite()
+    }
+}
+
+/// How a device is turned, as read in a tick. Coordinates of the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnState<const D: usize> {
+    /// How the axes of what the hand holds lie in those of the device.
+    pub orientation: Rotation<D>,
+    /// How fast it turns [rad/s]: along the axis, as the device sees it; in the plane about z
+    /// alone.
+    pub angular_velocity: Vector<f64, 3>,
+}
+
+impl<const D: usize> TurnState<D> {
+    /// Held still in an orientation.
+    #[must_use]
+    pub fn at_rest(orientation: Rotation<D>) -> Self {
+        Self { orientation, angular_velocity: Vector::ZERO }
     }
 }
 
@@ -60,6 +78,9 @@ pub struct DeviceProfile {
     pub friction: f64,
     /// The step of its encoders at the handle [m].
     pub encoder_step: f64,
+    /// What it can do about its axes; none of a device that does not turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turning: Option<TurningProfile>,
     /// Where the numbers are from.
     pub source: Cow<'static, str>,
     /// Which numbers are not from there, but assumed: names of fields.
@@ -87,6 +108,63 @@ impl DeviceProfile {
             least_damping: f64::INFINITY,
             friction: f64::INFINITY,
             encoder_step: 0.0,
+            turning: None,
+            source: Cow::Borrowed(""),
+            assumed: Cow::Borrowed(&[]),
+        }
+    }
+}
+
+/// What a device can do about its axes: the numbers of a [`DeviceProfile`], angles for lengths
+/// and torques for forces. They are those of the worst axis.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct TurningProfile {
+    /// Largest torque [N·m]; zero of a device that senses how it is turned, and gives no torque.
+    pub max_torque: f64,
+    /// Largest torque that it gives for as long as one likes [N·m].
+    pub continuous_torque: f64,
+    /// Fastest change of torque [N·m/s].
+    pub max_torque_rate: f64,
+    /// Largest angular stiffness it renders at 1 kHz [N·m/rad].
+    pub max_stiffness: f64,
+    /// Largest angular damping it renders at 1 kHz [N·m·s/rad].
+    pub max_damping: f64,
+    /// Its moment of inertia in the hand [kg·m²].
+    pub inertia: f64,
+    /// The least angular damping of its own that can be relied on [N·m·s/rad].
+    pub least_damping: f64,
+    /// Its Coulomb friction [N·m].
+    pub friction: f64,
+    /// The step of its encoders [rad].
+    pub encoder_step: f64,
+    /// Where the numbers are from.
+    pub source: Cow<'static, str>,
+    /// Which numbers are not from there, but assumed: names of fields.
+    pub assumed: Cow<'static, [&'static str]>,
+}
+
+impl TurningProfile {
+    /// A device that gives any torque, without inertia, friction or steps.
+    ///
+    /// ```
+    /// use palpate_haptics::{DeviceProfile, TurningProfile};
+    ///
+    /// let turning = Some(TurningProfile { max_torque: 0.2, ..TurningProfile::unlimited() });
+    /// let device = DeviceProfile { turning, ..DeviceProfile::unlimited("six degrees of freedom") };
+    /// assert!(device.turning.is_some_and(|turning| turning.max_stiffness == f64::INFINITY));
+    /// ```
+    #[must_use]
+    pub fn unlimited() -> Self {
+        Self {
+            max_torque: f64::INFINITY,
+            continuous_torque: f64::INFINITY,
+            max_torque_rate: f64::INFINITY,
+            max_stiffness: f64::INFINITY,
+            max_damping: f64::INFINITY,
+            inertia: 0.0,
+            least_damping: f64::INFINITY,
+            friction: f64::INFINITY,
+            encoder_step: 0.0,
             source: Cow::Borrowed(""),
             assumed: Cow::Borrowed(&[]),
         }
@@ -105,6 +183,11 @@ pub struct DeviceLost {
 ///
 /// A stylus has one point, a glove one for each finger. Coordinates of the device both ways: a
 /// [`WorkspaceMap`](crate::WorkspaceMap) of the servo takes them to the world.
+///
+/// A device that turns, with six degrees of freedom in space or three in the plane, also
+/// [says how it is turned](Self::read_turn) and [takes a torque](Self::write_torque); a
+/// [`Tool`](crate::Tool) with a shape turns with its one point. Other devices leave both as they
+/// are.
 pub trait Device<const D: usize> {
     /// How many contact points it has; the same for life.
     fn points(&self) -> usize;
@@ -131,4 +214,30 @@ pub trait Device<const D: usize> {
     ///
     /// As [`read`](Self::read).
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost>;
+
+    /// How the hand turns the device, at the time of the last [`read`](Self::read); `None`, always,
+    /// of a device that does not turn.
+    ///
+    /// Real-time: called in every tick.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+        Ok(None)
+    }
+
+    /// Writes the torque on the hand about the device point [N·m], along its axis; in the plane
+    /// about z alone.
+    ///
+    /// Real-time: called in every tick of a device that turns, after [`write`](Self::write), and
+    /// once with no torque when the servo stops.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
+        let _ = torque;
+        Ok(())
+    }
 }

@@ -34,6 +34,21 @@ pub enum HapticsError {
         /// What both would have to be multiplied by.
         factor: f64,
     },
+    /// A device does not turn a tool with its coupling, and is not to be given a softer one.
+    #[error(
+        "an angular stiffness of {stiffness} N·m/rad and an angular damping of {damping} \
+         N·m·s/rad at the device break {condition}; {factor} times both would not"
+    )]
+    TurningRefused {
+        /// Angular stiffness at the device [N·m/rad].
+        stiffness: f64,
+        /// Angular damping at the device [N·m·s/rad].
+        damping: f64,
+        /// The rule that is broken: "κ ≤ 2 (b − |β|) / T".
+        condition: &'static str,
+        /// What both would have to be multiplied by.
+        factor: f64,
+    },
     /// A hand path needs a beginning and an end.
     #[error("a hand path needs at least 2 samples, got {count}")]
     TooFewSamples {

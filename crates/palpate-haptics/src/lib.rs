@@ -11,7 +11,8 @@
 //!
 //! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
 //! by a spring, and bodies stop it. A servo renders it [instead](Servo::with_tool) of contact
-//! points, or a program with six degrees of freedom steps it itself.
+//! points; on a device that turns, with six degrees of freedom, it turns with the hand and gives
+//! it a torque.
 //!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
 //! well or down a field. For devices that shake instead of push, [`vibrotactile`] turns touches
@@ -83,6 +84,7 @@ mod proxy;
 mod recorded;
 mod recorder;
 mod report;
+mod rotation;
 mod run;
 mod safety;
 mod sampler;
@@ -100,7 +102,7 @@ mod workspace;
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use contact_point::Touch;
-pub use device::{Device, DeviceLost, DeviceProfile, PointState};
+pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
 pub use error::{HapticsError, not_negative, positive};
 pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
@@ -118,10 +120,11 @@ pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use recorded::RecordedDevice;
 pub use recorder::{Energy, Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunReport};
+pub use rotation::{turn_between, turned};
 pub use run::{Pace, RunOptions, Watch, run, run_on};
 pub use safety::{
     Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
-    SafetyChain, SafetyOptions, SafetyReport, WatchdogReport,
+    SafetyChain, SafetyOptions, SafetyReport, TurningReport, WatchdogReport,
 };
 pub use servo::{Servo, ServoOptions};
 pub use statistics::{Bucket, Distribution};

@@ -4,15 +4,17 @@
 //! A servo behind a device: where its workspace lies, what the device can render, and the
 //! safety chain of every contact point.
 
-use palpate_field::Vector;
+use palpate_field::{Rotation, Vector};
 
 use crate::bodies::Bodies;
-use crate::device::{DeviceProfile, PointState};
+use crate::device::{DeviceProfile, PointState, TurnState, TurningProfile};
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
 use crate::recorder::Energy;
+use crate::rotation::turn_between;
 use crate::safety::{
-    Acceptance, Accepted, PortState, SafetyChain, SafetyOptions, SafetyReport,
+    Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
+    SafetyReport, WrenchChain,
 };
 use crate::tool::Tool;
 use crate::velocity::VelocityEstimator;
@@ -98,7 +100,8 @@ impl<const D: usize> Protection<D> {
     }
 
     /// Likewise the bodies and a tool, together: what the worst layer through the coupling needs
-    /// makes all of them softer.
+    /// makes all of them softer. Of a device that gives a torque, followed by what became of
+    /// the coupling's angular stiffness and damping.
     pub(crate) fn accept_tool(
         &self,
         mut bodies: Bodies<D>,
@@ -116,16 +119,59 @@ impl<const D: usize> Protection<D> {
             bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(worst.factor));
             tool.soften(worst.factor);
         }
-        Ok((bodies, worst.into_iter().collect()))
+        let mut all: Vec<_> = worst.into_iter().collect();
+        if let Some(turning) = self.torques() {
+            all.push(self.accept_turning(&bodies, tool, (turning, rate))?);
+        }
+        Ok((bodies, all))
+    }
+
+    /// What the device can do about its axes, if it gives a torque.
+    fn torques(&self) -> Option<&TurningProfile> {
+        // Written so that NaN gives none.
+        self.profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0)
+    }
+
+    /// Makes a tool's coupling turn as the device can, on the stiffest of the bodies' layers; what
+    /// that leaves of the device's damping bears the bodies' dampers, on arms as long as it can.
+    fn accept_turning(
+        &self,
+        bodies: &Bodies<D>,
+        tool: &mut Tool<D>,
+        (turning, rate): (&TurningProfile, f64),
+    ) -> Result<Accepted, HapticsError> {
+        let (mut part, mut damping) = (0.0_f64, 0.0_f64);
+        for impedance in bodies.bodies().iter().flat_map(|body| body.surface().impedances()) {
+            let impedance = impedance?;
+            part = part.max((impedance.stiffness() / tool.options().stiffness).min(1.0));
+            damping = damping.max(impedance.damping());
+        }
+        let limits = Limits::about(turning);
+        // Torques of the world are so many times those at the device.
+        let scale = 1.0 / self.map.scale();
+        let of =
+            |impedance, acceptance| Accepted::of((impedance, scale), &limits, acceptance, rate);
+        let with_bodies = tool.turning_on(part, damping)?;
+        if self.acceptance == Acceptance::Strict {
+            return of(with_bodies, Acceptance::Strict);
+        }
+        let accepted = of(tool.turning_on(part, 0.0)?, self.acceptance)?;
+        tool.soften_turning(accepted.factor);
+        if self.acceptance == Acceptance::Scaled {
+            let taken = 0.5 * accepted.device_stiffness / rate + accepted.device_damping;
+            let left = (turning.least_damping - taken)
+                .min(turning.max_damping - accepted.device_damping)
+                .max(0.0);
+            let needed = scale * (with_bodies.damping() - tool.options().angular_damping);
+            tool.shorten_arms(if needed > left { (left / needed).sqrt() } else { 1.0 });
+        }
+        Ok(accepted)
     }
 
     fn accepted(&self, impedance: Impedance, rate: f64) -> Result<Accepted, HapticsError> {
-        let (profile, scale) = (&self.profile, self.map.scale());
-        match self.acceptance {
-            Acceptance::Scaled => Accepted::new(impedance, scale, profile, rate),
-            Acceptance::Strict => Accepted::strict(impedance, scale, profile, rate),
-            Acceptance::AsItIs => Accepted::as_it_is(impedance, scale, profile),
-        }
+        let scale = self.map.scale();
+        let limits = Limits::along(&self.profile);
+        Accepted::of((impedance, scale), &limits, self.acceptance, rate)
     }
 
     /// The port of one contact point, to bodies at most as stiff as those accepted.
@@ -138,18 +184,48 @@ impl<const D: usize> Protection<D> {
             .iter()
             .map(|accepted| accepted.impedance)
             .max_by(|a, b| a.stiffness().total_cmp(&b.stiffness()));
-        let options = SafetyOptions {
-            scale: self.map.scale(),
-            acceptance: Acceptance::AsItIs,
-            has_passivity_control: self.has_passivity_control,
-            rise_time: self.rise_time,
-            ..SafetyOptions::new(stiffest.unwrap_or_default())
-        };
+        let options = self.safety_options(stiffest.unwrap_or_default());
         Ok(Port {
             chain: SafetyChain::new(&self.profile, rate, options)?,
             estimator: VelocityEstimator::new(rate, self.profile.encoder_step)?,
             has_steps: self.profile.encoder_step > 0.0,
         })
+    }
+
+    /// What is between a tool and a device that turns, from what was
+    /// [accepted](Self::accept_tool); none of a device that does not.
+    pub(crate) fn turning(
+        &self,
+        accepted: &[Accepted],
+        rate: f64,
+    ) -> Result<Option<TurningPort<D>>, HapticsError> {
+        let Some(turning) = &self.profile.turning else { return Ok(None) };
+        let chain = if let [along, about] = accepted {
+            let limits = (&Limits::along(&self.profile), &Limits::about(turning));
+            let options = self.safety_options(along.impedance);
+            let accepted = (along.clone(), about.clone());
+            Some(WrenchChain::new(limits, accepted, &options, rate)?)
+        } else {
+            None
+        };
+        Ok(Some(TurningPort {
+            chain,
+            estimator: VelocityEstimator::new(rate, turning.encoder_step)?,
+            has_steps: turning.encoder_step > 0.0,
+            last: None,
+            angle: Vector::ZERO,
+        }))
+    }
+
+    /// For what was accepted already.
+    fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
+        SafetyOptions {
+            scale: self.map.scale(),
+            acceptance: Acceptance::AsItIs,
+            has_passivity_control: self.has_passivity_control,
+            rise_time: self.rise_time,
+            ..SafetyOptions::new(impedance)
+        }
     }
 }
 
@@ -201,11 +277,52 @@ impl<const D: usize> Port<D> {
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn energy(&self) -> Energy {
-        let seen = self.chain.passivity();
-        Energy { taken: seen.energy_in, given: seen.energy_out, kept: seen.dissipated }
+        energy(&self.chain.passivity())
     }
 
     pub(crate) fn report(&self) -> SafetyReport {
         self.chain.report()
     }
+}
+
+/// What is between a tool and a device that turns, beside the [`Port`] of its contact point.
+#[derive(Clone, Debug)]
+pub(crate) struct TurningPort<const D: usize> {
+    /// The chain of force and torque, in place of the port's; none of a device that gives no
+    /// torque.
+    pub(crate) chain: Option<WrenchChain<D>>,
+    estimator: VelocityEstimator<3>,
+    /// Whether the device sees how it is turned in steps.
+    has_steps: bool,
+    last: Option<Rotation<D>>,
+    /// The sum of all turns so far [rad].
+    angle: Vector<f64, 3>,
+}
+
+impl<const D: usize> TurningPort<D> {
+    /// How the device is turned, with the best angular velocity that is known, as
+    /// [`Port::state`]; and the sum of all turns so far [rad].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn state(
+        &mut self,
+        turn: Option<TurnState<D>>,
+    ) -> (Option<TurnState<D>>, Vector<f64, 3>) {
+        let Some(mut turn) = turn else { return (None, self.angle) };
+        let last = self.last.replace(turn.orientation).unwrap_or(turn.orientation);
+        self.angle += turn_between(&last, &turn.orientation);
+        if self.has_steps {
+            turn.angular_velocity = self.estimator.update(self.angle);
+        }
+        (Some(turn), self.angle)
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn energy(&self) -> Option<Energy> {
+        self.chain.as_ref().map(|chain| energy(&chain.passivity()))
+    }
+}
+
+fn energy(seen: &PassivityReport) -> Energy {
+    Energy { taken: seen.energy_in, given: seen.energy_out, kept: seen.dissipated }
 }

@@ -3,11 +3,12 @@
 
 //! A device without hardware, held by a hand that follows a path whatever the force.
 
-use palpate_field::Vector;
+use palpate_field::{Rotation, Vector};
 
-use crate::device::{Device, DeviceLost, DeviceProfile, PointState};
+use crate::device::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
 use crate::error::HapticsError;
 use crate::hand_path::HandPath;
+use crate::rotation::{turn_between, turned};
 
 /// A device whose points follow recorded hand paths.
 ///
@@ -35,7 +36,14 @@ pub struct RecordedDevice<const D: usize> {
     paths: Vec<HandPath<D>>,
     forces: Vec<Vector<f64, D>>,
     profile: DeviceProfile,
+    /// How the hand turns it; none of a device that does not turn.
+    turns: Option<HandPath<3>>,
+    turn: Option<TurnState<D>>,
+    torque: Vector<f64, 3>,
 }
+
+/// The time over which a turn is measured [s]: short for any hand, and long for rounding.
+const INSTANT: f64 = 1e-6;
 
 impl<const D: usize> RecordedDevice<D> {
     /// A device with one contact point for each path.
@@ -48,7 +56,33 @@ impl<const D: usize> RecordedDevice<D> {
             return Err(HapticsError::NoContactPoint);
         }
         let forces = vec![Vector::ZERO; paths.len()];
-        Ok(Self { paths, forces, profile: DeviceProfile::unlimited("recorded") })
+        let (turns, turn, torque) = (None, None, Vector::ZERO);
+        let profile = DeviceProfile::unlimited("recorded");
+        Ok(Self { paths, forces, profile, turns, turn, torque })
+    }
+
+    /// The same, turned over time by vectors along the axis, as long as the angle [rad], from the
+    /// device's own axes; in the plane along z.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_haptics::{Device, HandPath, Interpolation, PointState, RecordedDevice};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0]); 2], Interpolation::Linear)?;
+    /// let turns = vec![Vector([0.0; 3]), Vector([0.0, 0.0, 1.0])];
+    /// let turns = HandPath::new(vec![0.0, 2.0], turns, Interpolation::Linear)?;
+    /// let mut device = RecordedDevice::new(vec![rest])?.with_turns(turns);
+    /// device.read(1.0, &mut [PointState::at_rest(Vector::ZERO)])?;
+    /// let turn = device.read_turn()?.ok_or("it turns")?;
+    /// assert!((turn.orientation.angle() - 0.5).abs() < 1e-15);
+    /// assert!((turn.angular_velocity - Vector([0.0, 0.0, 0.5])).norm() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_turns(self, turns: HandPath<3>) -> Self {
+        Self { turns: Some(turns), ..self }
     }
 
     /// The same with what a real device can do.
@@ -61,6 +95,12 @@ impl<const D: usize> RecordedDevice<D> {
     #[must_use]
     pub fn forces(&self) -> &[Vector<f64, D>] {
         &self.forces
+    }
+
+    /// The torque written last [N·m].
+    #[must_use]
+    pub fn torque(&self) -> Vector<f64, 3> {
+        self.torque
     }
 
     /// The time at which the last path ends [s].
@@ -83,6 +123,12 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         for (point, path) in points.iter_mut().zip(&self.paths) {
             *point = path.state_at(time);
         }
+        self.turn = self.turns.as_ref().map(|turns| {
+            let at = |time| turned(&Rotation::identity(), turns.state_at(time).position);
+            let (before, after) = (at(time - INSTANT), at(time + INSTANT));
+            let angular_velocity = turn_between(&before, &after) * (0.5 / INSTANT);
+            TurnState { orientation: at(time), angular_velocity }
+        });
         Ok(())
     }
 
@@ -90,6 +136,15 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
         for (kept, force) in self.forces.iter_mut().zip(forces) {
             *kept = *force;
         }
+        Ok(())
+    }
+
+    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+        Ok(self.turn)
+    }
+
+    fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
+        self.torque = torque;
         Ok(())
     }
 }

@@ -6,7 +6,7 @@
 use palpate_field::{Point, Vector};
 
 use crate::servo::Servo;
-use crate::tool::{HeldTool, Tool};
+use crate::tool::HeldTool;
 
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ impl<const D: usize> Recorder<D> {
                 body: touch.body,
                 is_slipping: touch.is_slipping,
                 energy: servo.energy(point),
-                tool: servo.tool().map(Tool::held),
+                tool: servo.held_tool(),
                 evaluations: touch.evaluations,
                 cost_ns: times.cost_ns,
                 lateness_ns: times.lateness_ns,

@@ -140,7 +140,7 @@ impl Tally {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {
             budget = tool.options().budget;
-            self.tool.get_or_insert_default().tick(tool);
+            self.tool.get_or_insert_default().tick(tool, servo.given_torque());
         }
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;

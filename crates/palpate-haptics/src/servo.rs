@@ -11,16 +11,16 @@ use palpate_field::{Point, Pose, Vector};
 
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
-use crate::device::{DeviceProfile, PointState};
+use crate::device::{DeviceProfile, PointState, TurnState};
 use crate::error::{HapticsError, positive, positive_or_infinite};
 use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
-use crate::protection::{Port, Protection};
+use crate::protection::{Port, Protection, TurningPort};
 use crate::proxy::Probe;
 use crate::recorder::Energy;
 use crate::safety::{Accepted, SafetyReport};
-use crate::tool::Tool;
+use crate::tool::{HeldTool, Hung, Tool};
 use crate::workspace::WorkspaceMap;
 
 /// What a servo renders with, and how fast.
@@ -79,7 +79,7 @@ pub struct Servo<const D: usize> {
     bodies: Bodies<D>,
     points: Vec<ContactPoint<D>>,
     /// What is felt at the one point, if it is a tool with a shape.
-    tool: Option<Box<Tool<D>>>,
+    tool: Option<Box<Hung<D>>>,
     touches: Vec<Touch<D>>,
     events: Vec<Event>,
     /// The forces to write [N], in device coordinates.
@@ -128,7 +128,8 @@ impl<const D: usize> Servo<D> {
     }
 
     /// A servo that renders `bodies` to a tool with a shape, which hangs on the one contact point
-    /// of a device: its origin is at the device point, its axes are those of the device.
+    /// of a device: its origin is at the device point, its axes are those of the device, or of
+    /// what the hand holds where that [turns](Self::set_turn).
     ///
     /// Rate, rise time and largest force of the servo become the tool's; the probe is not used.
     /// The [touch](Self::touches) is that of the whole tool, with the origin for its proxy, the
@@ -165,12 +166,13 @@ impl<const D: usize> Servo<D> {
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
         let servo = Self::new(bodies, 1, options)?;
-        Ok(Self { tool: Some(Box::new(tool.of_servo(&options))), ..servo })
+        Ok(Self { tool: Some(Box::new(Hung::new(tool.of_servo(&options)))), ..servo })
     }
 
     /// Stands a safety chain between every contact point and a device; states are read and
     /// forces written in the coordinates of the device from now on. Returns what became of the
-    /// stiffness and damping of each body; of a tool with a shape, of what is felt through it.
+    /// stiffness and damping of each body; of a tool with a shape, of what is felt through it, and
+    /// where the device gives a torque, second, of the coupling's angular ones.
     ///
     /// A device without force feedback needs no protection; its forces are zero.
     ///
@@ -184,18 +186,23 @@ impl<const D: usize> Servo<D> {
         self.setting.map = protection.map;
         self.limit_force(protection.profile.max_force);
         if self.setting.options.max_force == 0.0 {
+            self.limit_torque(0.0);
             return Ok(Vec::new());
         }
         let rate = self.setting.options.rate;
         let (bodies, accepted) = match &mut self.tool {
             None => protection.accept(self.bodies.clone(), rate)?,
-            Some(tool) => protection.accept_tool(self.bodies.clone(), tool, rate)?,
+            Some(hung) => protection.accept_tool(self.bodies.clone(), &mut hung.tool, rate)?,
         };
         let profile = DeviceProfile {
             max_force: self.setting.options.max_force,
             ..protection.profile.clone()
         };
-        let port = Protection { profile, ..protection.clone() }.port(&accepted, rate)?;
+        let limited = Protection { profile, ..protection.clone() };
+        if let Some(hung) = &mut self.tool {
+            hung.port = limited.turning(&accepted, rate)?;
+        }
+        let port = limited.port(&accepted, rate)?;
         self.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         self.bodies = bodies;
         self.protection = Some(Box::new(protection.clone()));
@@ -211,7 +218,65 @@ impl<const D: usize> Servo<D> {
     /// The tool with a shape that is rendered to; none of contact points.
     #[must_use]
     pub fn tool(&self) -> Option<&Tool<D>> {
-        self.tool.as_deref()
+        self.tool.as_ref().map(|hung| &hung.tool)
+    }
+
+    /// The tool with a shape after the last tick, as it is held; none of contact points.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn held_tool(&self) -> Option<HeldTool<D>> {
+        self.tool.as_ref().map(|hung| hung.held())
+    }
+
+    /// How a device that turns is turned in the ticks to come: a tool with a shape turns with it.
+    /// `None`, as at first, of a device that does not turn: the tool keeps the device's axes.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// # Examples
+    ///
+    /// A rod of 10 cm is pressed onto the ground by 1 cm and turned by 0.1 rad: it stays flat, and
+    /// its coupling of 1 N·m/rad turns the hand back.
+    ///
+    /// ```
+    /// use palpate_field::{Rotation, Shape, Vector, kernel::HalfSpace};
+    /// use palpate_haptics::{
+    ///     PointState, Servo, ServoOptions, Shell, Tool, ToolOptions, TurnState,
+    /// };
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
+    /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
+    /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
+    /// let mut servo =
+    ///     Servo::with_tool(ground, Tool::new(rod, coupling)?, ServoOptions::default())?;
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
+    /// for tick in 1..=100 {
+    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
+    ///     servo.set_turn(Some(TurnState::at_rest(orientation)));
+    ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009]))]);
+    /// }
+    /// assert!((servo.torque() - Vector([0.0, 0.0, -0.1])).norm() < 1e-6);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+        if let Some(hung) = &mut self.tool {
+            hung.turn = turn;
+        }
+    }
+
+    /// The torque of the last tick, to be written to a device that turns [N·m]: in its
+    /// coordinates, about the device point. None of contact points.
+    #[must_use]
+    pub fn torque(&self) -> Vector<f64, 3> {
+        self.tool.as_ref().map_or(Vector::ZERO, |hung| hung.torque)
+    }
+
+    /// The torque of the last tick on a device that turns [N·m]; none on another.
+    pub(crate) fn given_torque(&self) -> Option<Vector<f64, 3>> {
+        self.tool.as_ref().filter(|hung| hung.turn.is_some()).map(|hung| hung.torque)
     }
 
     /// Guides every contact point.
@@ -248,6 +313,10 @@ impl<const D: usize> Servo<D> {
     /// What the safety chain of every contact point did so far; nothing if there is none.
     #[must_use]
     pub fn safety(&self) -> Vec<SafetyReport> {
+        let port = self.tool.as_ref().and_then(|hung| hung.port.as_ref());
+        if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
+            return vec![chain.report()];
+        }
         self.points.iter().filter_map(|point| point.port.as_ref()).map(Port::report).collect()
     }
 
@@ -256,6 +325,10 @@ impl<const D: usize> Servo<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn energy(&self, point: u32) -> Energy {
+        let turning = self.tool.as_ref().and_then(|hung| hung.port.as_ref());
+        if let Some(energy) = turning.and_then(TurningPort::energy) {
+            return energy;
+        }
         let port = self.points.get(point as usize).and_then(|point| point.port.as_ref());
         port.map_or(Energy::default(), Port::energy)
     }
@@ -267,11 +340,14 @@ impl<const D: usize> Servo<D> {
         self.setting.is_late = is_late;
     }
 
-    /// Stops all forces, or lets them rise again. It needs [protection](Self::protect).
+    /// Stops all forces and torques, or lets them rise again. It needs [protection](Self::protect).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn stop(&mut self, is_stopped: bool) {
         self.ports().for_each(|port| port.stop(is_stopped));
+        if let Some(chain) = self.tool.as_mut().and_then(|hung| hung.chain()) {
+            if is_stopped { chain.stop() } else { chain.release() }
+        }
     }
 
     fn ports(&mut self) -> impl Iterator<Item = &mut Port<D>> {
@@ -310,8 +386,8 @@ impl<const D: usize> Servo<D> {
         for point in &mut self.points {
             point.proxy.forget_bodies();
         }
-        if let Some(tool) = &mut self.tool {
-            tool.forget_bodies();
+        if let Some(hung) = &mut self.tool {
+            hung.tool.forget_bodies();
         }
         std::mem::replace(&mut self.bodies, bodies)
     }
@@ -324,10 +400,20 @@ impl<const D: usize> Servo<D> {
         // `min` ignores NaN.
         self.setting.options.max_force = self.setting.options.max_force.min(max_force).max(0.0);
         let limit = self.setting.options.max_force;
-        if let Some(tool) = &mut self.tool {
-            tool.limit_force(limit);
+        if let Some(hung) = &mut self.tool {
+            hung.limit_force(limit);
         }
         self.ports().for_each(|port| port.limit_force(limit));
+    }
+
+    /// Lowers the largest torque on a tool's device to `max_torque` [N·m]; never raises it. If
+    /// the servo is protected, a larger torque falls as fast as the device's torques may change.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn limit_torque(&mut self, max_torque: f64) {
+        if let Some(hung) = &mut self.tool {
+            hung.limit_torque(max_torque.max(0.0));
+        }
     }
 
     /// One tick: reads each point's state, moves its proxy, gives its force.
@@ -340,13 +426,13 @@ impl<const D: usize> Servo<D> {
     /// magnet in reach; for a tool, [`ToolOptions::budget`](crate::ToolOptions::budget) times.
     pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
         self.events.clear();
-        if let Some(tool) = &mut self.tool {
+        if let Some(hung) = &mut self.tool {
             let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
             for (index, ((point, touch), force)) in points.enumerate() {
-                let felt = (&mut **tool, &mut self.bodies);
-                *force = point.tick_tool(felt, &self.setting, state(states, index), touch);
+                let at = (point, &mut self.bodies);
+                *force = hung.tick(at, &self.setting, state(states, index), touch);
             }
-            let told = tool.events().iter().take(MOST_EVENTS);
+            let told = hung.tool.events().iter().take(MOST_EVENTS);
             self.events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
             self.tick += 1;
             return &self.touches;
@@ -377,8 +463,8 @@ impl<const D: usize> Servo<D> {
     ///
     /// Real-time: as [`step`](Self::step).
     pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
-        if let Some(tool) = &self.tool {
-            black_box(self.bodies.everything().look(tool.touch().pose.translation));
+        if let Some(hung) = &self.tool {
+            black_box(self.bodies.everything().look(hung.tool.touch().pose.translation));
             return;
         }
         let told = self.events.len();

@@ -36,6 +36,8 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     expected: Vec<PointState<D>>,
     /// The forces of an emergency, and of the end.
     no_forces: Vec<Vector<f64, D>>,
+    /// The device said how it is turned: it is written a torque.
+    is_turned: bool,
     tally: Tally,
 }
 
@@ -55,6 +57,9 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         points: usize,
     ) -> Self {
         servo.limit_force(device.profile().max_force);
+        if let Some(turning) = &device.profile().turning {
+            servo.limit_torque(turning.max_torque);
+        }
         let tally = Tally::new(points, servo.options().rate);
         Self {
             servo,
@@ -64,6 +69,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             states: vec![PointState::at_rest(Vector::ZERO); points],
             expected: vec![PointState::at_rest(Vector::ZERO); points],
             no_forces: vec![Vector::ZERO; points],
+            is_turned: false,
             tally,
         }
     }
@@ -78,7 +84,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
-    /// Runs, and whatever ends it, writes zero forces last.
+    /// Runs, and whatever ends it, writes zero forces and no torque last.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
@@ -89,6 +95,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         // A device that is lost takes no force, one that panics must not take the servo with
         // it; nothing is left to do about either.
         let zero = AssertUnwindSafe(|| self.device.write(&self.no_forces));
+        let _ = catch_unwind(zero);
+        let zero = AssertUnwindSafe(|| self.device.write_torque(Vector::ZERO));
         let _ = catch_unwind(zero);
         if let Some(end) = &self.end {
             end.finish();
@@ -138,11 +146,21 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             end.receive(self.servo);
         }
         self.device.read(time_s, &mut self.states)?;
+        let turn = self.device.read_turn()?;
+        self.is_turned |= turn.is_some();
+        self.servo.set_turn(turn);
         let start = clock.now();
         self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
         let is_stopped = self.end.as_ref().is_some_and(|end| end.is_stopped());
         self.device.write(if is_stopped { &self.no_forces } else { self.servo.forces() })?;
+        if self.is_turned {
+            self.device.write_torque(if is_stopped {
+                Vector::ZERO
+            } else {
+                self.servo.torque()
+            })?;
+        }
         Ok(nanoseconds(cost))
     }
 

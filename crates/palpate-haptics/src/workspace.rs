@@ -9,6 +9,7 @@ use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::device::PointState;
 use crate::error::{HapticsError, positive};
+use crate::rotation::{in_place, in_space};
 
 /// From device to world coordinates and back: `world = s R device + t`.
 ///
@@ -16,6 +17,11 @@ use crate::error::{HapticsError, positive};
 /// is to feel the newtons of the world. So a way of 1 m at the device is `s` m in a spring of
 /// the world, which is felt as `s` times as stiff: with `F = K s x`, `K_device = s K_world`.
 /// What a device can render limits the stiffness at the device.
+///
+/// Angles are the same in both, so an angular velocity is turned alone. The arm on which a force
+/// acts at the device is `1/s` of that in the world, and so is its torque: what force and torque
+/// do at the device is `1/s` of what they do in the world, `F·v + τ·ω`, and nothing is given that
+/// was not taken.
 ///
 /// # Examples
 ///
@@ -163,6 +169,41 @@ impl<const D: usize> WorkspaceMap<D> {
         if self.is_identity { force } else { self.world_from_device.transform_vector(force) }
     }
 
+    /// An orientation at the device as one in the world. Real-time.
+    #[must_use]
+    pub fn orientation_to_world(&self, orientation: Rotation<D>) -> Rotation<D> {
+        self.world_from_device.rotation * orientation
+    }
+
+    /// An angular velocity at the device as one in the world [rad/s]. Real-time.
+    #[must_use]
+    pub fn spin_to_world(&self, spin: Vector<f64, 3>) -> Vector<f64, 3> {
+        about_axes(&self.world_from_device, spin)
+    }
+
+    /// A torque of the world as one at the device [N·m]: `1/s` of it. Real-time.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Vector};
+    /// use palpate_haptics::WorkspaceMap;
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let map = WorkspaceMap::<3>::new(Pose::identity(), 4.0)?;
+    /// assert_eq!(map.torque_to_device(Vector([0.0, 2.0, 0.0])), Vector([0.0, 0.5, 0.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn torque_to_device(&self, torque: Vector<f64, 3>) -> Vector<f64, 3> {
+        about_axes(&self.device_from_world, torque) * (1.0 / self.scale)
+    }
+
+    /// A torque at the device as one of the world [N·m]: `s` times as much. Real-time.
+    #[must_use]
+    pub fn torque_to_world(&self, torque: Vector<f64, 3>) -> Vector<f64, 3> {
+        about_axes(&self.world_from_device, torque) * self.scale
+    }
+
     /// What a stiffness of the world is at the device [N/m]: `s` times as much.
     #[must_use]
     pub fn device_stiffness(&self, world_stiffness: f64) -> f64 {
@@ -175,6 +216,11 @@ impl<const D: usize> WorkspaceMap<D> {
     pub fn device_damping(&self, world_damping: f64) -> f64 {
         self.scale * world_damping
     }
+}
+
+/// What turns, in other coordinates: in the plane it is about z, whatever the pose.
+fn about_axes<const D: usize>(pose: &Pose<D>, v: Vector<f64, 3>) -> Vector<f64, 3> {
+    if D < 3 { v } else { in_space(pose.transform_vector(in_place(v))) }
 }
 
 #[cfg(test)]
@@ -214,6 +260,23 @@ mod tests {
         let moved = map.point_to_world(at + way) - map.point_to_world(at);
         let state = map.state_to_world(PointState { position: at, velocity: way });
         assert!((moved - state.velocity).norm() < 1e-14);
+    }
+
+    #[test]
+    fn the_power_at_the_device_is_that_of_the_world_over_the_scale() {
+        let map = map();
+        let (velocity, spin) = (Vector([0.3, -0.1, 0.2]), Vector([-1.0, 0.5, 2.0]));
+        let (force, torque) = (Vector([1.0, 2.0, -0.5]), Vector([0.1, 0.3, -0.2]));
+        let power =
+            force.dot(map.velocity_to_world(velocity)) + torque.dot(map.spin_to_world(spin));
+        let at_device =
+            map.force_to_device(force).dot(velocity) + map.torque_to_device(torque).dot(spin);
+        assert!((2.5 * at_device - power).abs() < 1e-14);
+        assert!((map.torque_to_world(map.torque_to_device(torque)) - torque).norm() < 1e-15);
+        let quarter = Rotation::from_angle(0.5).unwrap();
+        let planar = WorkspaceMap::new(Pose::rotation(quarter), 2.0).unwrap();
+        assert_eq!(planar.spin_to_world(spin), spin);
+        assert_eq!(planar.orientation_to_world(quarter), quarter * quarter);
     }
 
     #[test]

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, Point, Vector};
-use palpate::haptics::{Energy, Recorder, TraceRow};
+use palpate::haptics::{Energy, HeldTool, Recorder, TraceRow};
 use palpate::plot::{
     Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Sampling,
     Series,
@@ -112,16 +112,27 @@ fn with_tools<const D: usize>(bounds: Aabb<D>, rows: &[TraceRow<D>]) -> Aabb<D> 
     origins.map_or(bounds, |origins| bounds.union(&origins))
 }
 
-/// The torque of a tool over time; none of contact points.
+/// The torque of a tool over time, and what a device that turns gave of it; none of contact
+/// points.
 fn torques<const D: usize>(rows: &[TraceRow<D>]) -> Result<Option<Chart>, PlotError> {
     let every = rows.len().div_ceil(MOST_POINTS).max(1);
-    let torque = |row: &TraceRow<D>| Some([row.time_s, 1e3 * row.tool?.torque.norm()]);
-    let torques: Vec<_> = rows.iter().step_by(every).filter_map(torque).collect();
-    if torques.is_empty() {
+    let of = |torque: fn(&HeldTool<D>) -> Option<Vector<f64, 3>>| {
+        let torque = |row: &TraceRow<D>| {
+            Some([row.time_s, 1e3 * row.tool.as_ref().and_then(torque)?.norm()])
+        };
+        rows.iter().step_by(every).filter_map(torque).collect::<Vec<_>>()
+    };
+    let (wanted, given) = (of(|tool| Some(tool.torque)), of(|tool| tool.given));
+    if wanted.is_empty() {
         return Ok(None);
     }
     let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("torque", "mN·m"));
-    Ok(Some(chart.with_series(Series::new("torque", torques)?)))
+    let chart = chart.with_series(Series::new("torque", wanted)?);
+    Ok(Some(if given.is_empty() {
+        chart
+    } else {
+        chart.with_series(Series::new("given to the hand", given)?.with_dash(Dash::Dashed))
+    }))
 }
 
 /// The energies of all contact points together over time.

@@ -32,10 +32,10 @@ pub(super) fn map<const D: usize>(
     map.map_err(Failure::input)
 }
 
-/// The device, with a hand on each path of the world.
+/// The device, with a hand on each path of the world, which turns one that turns by `turns`.
 pub(super) fn device<const D: usize>(
     choice: &DeviceChoice,
-    paths: Vec<HandPath<D>>,
+    (paths, turns): (Vec<HandPath<D>>, Option<HandPath<3>>),
     map: &WorkspaceMap<D>,
 ) -> Result<Box<dyn Device<D> + Send>, HapticsError> {
     let paths = paths.iter().map(|path| at_device(path, map)).collect::<Result<Vec<_>, _>>()?;
@@ -43,8 +43,12 @@ pub(super) fn device<const D: usize>(
         DeviceChoice::Recorded => Box::new(RecordedDevice::new(paths)?),
         DeviceChoice::Glove => Box::new(Glove::new(paths)?),
         DeviceChoice::Simulated(profile) => {
-            let hands = paths.into_iter().map(Hand::new).collect();
-            Box::new(SimulatedDevice::new(profile.clone(), hands)?)
+            let hand = |path| match &turns {
+                Some(turns) => Hand::new(path).with_turns(turns.clone()),
+                None => Hand::new(path),
+            };
+            let hands = paths.into_iter().map(hand).collect();
+            Box::new(SimulatedDevice::new((**profile).clone(), hands)?)
         }
     })
 }

@@ -74,7 +74,9 @@ where
     let choice = match (&options.device, &options.scene) {
         (Some(choice), _) => choice.clone(),
         (None, Some(_)) => DeviceChoice::Recorded,
-        (None, None) => DeviceChoice::Simulated(profile_named(SHOWN).map_err(Failure::input)?),
+        (None, None) => {
+            DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
+        }
     };
     let servo_options =
         servo_options(named.tool.as_ref(), (options, &choice)).map_err(Failure::input)?;
@@ -90,16 +92,22 @@ where
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
     let contacts = paths.len();
+    let turns = match &tool {
+        Some(_) if options.path.is_none() => Some(tool::turns(duration)?),
+        _ => None,
+    };
     let map = held::map((scene, tool.as_ref()), &choice)?;
     let mut servo = bodies(scene, options)
         .and_then(|bodies| match tool {
-            Some(held) => Servo::with_tool(bodies, held.tool, servo_options),
+            Some(held) => {
+                Servo::with_tool(bodies, held.tool_for(&choice, map.scale())?, servo_options)
+            }
             None => Servo::new(bodies, contacts, servo_options),
         })
         .map_err(Failure::input)?;
     let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
     servo.guide(&guides.map_err(Failure::input)?);
-    let mut device = held::device(&choice, paths, &map).map_err(Failure::input)?;
+    let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
     let protection = Protection {
         map,
         acceptance: if options.strict { Acceptance::Strict } else { Acceptance::Scaled },
@@ -149,6 +157,9 @@ where
         json["device"] = device.profile().name.as_ref().into();
         if servo.tool().is_some() {
             json["coupling"] = serde_json::to_value(accepted.first())?;
+            if let Some(turning) = accepted.get(1) {
+                json["angular_coupling"] = serde_json::to_value(turning)?;
+            }
         } else {
             json["bodies"] = accepted_as_json(scene, &accepted)?;
         }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use palpate::haptics::{
     Accepted, Body, DeviceProfile, Ending, PassivityReport, Progress, Rule, RunReport,
-    SafetyReport, Servo, Surface, ToolReport,
+    SafetyReport, Servo, Surface, ToolReport, TurningReport,
 };
 
 use crate::times::{quantiles, write_histogram};
@@ -82,7 +82,22 @@ fn write_report<const D: usize>(
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
     writeln!(out, "  device         {}", profile.name)?;
-    write_accepted(out, accepted, report.tool.is_some())?;
+    match (&report.tool, accepted.split_first()) {
+        (Some(_), Some((coupling, turning))) => {
+            write_accepted(
+                out,
+                std::slice::from_ref(coupling),
+                "coupling and bodies made softer",
+            )?;
+            write_accepted(out, turning, "coupling made softer about axes")?;
+        }
+        _ => {
+            let count = accepted.iter().filter(|accepted| accepted.factor < 1.0).count();
+            let bodies = accepted.len();
+            let what = format!("{count} of {bodies} bodies made softer, at most");
+            write_accepted(out, accepted, &what)?;
+        }
+    }
     match &report.ending {
         Ending::Finished => {}
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
@@ -140,18 +155,13 @@ fn write_report<const D: usize>(
     Ok(())
 }
 
-/// What became of bodies, or of the coupling of a tool, that the device cannot render, and why.
-fn write_accepted(out: &mut String, accepted: &[Accepted], has_tool: bool) -> std::fmt::Result {
-    let scaled = || accepted.iter().filter(|accepted| accepted.factor < 1.0);
-    let Some(softest) = scaled().min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
+/// What was made softer as the device cannot render it, and why.
+fn write_accepted(out: &mut String, accepted: &[Accepted], what: &str) -> std::fmt::Result {
+    let scaled = accepted.iter().filter(|accepted| accepted.factor < 1.0);
+    let Some(softest) = scaled.min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
         return Ok(());
     };
     let condition = softest.rule.map_or("", Rule::condition);
-    let what = if has_tool {
-        "coupling and bodies made softer".to_owned()
-    } else {
-        format!("{} of {} bodies made softer, at most", scaled().count(), accepted.len())
-    };
     let factor = softest.factor;
     writeln!(out, "                 {what} {factor:.3} times as stiff: {condition}")?;
     if softest.assumed.contains(&"least_damping") {
@@ -162,7 +172,11 @@ fn write_accepted(out: &mut String, accepted: &[Accepted], has_tool: bool) -> st
 
 /// What a tool felt beside force and depth.
 fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
-    writeln!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
+    write!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
+    match tool.largest_torque_written {
+        Some(written) => writeln!(out, ", {:.3} mN·m written to the device", 1e3 * written)?,
+        None => writeln!(out)?,
+    }
     writeln!(
         out,
         "  contacts       {:.2} on average in contact, {} at most",
@@ -197,6 +211,9 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
         energy(|p| p.dissipated),
     )?;
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
+    let turns = |of: fn(&TurningReport) -> u64| -> u64 {
+        safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
+    };
     let stages = [
         ("passivity", ticks(|point| point.passivity.effect.ticks)),
         ("force rate", ticks(|point| point.slew.ticks)),
@@ -205,6 +222,9 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
         ("not a number", ticks(|point| point.guard.ticks)),
         ("ramp", ticks(|point| point.ramp.ticks)),
         ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
+        ("torque rate", turns(|turning| turning.slew.ticks)),
+        ("largest torque", turns(|turning| turning.torque_limit.ticks)),
+        ("lasting torque", turns(|turning| turning.continuous.effect.ticks)),
     ];
     let acted: Vec<_> = stages
         .iter()

@@ -3,16 +3,26 @@
 
 //! The tool of a scene, if it has a shape, and where the built-in hand takes it.
 
-use palpate::field::{Aabb, Rotation, Shape};
-use palpate::haptics::{HandPath, Tool, Tour};
+use palpate::field::{Aabb, Rotation, Shape, Vector};
+use palpate::haptics::{HandPath, HapticsError, Interpolation, Tool, Tour};
 use palpate::scene::BuiltScene;
 
-use crate::arguments::FeelOptions;
+use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::input::{self, Named};
 use crate::outcome::Failure;
 
 /// Points of the tool that the built-in hand thinks of: those of the coarsest shell.
 const POINTS: usize = 16;
+
+/// How far the built-in hand turns the tool about an axis, to and fro [rad]: enough to be felt,
+/// and not so much that the tour leads it elsewhere.
+const SWING: f64 = 0.15;
+
+/// In what times it does, about each axis [s]: none a multiple of another.
+const SWINGS: [f64; 3] = [3.1, 4.3, 5.7];
+
+/// Points of that path a second.
+const SWING_POINTS: f64 = 20.0;
 
 /// A tool with a shape, and where its origin cannot be.
 pub(super) struct Held<const D: usize> {
@@ -51,6 +61,22 @@ pub(super) fn of_scene<const D: usize>(
 }
 
 impl<const D: usize> Held<D> {
+    /// The tool with the torque that a device gives, if it does: arms in the world are `scale`
+    /// times those at the device.
+    pub(super) fn tool_for(
+        self,
+        choice: &DeviceChoice,
+        scale: f64,
+    ) -> Result<Tool<D>, HapticsError> {
+        let DeviceChoice::Simulated(profile) = choice else { return Ok(self.tool) };
+        match &profile.turning {
+            Some(turning) if turning.max_torque > 0.0 => {
+                self.tool.with_max_torque(scale * turning.max_torque)
+            }
+            _ => Ok(self.tool),
+        }
+    }
+
     /// A tour of `duration` [s] that presses the tool as deep as it would a probe.
     pub(super) fn path(&self, duration: f64) -> Result<HandPath<D>, Failure> {
         let radius = self.tool.shell().points().first().map_or(0.0, |point| point.radius);
@@ -59,4 +85,15 @@ impl<const D: usize> Held<D> {
             .and_then(|tour| tour.over(&self.obstacle))
             .map_err(Failure::input)
     }
+}
+
+/// How the built-in hand turns a device that turns, for `duration` [s].
+pub(super) fn turns(duration: f64) -> Result<HandPath<3>, Failure> {
+    let steps = (SWING_POINTS * duration).ceil().max(1.0) as usize;
+    let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();
+    let turn = |time: &f64| {
+        Vector(SWINGS.map(|period| SWING * (std::f64::consts::TAU * time / period).sin()))
+    };
+    let turns = times.iter().map(turn).collect();
+    HandPath::new(times, turns, Interpolation::Smooth).map_err(Failure::input)
 }

@@ -103,12 +103,24 @@ impl<const D: usize> Control<D> {
         Ok(())
     }
 
+    /// Lowers the largest torque on a tool's device to `max_torque` [N·m]; never raises it.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if it is negative or not finite.
+    pub fn limit_torque(&mut self, max_torque: f64) -> Result<(), HapticsError> {
+        let max_torque = not_negative("max_torque", max_torque, "N·m")?;
+        self.edit(|edits| edits.max_torque = edits.max_torque.min(max_torque));
+        Ok(())
+    }
+
     /// Drops what the servo no longer renders; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
             edits.bodies = None;
             edits.poses.clear();
             edits.max_force = f64::INFINITY;
+            edits.max_torque = f64::INFINITY;
         });
     }
 

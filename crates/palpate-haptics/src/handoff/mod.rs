@@ -21,7 +21,6 @@ use exchange::{Medium, Native, counter, latest};
 use crate::bodies::Bodies;
 use crate::live::{Progress, Snapshot};
 use crate::servo::Servo;
-use crate::tool::Tool;
 
 /// What a hand-off has room for; the servo allocates nothing later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +80,7 @@ pub fn handoff<const D: usize>(
     let snapshot = Snapshot {
         progress: Progress::default(),
         touches: servo.touches().to_vec(),
-        tool: servo.tool().map(Tool::held),
+        tool: servo.held_tool(),
         reactions: vec![crate::Reaction::NONE; most_bodies],
         events_lost: 0,
     };
@@ -117,11 +116,14 @@ struct Edits<const D: usize> {
     poses: Vec<Option<Pose<D>>>,
     /// The largest force on a contact point [N].
     max_force: f64,
+    /// The largest torque on a tool's device [N·m].
+    max_torque: f64,
 }
 
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
-        Self { bodies: None, poses: Vec::new(), max_force: f64::INFINITY }
+        let none = f64::INFINITY;
+        Self { bodies: None, poses: Vec::new(), max_force: none, max_torque: none }
     }
 }
 

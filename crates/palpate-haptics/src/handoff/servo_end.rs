@@ -13,7 +13,6 @@ use super::{Edits, Flags};
 use crate::event::Event;
 use crate::live::{Progress, Snapshot};
 use crate::servo::Servo;
-use crate::tool::Tool;
 
 /// Receives edits for a servo and publishes what it does. From [`handoff`](crate::handoff).
 pub struct ServoEnd<const D: usize> {
@@ -46,6 +45,7 @@ impl<const D: usize> ServoEnd<D> {
             }
         }
         servo.limit_force(edits.max_force);
+        servo.limit_torque(edits.max_torque);
         self.receiver.give_back(parcel);
     }
 
@@ -75,7 +75,7 @@ impl<const D: usize> ServoEnd<D> {
         self.writer.publish(|snapshot| {
             snapshot.progress = *progress;
             snapshot.events_lost = events_lost;
-            snapshot.tool = servo.tool().map(Tool::held);
+            snapshot.tool = servo.held_tool();
             refill(&mut snapshot.touches, servo.touches());
             refill(&mut snapshot.reactions, servo.reactions());
         });

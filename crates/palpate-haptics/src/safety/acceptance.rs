@@ -10,8 +10,9 @@
 
 use std::borrow::Cow;
 
+use super::limits::Limits;
 use crate::device::DeviceProfile;
-use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
+use crate::error::{HapticsError, positive};
 use crate::impedance::Impedance;
 
 /// What is done with a material that a device cannot render.
@@ -39,6 +40,14 @@ pub enum Rule {
     MaxStiffness,
     /// The device's largest damping.
     MaxDamping,
+    /// `κ ≤ 2 (b − |β|) / T`: passivity about axes.
+    AngularPassivity,
+    /// `κ ≤ 2 f_c / Δ`: quantisation about axes.
+    AngularQuantisation,
+    /// The device's largest angular stiffness.
+    MaxAngularStiffness,
+    /// The device's largest angular damping.
+    MaxAngularDamping,
 }
 
 impl Rule {
@@ -50,6 +59,10 @@ impl Rule {
             Self::Quantisation => "K ≤ 2 f_c / Δ",
             Self::MaxStiffness => "K ≤ the device's largest stiffness",
             Self::MaxDamping => "B ≤ the device's largest damping",
+            Self::AngularPassivity => "κ ≤ 2 (b − |β|) / T",
+            Self::AngularQuantisation => "κ ≤ 2 f_c / Δ about axes",
+            Self::MaxAngularStiffness => "κ ≤ the device's largest angular stiffness",
+            Self::MaxAngularDamping => "β ≤ the device's largest angular damping",
         }
     }
 }
@@ -74,6 +87,10 @@ impl Rule {
 /// largest stiffness and damping of a profile are those at 1 kHz, and taken as they stand at any
 /// rate.
 ///
+/// What a device that turns renders about its axes follows the same rules, with the numbers of
+/// its [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
+/// the angular damping `β` [N·m·s/rad] for `B`.
+///
 /// # Examples
 ///
 /// ```
@@ -90,12 +107,12 @@ impl Rule {
 /// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Accepted {
-    /// The material to render, in the world.
+    /// The material to render, in the world; about axes, angular numbers.
     #[serde(skip)]
     pub impedance: Impedance,
-    /// Its stiffness at the device [N/m].
+    /// Its stiffness at the device [N/m]; about axes [N·m/rad].
     pub device_stiffness: f64,
-    /// Its damping at the device [N·s/m].
+    /// Its damping at the device [N·s/m]; about axes [N·m·s/rad].
     pub device_damping: f64,
     /// What stiffness and damping were multiplied by, in (0, 1].
     pub factor: f64,
@@ -120,17 +137,7 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, HapticsError> {
-        let (stiffness, damping) = at_device(impedance, scale)?;
-        let limits = limits(stiffness, damping, device, rate)?;
-        let (mut factor, mut rule) = (1.0, None);
-        for (limit, of) in limits {
-            if limit < factor {
-                (factor, rule) = (limit, Some(of));
-            }
-        }
-        let scaled =
-            if rule.is_some() { impedance_times(impedance, factor)? } else { impedance };
-        Ok(Self { factor, rule, ..Self::as_it_is(scaled, scale, device)? })
+        Self::of((impedance, scale), &Limits::along(device), Acceptance::Scaled, rate)
     }
 
     /// As [`new`](Self::new), but refuses what would have to be scaled.
@@ -159,33 +166,43 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, HapticsError> {
-        let accepted = Self::new(impedance, scale, device, rate)?;
-        match accepted.rule {
-            None => Ok(accepted),
-            Some(rule) => {
-                let (stiffness, damping) = at_device(impedance, scale)?;
-                let (factor, condition) = (accepted.factor, rule.condition());
-                Err(HapticsError::MaterialRefused { stiffness, damping, condition, factor })
-            }
-        }
+        Self::of((impedance, scale), &Limits::along(device), Acceptance::Strict, rate)
     }
 
-    /// The material as it is wanted, whatever the device renders.
-    pub(crate) fn as_it_is(
-        impedance: Impedance,
-        scale: f64,
-        device: &DeviceProfile,
+    /// What becomes of `impedance`, if lengths in the world, or torques, are `scale` times those
+    /// at a device of these limits.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new) or, where refused, [`strict`](Self::strict).
+    pub(crate) fn of(
+        (impedance, scale): (Impedance, f64),
+        limits: &Limits,
+        acceptance: Acceptance,
+        rate: f64,
     ) -> Result<Self, HapticsError> {
+        let (stiffness, damping) = at_device(impedance, scale)?;
+        let (mut factor, mut rule) = (1.0, None);
+        if acceptance != Acceptance::AsItIs {
+            for (limit, of) in factors(stiffness, damping, limits, rate)? {
+                if limit < factor {
+                    (factor, rule) = (limit, Some(of));
+                }
+            }
+        }
+        if let (Acceptance::Strict, Some(rule)) = (acceptance, rule) {
+            let condition = rule.condition();
+            return Err(if limits.is_turning {
+                HapticsError::TurningRefused { stiffness, damping, condition, factor }
+            } else {
+                HapticsError::MaterialRefused { stiffness, damping, condition, factor }
+            });
+        }
+        let impedance =
+            if rule.is_some() { impedance_times(impedance, factor)? } else { impedance };
         let (device_stiffness, device_damping) = at_device(impedance, scale)?;
-        let assumed = device.assumed.clone();
-        Ok(Self {
-            impedance,
-            device_stiffness,
-            device_damping,
-            factor: 1.0,
-            rule: None,
-            assumed,
-        })
+        let assumed = limits.assumed.clone();
+        Ok(Self { impedance, device_stiffness, device_damping, factor, rule, assumed })
     }
 }
 
@@ -201,31 +218,29 @@ fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, Hapti
 }
 
 /// The largest factor that each rule allows. Infinite where it does not bind.
-fn limits(
+fn factors(
     stiffness: f64,
     damping: f64,
-    device: &DeviceProfile,
+    limits: &Limits,
     rate: f64,
 ) -> Result<[(f64, Rule); 4], HapticsError> {
     let period = 1.0 / positive("rate", rate, "Hz")?;
-    let least = positive_or_infinite("least_damping", device.least_damping, "N·s/m")?;
-    let max_stiffness = positive_or_infinite("max_stiffness", device.max_stiffness, "N/m")?;
-    let step = not_negative("encoder_step", device.encoder_step, "m")?;
+    let least = limits.least_damping.positive()?;
+    let max_stiffness = limits.max_stiffness.positive()?;
+    let step = limits.encoder_step.not_negative()?;
     let quantisation = if step > 0.0 {
-        2.0 * positive_or_infinite("friction", device.friction, "N")? / (step * stiffness)
+        2.0 * limits.friction.positive()? / (step * stiffness)
     } else {
         f64::INFINITY
     };
-    let of_damping = if damping > 0.0 {
-        positive_or_infinite("max_damping", device.max_damping, "N·s/m")? / damping
-    } else {
-        f64::INFINITY
-    };
+    let of_damping =
+        if damping > 0.0 { limits.max_damping.positive()? / damping } else { f64::INFINITY };
+    let [passive, seen, stiff, damped] = limits.rules;
     Ok([
-        (least / (0.5 * period * stiffness + damping), Rule::Passivity),
-        (quantisation, Rule::Quantisation),
-        (max_stiffness / stiffness, Rule::MaxStiffness),
-        (of_damping, Rule::MaxDamping),
+        (least / (0.5 * period * stiffness + damping), passive),
+        (quantisation, seen),
+        (max_stiffness / stiffness, stiff),
+        (of_damping, damped),
     ])
 }
 

@@ -5,14 +5,14 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::Vector;
+use super::passivity::Directed;
 
 /// What a stage of the safety chain did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Effect {
     /// Ticks in which it changed the force.
     pub ticks: u64,
-    /// The largest change of the force [N], of those that are finite.
+    /// The largest change of the force [N], or of the torque [N·m], of those that are finite.
     pub largest: f64,
 }
 
@@ -20,11 +20,7 @@ impl Effect {
     /// Counts what a stage made of a force; returns that.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn count<const D: usize>(
-        &mut self,
-        before: Vector<f64, D>,
-        after: Vector<f64, D>,
-    ) -> Vector<f64, D> {
+    pub(crate) fn count<V: Directed>(&mut self, before: V, after: V) -> V {
         // NaN differs from itself.
         if before != after {
             self.ticks += 1;

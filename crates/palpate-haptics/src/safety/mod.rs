@@ -6,15 +6,18 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod acceptance;
+mod channel;
 mod continuous;
 mod effect;
 mod finite;
 mod force_limit;
+mod limits;
 mod passivity;
 mod ramp;
 mod report;
 mod slew;
 mod watchdog;
+mod wrench;
 
 use std::num::NonZeroU32;
 
@@ -23,18 +26,15 @@ use palpate_field::{Point, Vector};
 pub use acceptance::{Acceptance, Accepted, Rule};
 pub use effect::Effect;
 pub use passivity::PassivityReport;
-pub use report::{ContinuousReport, SafetyReport, WatchdogReport};
+pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 
-use continuous::ContinuousLimit;
-use force_limit::ForceLimit;
-use passivity::{Passivity, PassivityOptions};
-use ramp::Ramp;
-use report::Effects;
-use slew::SlewLimit;
-use watchdog::Watchdog;
+use channel::{Channel, Moment};
+pub(crate) use limits::Limits;
+use passivity::{Passivity, PassivityOptions, Seen};
+pub(crate) use wrench::{Both, WrenchChain, WrenchState};
 
 use crate::device::DeviceProfile;
-use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
+use crate::error::{HapticsError, not_negative, positive};
 use crate::impedance::Impedance;
 
 /// One contact point in a tick, as its safety chain sees it. Device coordinates, as it is the
@@ -161,16 +161,8 @@ impl SafetyOptions {
 #[derive(Clone, Debug)]
 pub struct SafetyChain<const D: usize> {
     accepted: Accepted,
-    passivity: Passivity<D>,
-    slew: SlewLimit<D>,
-    force_limit: ForceLimit,
-    continuous: ContinuousLimit,
-    ramp: Ramp,
-    watchdog: Watchdog,
-    is_stopped: bool,
-    /// The fastest change once more, as what comes after the first may change the force too.
-    closing: SlewLimit<D>,
-    effects: Effects,
+    passivity: Passivity<Vector<f64, D>>,
+    channel: Channel<D>,
 }
 
 impl<const D: usize> SafetyChain<D> {
@@ -188,40 +180,23 @@ impl<const D: usize> SafetyChain<D> {
     ) -> Result<Self, HapticsError> {
         let rate = positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
-        let accepted = match options.acceptance {
-            Acceptance::Scaled => Accepted::new(impedance, scale, device, rate),
-            Acceptance::Strict => Accepted::strict(impedance, scale, device, rate),
-            Acceptance::AsItIs => Accepted::as_it_is(impedance, scale, device),
-        }?;
-        let limit = |parameter, value, unit| positive_or_infinite(parameter, value, unit);
-        let damping = limit("least_damping", device.least_damping, "N·s/m")?;
+        let limits = Limits::along(device);
+        let accepted = Accepted::of((impedance, scale), &limits, options.acceptance, rate)?;
+        let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {
             // A device that loses any energy at once is passive whatever it renders.
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness: accepted.device_stiffness,
             damping,
-            mass: not_negative("mass", device.mass, "kg")?,
-            max_rate: limit("max_force_rate", device.max_force_rate, "N/s")?,
+            mass: limits.mass.not_negative()?,
+            max_rate: limits.max_force_rate.positive()?,
             reserve: not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
-        let slew = SlewLimit::new(passivity.max_rate, rate);
-        let continuous_force = limit("continuous_force", device.continuous_force, "N")?;
-        let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
-        let rise_time = not_negative("rise_time", options.rise_time, "s")?;
-        let fall_time = not_negative("fall_time", options.fall_time, "s")?;
-        let times = (rise_time, fall_time);
         Ok(Self {
             accepted,
             passivity: Passivity::new(passivity),
-            slew,
-            force_limit: ForceLimit::new(limit("max_force", device.max_force, "N")?),
-            continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            ramp: Ramp::new(0.0, times, rate),
-            watchdog: Watchdog::new(options.late_ticks, Ramp::new(1.0, times, rate)),
-            is_stopped: false,
-            closing: slew,
-            effects: Effects::default(),
+            channel: Channel::new(&limits, &options, rate)?,
         })
     }
 
@@ -236,30 +211,14 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
-        self.effects.ticks += 1;
-        // What is not a number reaches no stage that remembers; the guard answers for it below.
+        // What is not a number reaches no stage that remembers; the guard answers for it.
         let is_sound = finite::is_sound(wanted, state);
-        let observed = if is_sound {
-            self.passivity.limit(wanted, state)
-        } else {
-            self.passivity.lose();
-            wanted
-        };
-        let all = with_free(observed, state.free_force);
-        let force = if is_sound { self.limited(all) } else { all };
-        let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
-        let force = self.faded(force, state);
-        if !is_sound || self.is_stopped {
-            // To zero at once: the exceptions of the fastest change.
-            self.slew.restart();
-            self.closing.restart();
-        }
-        let closed = self.closing.limit(force);
-        let force = self.effects.slew.count(force, closed);
-        self.continuous.written(force);
-        // What the stages left of all of it, they left of the part that is observed.
-        let left = if force == all { 1.0 } else { force.dot(all) / all.dot(all) };
-        self.passivity.written(if left == 1.0 { observed } else { observed * left });
+        let PortState { position, velocity, is_late, wants_ramp, .. } = *state;
+        let seen = Seen { position, velocity, wants_ramp };
+        let observed = self.passivity.observed(wanted, &seen, is_sound);
+        let moment = Moment { is_sound, is_late, wants_ramp };
+        let (force, left) = self.channel.step((observed, state.free_force), &moment);
+        self.passivity.written(left);
         force
     }
 
@@ -268,31 +227,27 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
-        self.force_limit.lower(max_force);
+        self.channel.lower_limit(max_force);
     }
 
     /// Stops: no force until [`release`](Self::release).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn stop(&mut self) {
-        self.effects.stops += u64::from(!self.is_stopped);
-        self.is_stopped = true;
+        self.channel.stop();
     }
 
     /// Ends an emergency stop; the force rises from nothing.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn release(&mut self) {
-        if self.is_stopped {
-            self.ramp.restart();
-        }
-        self.is_stopped = false;
+        self.channel.release();
     }
 
     /// `true` between [`stop`](Self::stop) and [`release`](Self::release).
     #[must_use]
     pub fn is_stopped(&self) -> bool {
-        self.is_stopped
+        self.channel.is_stopped()
     }
 
     /// What the passivity stage saw and did so far.
@@ -306,31 +261,6 @@ impl<const D: usize> SafetyChain<D> {
     /// What every stage did so far.
     #[must_use]
     pub fn report(&self) -> SafetyReport {
-        self.effects.report(self)
+        SafetyReport::of(&self.accepted, self.passivity.report(), &self.channel)
     }
-
-    /// What the device's limits leave of a force.
-    fn limited(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
-        let effects = &mut self.effects;
-        let force = effects.slew.count(force, self.slew.limit(force));
-        let force = effects.force_limit.count(force, self.force_limit.limit(force));
-        effects.continuous.count(force, self.continuous.limit(force))
-    }
-
-    /// What ramp, watchdog and emergency stop leave of a force.
-    fn faded(&mut self, force: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
-        if state.wants_ramp {
-            self.ramp.restart();
-        }
-        let effects = &mut self.effects;
-        let force = effects.ramp.count(force, force * self.ramp.step(true));
-        let force = effects.watchdog.count(force, force * self.watchdog.step(state.is_late));
-        let left = if self.is_stopped { Vector::ZERO } else { force };
-        effects.emergency_stop.count(force, left)
-    }
-}
-
-/// Both forces together; of one alone the same bits.
-fn with_free<const D: usize>(observed: Vector<f64, D>, free: Vector<f64, D>) -> Vector<f64, D> {
-    if free == Vector::ZERO { observed } else { observed + free }
 }

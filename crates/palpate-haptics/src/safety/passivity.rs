@@ -10,9 +10,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Point, Vector};
+use std::ops::{Add, Mul, Sub};
 
-use super::PortState;
+use palpate_field::Vector;
+
 use super::effect::Effect;
 
 /// What a tick's leak still weighs a tick later, in the verdict on whether damping covers it: a
@@ -23,6 +24,47 @@ const MEMORY: f64 = 0.99;
 /// `2 b / T` are left, which hardly come to rest; with zero, hands sink into walls that are seen
 /// in steps, as a hand that rests between two of them seems to be worked on.
 const FLOOR: f64 = 0.25;
+
+/// A force, a way or a velocity, as energy knows them: vectors, or [along axes and about
+/// them](super::Both).
+pub(crate) trait Directed:
+    Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
+    const ZERO: Self;
+
+    /// Force on way, or the square of either.
+    fn dot(self, other: Self) -> f64;
+
+    fn norm(self) -> f64;
+
+    /// `true` if no number is NaN or infinite.
+    fn is_finite(&self) -> bool;
+}
+
+impl<const D: usize> Directed for Vector<f64, D> {
+    const ZERO: Self = Vector::ZERO;
+
+    fn dot(self, other: Self) -> f64 {
+        Vector::dot(self, other)
+    }
+
+    fn norm(self) -> f64 {
+        Vector::norm(self)
+    }
+
+    fn is_finite(&self) -> bool {
+        Vector::is_finite(self)
+    }
+}
+
+/// Where a device is in a tick, and how fast it moves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<V> {
+    pub(crate) position: V,
+    pub(crate) velocity: V,
+    /// As [`PortState::wants_ramp`](super::PortState::wants_ramp).
+    pub(crate) wants_ramp: bool,
+}
 
 /// What the passivity observer saw and the controller did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -64,14 +106,14 @@ pub struct PassivityReport {
 /// a long rub against friction does not pay for an oscillation; a source of constant force that
 /// is to give back more than that must do without this stage.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Passivity<const D: usize> {
+pub(crate) struct Passivity<V> {
     options: PassivityOptions,
     /// Taken in, credited and capped [J].
     balance: f64,
     /// Leaks of the wanted forces in contact, and what damping is sure to lose [J].
     leaks: f64,
     losses: f64,
-    last: Option<Last<D>>,
+    last: Option<Last<V>>,
     report: PassivityReport,
 }
 
@@ -93,34 +135,41 @@ pub(crate) struct PassivityOptions {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Last<const D: usize> {
-    position: Point<D>,
-    wanted: Vector<f64, D>,
-    written: Vector<f64, D>,
+struct Last<V> {
+    position: V,
+    wanted: V,
+    written: V,
 }
 
-impl<const D: usize> Passivity<D> {
+impl<V: Directed> Passivity<V> {
     pub(crate) fn new(options: PassivityOptions) -> Self {
         let (balance, leaks, losses) = (0.0, 0.0, 0.0);
         Self { options, balance, leaks, losses, last: None, report: PassivityReport::default() }
     }
 
+    /// The force that may be written in place of `wanted`; of what is not sound, as it is.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn observed(&mut self, wanted: V, state: &Seen<V>, is_sound: bool) -> V {
+        if is_sound {
+            return self.limit(wanted, state);
+        }
+        self.lose();
+        wanted
+    }
+
     /// The force that may be written in place of `wanted`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit(
-        &mut self,
-        wanted: Vector<f64, D>,
-        state: &PortState<D>,
-    ) -> Vector<f64, D> {
-        let way = self.last.map_or(Vector::ZERO, |last| state.position - last.position);
+    fn limit(&mut self, wanted: V, state: &Seen<V>) -> V {
+        let way = self.last.map_or(V::ZERO, |last| state.position - last.position);
         if let Some(last) = self.last {
             self.observe(&last, wanted, way);
         }
         if state.wants_ramp {
             self.balance = self.balance.max(self.stored(wanted));
         }
-        let held = self.last.map_or(Vector::ZERO, |last| last.written);
+        let held = self.last.map_or(V::ZERO, |last| last.written);
         let part = if self.options.is_on { self.part(wanted, held, way, state) } else { 1.0 };
         let allowed = if part < 1.0 { wanted * part } else { wanted };
         self.last = Some(Last { position: state.position, wanted, written: allowed });
@@ -130,7 +179,7 @@ impl<const D: usize> Passivity<D> {
     /// Takes the force that was written in the end.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn written(&mut self, force: Vector<f64, D>) {
+    pub(crate) fn written(&mut self, force: V) {
         if let Some(last) = &mut self.last {
             last.written = force;
         }
@@ -139,7 +188,7 @@ impl<const D: usize> Passivity<D> {
     /// The position is not known: what happens until it is again cannot be observed.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn lose(&mut self) {
+    fn lose(&mut self) {
         self.last = None;
     }
 
@@ -148,7 +197,7 @@ impl<const D: usize> Passivity<D> {
     }
 
     /// Books the tick that ends now, over which the device moved by `way`.
-    fn observe(&mut self, last: &Last<D>, wanted: Vector<f64, D>, way: Vector<f64, D>) {
+    fn observe(&mut self, last: &Last<V>, wanted: V, way: V) {
         let PassivityOptions { damping, reserve, period, .. } = self.options;
         let given = last.written.dot(way);
         let report = &mut self.report;
@@ -158,7 +207,7 @@ impl<const D: usize> Passivity<D> {
         report.least_balance = report.least_balance.min(net);
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
         self.balance -= given;
-        if last.wanted != Vector::ZERO || wanted != Vector::ZERO {
+        if last.wanted != V::ZERO || wanted != V::ZERO {
             let loss = damping * way.dot(way) / period;
             self.leaks = MEMORY * self.leaks - 0.5 * (wanted - last.wanted).dot(way);
             self.losses = MEMORY * self.losses + loss;
@@ -175,7 +224,7 @@ impl<const D: usize> Passivity<D> {
     }
 
     /// What a spring of the material's stiffness holds at `force` [J].
-    fn stored(&self, force: Vector<f64, D>) -> f64 {
+    fn stored(&self, force: V) -> f64 {
         0.5 * force.dot(force) / self.options.stiffness
     }
 
@@ -185,13 +234,7 @@ impl<const D: usize> Passivity<D> {
     }
 
     /// The part of `wanted` that gives out no more than there is.
-    fn part(
-        &self,
-        wanted: Vector<f64, D>,
-        held: Vector<f64, D>,
-        way: Vector<f64, D>,
-        state: &PortState<D>,
-    ) -> f64 {
+    fn part(&self, wanted: V, held: V, way: V, state: &Seen<V>) -> f64 {
         let PassivityOptions { damping, mass, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve).max(0.0);
         // How far a force moves the mass in a tick. Of a mass that is not known, nothing.
@@ -265,7 +308,8 @@ mod tests {
         });
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
         for (position, force) in held {
-            let state = PortState { position: Vector([position, 0.0]), ..PortState::at_rest() };
+            let position = Vector([position, 0.0]);
+            let state = Seen { position, velocity: Vector::ZERO, wants_ramp: false };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));
         }

@@ -3,9 +3,10 @@
 
 //! What every stage of a safety chain did.
 
+use super::Accepted;
+use super::channel::Channel;
 use super::effect::Effect;
 use super::passivity::PassivityReport;
-use super::{Accepted, SafetyChain};
 
 /// What every stage of a safety chain did, since it was made.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -33,6 +34,33 @@ pub struct SafetyReport {
     pub emergency_stop: Effect,
     /// How often it was pulled.
     pub stops: u64,
+    /// What the stages of the torque did; none of a device that gives no torque.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turning: Option<TurningReport>,
+}
+
+/// What every stage that the torque passes did, at a device that turns: changes are in N·m.
+/// Passivity is that of force and torque together, [`SafetyReport::passivity`].
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct TurningReport {
+    /// What became of the coupling's angular stiffness and damping.
+    pub impedance: Accepted,
+    /// The largest torque that was written [N·m].
+    pub largest_torque: f64,
+    /// The fastest change of torque.
+    pub slew: Effect,
+    /// The largest torque.
+    pub torque_limit: Effect,
+    /// The continuous torque; its root mean square is in N·m.
+    pub continuous: ContinuousReport,
+    /// Inputs that were not numbers.
+    pub guard: Effect,
+    /// Rises after the start, placements and emergencies.
+    pub ramp: Effect,
+    /// The deadline watchdog.
+    pub watchdog: WatchdogReport,
+    /// The emergency stop.
+    pub emergency_stop: Effect,
 }
 
 /// What the limit of the continuous force did.
@@ -41,7 +69,7 @@ pub struct ContinuousReport {
     /// How often it acted, and how much.
     #[serde(flatten)]
     pub effect: Effect,
-    /// The steady force that would be as warm now [N].
+    /// The steady force that would be as warm now [N]; of torques [N·m].
     pub root_mean_square: f64,
 }
 
@@ -69,23 +97,45 @@ pub(crate) struct Effects {
     pub(crate) stops: u64,
 }
 
-impl Effects {
-    pub(crate) fn report<const D: usize>(&self, chain: &SafetyChain<D>) -> SafetyReport {
-        SafetyReport {
-            ticks: self.ticks,
-            impedance: chain.accepted.clone(),
-            passivity: chain.passivity.report(),
-            slew: self.slew,
-            force_limit: self.force_limit,
-            continuous: ContinuousReport {
-                effect: self.continuous,
-                root_mean_square: chain.continuous.root_mean_square(),
-            },
-            guard: self.guard,
-            ramp: self.ramp,
-            watchdog: WatchdogReport { effect: self.watchdog, trips: chain.watchdog.trips() },
-            emergency_stop: self.emergency_stop,
-            stops: self.stops,
+impl SafetyReport {
+    /// What the stages of a chain of forces did.
+    pub(crate) fn of<const D: usize>(
+        accepted: &Accepted,
+        passivity: PassivityReport,
+        channel: &Channel<D>,
+    ) -> Self {
+        let effects = channel.effects;
+        Self {
+            ticks: effects.ticks,
+            impedance: accepted.clone(),
+            passivity,
+            slew: effects.slew,
+            force_limit: effects.force_limit,
+            continuous: channel.continuous_report(),
+            guard: effects.guard,
+            ramp: effects.ramp,
+            watchdog: channel.watchdog_report(),
+            emergency_stop: effects.emergency_stop,
+            stops: effects.stops,
+            turning: None,
+        }
+    }
+}
+
+impl TurningReport {
+    /// What the stages of a chain of torques did.
+    pub(crate) fn of(accepted: &Accepted, largest_torque: f64, channel: &Channel<3>) -> Self {
+        let effects = channel.effects;
+        Self {
+            impedance: accepted.clone(),
+            largest_torque,
+            slew: effects.slew,
+            torque_limit: effects.force_limit,
+            continuous: channel.continuous_report(),
+            guard: effects.guard,
+            ramp: effects.ramp,
+            watchdog: channel.watchdog_report(),
+            emergency_stop: effects.emergency_stop,
         }
     }
 }

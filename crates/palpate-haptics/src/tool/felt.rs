@@ -11,10 +11,11 @@ use palpate_query::Contact;
 use super::Tool;
 use super::settle::Push;
 use super::state::{ToolState, ToolTouch};
-use super::twist::{Twist, cross, in_place, in_space};
+use super::twist::Twist;
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
+use crate::rotation::{cross, in_place, in_space};
 
 /// What the bodies that push make of the coupling.
 struct Yielding<const D: usize> {
@@ -64,7 +65,7 @@ impl<const D: usize> Tool<D> {
         }
         self.write_force(nearby, device, &moved);
         let speed = hardest.map_or(0.0, |push| {
-            (-self.speed_at(nearby, &push, device).dot(push.normal)).max(0.0)
+            (-self.speed_at(nearby, &push, device, 1.0).dot(push.normal)).max(0.0)
         });
         self.tell_changes(was, speed);
     }
@@ -159,10 +160,10 @@ impl<const D: usize> Tool<D> {
             // Written so that NaN, of no depth, is all of it.
             part += share * if borne < 1.0 { borne } else { 1.0 };
             let layer = strata.at(0, depth);
-            let velocity = self.speed_at(nearby, push, device);
+            let velocity = self.speed_at(nearby, push, device, self.arms);
             let approach = (-velocity.dot(push.normal)).max(0.0);
             let damper = push.normal * (layer.damping * approach) - velocity * layer.viscosity;
-            let arm = in_space(push.centre - self.touch.pose.translation);
+            let arm = in_space(push.centre - self.touch.pose.translation) * self.arms;
             force += damper * share;
             torque += cross(arm, in_space(damper * share));
         }
@@ -175,14 +176,16 @@ impl<const D: usize> Tool<D> {
         stretch.stacked(unit).iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    /// How fast the hand moves the place of a contact, as its body sees it [m/s].
+    /// How fast the hand moves the place of a contact, on a part of its arm, as its body sees it
+    /// [m/s].
     fn speed_at(
         &self,
         nearby: &Nearby<'_, D>,
         push: &Push<D>,
         device: &ToolState<D>,
+        arms: f64,
     ) -> Vector<f64, D> {
-        let arm = in_space(push.centre - self.touch.pose.translation);
+        let arm = in_space(push.centre - self.touch.pose.translation) * arms;
         let turning = in_place(cross(device.angular_velocity, arm));
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }

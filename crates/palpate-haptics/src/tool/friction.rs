@@ -22,8 +22,9 @@ use palpate_field::{Pose, Vector};
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::scan::Scan;
 use super::settle::{Lengths, Push, Settler, stacked_along};
-use super::twist::{Twist, cross, in_place, in_space};
+use super::twist::Twist;
 use crate::nearby::Nearby;
+use crate::rotation::{cross, in_place, in_space};
 use crate::surface::Friction;
 
 /// Directions along a surface, as parts of two that are square to one another.

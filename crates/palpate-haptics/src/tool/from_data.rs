@@ -7,9 +7,9 @@ use palpate_field::kernel::Argument;
 use palpate_field::{Point, Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_scene::{Form, Node, Primitive, WrittenRotation};
 
-use super::twist::{in_place, in_space};
 use super::{Shell, Tool, ToolOptions};
 use crate::error::HapticsError;
+use crate::rotation::{in_place, in_space};
 
 /// Points on the surface of a tool that is neither a ball nor a capsule. More feel finer things,
 /// and cost more; a face of 1 cm² of a tool as large as a hand has a few.

@@ -6,15 +6,18 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Pose, Vector};
+use palpate_field::{Point, Pose, Vector};
 
 use super::twist::Twist;
 use super::{Tool, ToolState};
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, Setting, Touch};
-use crate::device::PointState;
+use crate::device::{PointState, TurnState};
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
+use crate::limit::limited;
+use crate::protection::TurningPort;
+use crate::safety::{Both, WrenchChain, WrenchState};
 use crate::servo::ServoOptions;
 
 /// A tool after a tick, as rows of a trace and snapshots have it. World coordinates.
@@ -25,8 +28,11 @@ pub struct HeldTool<const D: usize> {
     /// How it is turned against the device: along the axis, as long as the angle [rad]; in the
     /// plane about z alone.
     pub turn: Vector<f64, 3>,
-    /// The torque on the hand about the tool's origin [N·m]; in the plane about z alone.
+    /// The torque about the tool's origin that is wanted on the hand [N·m]; in the plane about z
+    /// alone.
     pub torque: Vector<f64, 3>,
+    /// The torque that is given to the hand by a device that turns [N·m]; none by another.
+    pub given: Option<Vector<f64, 3>>,
     /// Contacts that push.
     pub contacts: u32,
     /// How far the tool's surface may be from balls that are known to be outside [m].
@@ -48,6 +54,7 @@ impl<const D: usize> Tool<D> {
             pose: touch.pose,
             turn: Twist::between(&touch.device, &touch.pose).angular,
             torque: touch.torque,
+            given: None,
             contacts: touch.contacts.len() as u32,
             resolution: touch.resolution,
             is_degraded: touch.is_degraded,
@@ -77,43 +84,128 @@ impl<const D: usize> Tool<D> {
         Impedance::new(stiffness, self.options.damping + body.damping())
     }
 
-    /// Makes the coupling `factor` times as stiff and as damped.
-    pub(crate) fn soften(&mut self, factor: f64) {
+    /// What the hand feels about axes, where bodies bear a `part` of the coupling, and have a
+    /// `damping` [N·s/m] on the longest arm on which it acts.
+    pub(crate) fn turning_on(
+        &self,
+        part: f64,
+        damping: f64,
+    ) -> Result<Impedance, HapticsError> {
+        let reach = self.arms * self.shell.reach();
+        let damping = self.options.angular_damping + damping * reach * reach;
+        Impedance::new(self.angular_stiffness * part, damping)
+    }
+
+    /// Makes the coupling `factor` times as stiff and as damped about axes.
+    pub(crate) fn soften_turning(&mut self, factor: f64) {
         self.angular_stiffness *= factor;
-        self.options.stiffness *= factor;
         self.options.angular_stiffness =
             self.options.angular_stiffness.map(|stiffness| stiffness * factor);
-        self.options.damping *= factor;
         self.options.angular_damping *= factor;
+    }
+
+    /// Lets the bodies' dampers act on a part of their arms: as they see less of how the hand
+    /// turns, and turn it by less, what is left takes energy from it as before.
+    pub(crate) fn shorten_arms(&mut self, part: f64) {
+        self.arms *= part;
+    }
+
+    /// Makes the coupling `factor` times as stiff and as damped.
+    pub(crate) fn soften(&mut self, factor: f64) {
+        self.options.stiffness *= factor;
+        self.options.damping *= factor;
+        self.soften_turning(factor);
     }
 }
 
-impl<const D: usize> ContactPoint<D> {
-    /// One tick of a tool that hangs here, from the state of the device to the force to write to
-    /// it [N], in its coordinates. The touch is that of the whole tool.
+/// A tool that hangs on a contact point of a servo, and how it turns with the device.
+#[derive(Clone, Debug)]
+pub(crate) struct Hung<const D: usize> {
+    pub(crate) tool: Tool<D>,
+    /// How the device is turned; none of one that does not turn.
+    pub(crate) turn: Option<TurnState<D>>,
+    /// What is between the tool and a device that turns; none of a servo that is not protected.
+    pub(crate) port: Option<TurningPort<D>>,
+    /// The largest torque of a servo that is not protected [N·m].
+    max_torque: f64,
+    /// The torque to write to the device [N·m].
+    pub(crate) torque: Vector<f64, 3>,
+    /// The same in the world; none on a device that does not turn.
+    given: Option<Vector<f64, 3>>,
+}
+
+impl<const D: usize> Hung<D> {
+    pub(crate) fn new(tool: Tool<D>) -> Self {
+        let (max_torque, torque) = (f64::INFINITY, Vector::ZERO);
+        Self { tool, turn: None, port: None, max_torque, torque, given: None }
+    }
+
+    /// The tool after the last tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn held(&self) -> HeldTool<D> {
+        HeldTool { given: self.given, ..self.tool.held() }
+    }
+
+    /// The chain of force and torque; none of a device that gives no torque.
+    pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain<D>> {
+        self.port.as_mut().and_then(|port| port.chain.as_mut())
+    }
+
+    /// Lowers the largest force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        self.tool.limit_force(max_force);
+        if let Some(chain) = self.chain() {
+            chain.limit_force(max_force);
+        }
+    }
+
+    /// Lowers the largest torque [N·m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_torque(&mut self, max_torque: f64) {
+        match self.chain() {
+            Some(chain) => chain.limit_torque(max_torque),
+            // `min` ignores NaN.
+            None => self.max_torque = self.max_torque.min(max_torque),
+        }
+    }
+
+    /// One tick of a tool that hangs at `point`, from the state of the device to the force to
+    /// write to it [N], in its coordinates; the torque to write is kept. The touch is that of the
+    /// whole tool.
     ///
     /// Real-time: as [`Tool::step`].
-    pub(crate) fn tick_tool(
+    pub(crate) fn tick(
         &mut self,
-        (tool, bodies): (&mut Tool<D>, &mut Bodies<D>),
+        (point, bodies): (&mut ContactPoint<D>, &mut Bodies<D>),
         setting: &Setting<D>,
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
-        let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
-        let PointState { position, velocity } = setting.map.state_to_world(at_device);
-        let pose = Pose::new(setting.map.rotation(), position);
-        tool.step(bodies, &ToolState { pose, velocity, angular_velocity: Vector::ZERO });
-        let felt = tool.touch();
-        let mut free = Vector::ZERO;
-        if position.is_finite() && velocity.is_finite() {
-            for guide in &mut self.guides {
-                free += guide.force(position, velocity);
-            }
-        }
+        let map = &setting.map;
+        let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
+        let (turn, angle) = match &mut self.port {
+            Some(port) => port.state(self.turn),
+            None => (self.turn, Vector::ZERO),
+        };
+        let PointState { position, velocity } = map.state_to_world(at_device);
+        let (rotation, angular_velocity) = match &turn {
+            Some(turn) => (
+                map.orientation_to_world(turn.orientation),
+                map.spin_to_world(turn.angular_velocity),
+            ),
+            None => (map.rotation(), Vector::ZERO),
+        };
+        let pose = Pose::new(rotation, position);
+        self.tool.step(bodies, &ToolState { pose, velocity, angular_velocity });
+        let felt = self.tool.touch();
+        let free = point.guided(position, velocity);
         *touch = Touch {
             device: position,
-            velocity: tool.hand_velocity,
+            velocity: self.tool.hand_velocity,
             proxy: felt.pose.translation,
             wanted: felt.force,
             force: Vector::ZERO,
@@ -123,6 +215,42 @@ impl<const D: usize> ContactPoint<D> {
             is_slipping: felt.is_slipping,
             evaluations: felt.evaluations,
         };
-        self.give(setting, at_device, touch, (free, false))
+        let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
+        let force = if let Some(chain) = self.chain() {
+            let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
+            let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
+            let state = WrenchState {
+                position: Both { along: at_device.position, about: angle },
+                velocity: Both { along: at_device.velocity, about: spin },
+                free_force: map.force_to_device(free),
+                is_late: setting.is_late,
+            };
+            let given = chain.step(Both { along: force, about: torque }, &state);
+            self.torque = given.about;
+            touch.force = map.force_to_world(given.along);
+            given.along
+        } else {
+            // Of a port without a chain, the device gives no torque.
+            let most = if self.port.is_some() { 0.0 } else { self.max_torque };
+            self.torque = limited(torque, most);
+            point.give(setting, at_device, touch, (free, false))
+        };
+        self.given = turn.map(|_| map.torque_to_world(self.torque));
+        force
+    }
+}
+
+impl<const D: usize> ContactPoint<D> {
+    /// The force of the guides [N]; none where a number is not finite.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn guided(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
+        let mut free = Vector::ZERO;
+        if position.is_finite() && velocity.is_finite() {
+            for guide in &mut self.guides {
+                free += guide.force(position, velocity);
+            }
+        }
+        free
     }
 }

@@ -39,6 +39,7 @@ use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
 use felt::Before;
 pub use in_servo::HeldTool;
+pub(crate) use in_servo::Hung;
 pub use report::ToolReport;
 pub(crate) use report::ToolTally;
 use room::Room;
@@ -164,6 +165,8 @@ pub struct Tool<const D: usize> {
     rise: f64,
     /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
+    /// The part of their arms on which the bodies' dampers act, in [0, 1].
+    arms: f64,
     touch: ToolTouch<D>,
     /// How fast the device moves relative to the body that pushes hardest [m/s].
     hand_velocity: Vector<f64, D>,
@@ -195,6 +198,7 @@ impl<const D: usize> Tool<D> {
             pose: None,
             rise: 1.0,
             part: 1.0,
+            arms: 1.0,
             touch: ToolTouch::new(shell.points().len()),
             hand_velocity: Vector::ZERO,
             carrier: None,
@@ -204,6 +208,17 @@ impl<const D: usize> Tool<D> {
             shell,
             options,
         })
+    }
+
+    /// The same with another largest torque on the hand [N·m]; infinite for none.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if it is not positive.
+    pub fn with_max_torque(mut self, max_torque: f64) -> Result<Self, HapticsError> {
+        self.options.max_torque = max_torque;
+        self.options.check()?;
+        Ok(self)
     }
 
     /// What it touches with.

@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use palpate_field::Vector;
+
 use super::Tool;
 
 /// A tool with a shape in a run.
@@ -18,8 +20,12 @@ pub struct ToolReport {
     pub stiffness: f64,
     /// The coupling's damping [N·s/m].
     pub damping: f64,
-    /// The largest torque on the hand [N·m].
+    /// The largest torque that was wanted on the hand [N·m].
     pub largest_torque: f64,
+    /// The largest torque that was written to a device that turns [N·m], in its coordinates; none
+    /// of another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_torque_written: Option<f64>,
     /// The most contacts that pushed in a tick.
     pub most_contacts: u32,
     /// How many pushed on average in the ticks with a contact.
@@ -42,16 +48,24 @@ pub(crate) struct ToolTally {
 }
 
 impl ToolTally {
-    /// Counts a tick.
+    /// Counts a tick with the torque written to a device that turns.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick<const D: usize>(&mut self, tool: &Tool<D>) {
+    pub(crate) fn tick<const D: usize>(
+        &mut self,
+        tool: &Tool<D>,
+        written: Option<Vector<f64, 3>>,
+    ) {
         let (held, shell, report) = (tool.held(), tool.shell(), &mut self.report);
         report.points = shell.points().len() as u32;
         report.resolution = shell.resolution(shell.points().len());
         report.stiffness = tool.options().stiffness;
         report.damping = tool.options().damping;
         report.largest_torque = report.largest_torque.max(held.torque.norm());
+        if let Some(written) = written {
+            let largest = report.largest_torque_written.unwrap_or(0.0).max(written.norm());
+            report.largest_torque_written = Some(largest);
+        }
         report.most_contacts = report.most_contacts.max(held.contacts);
         report.degraded_ticks += u64::from(held.is_degraded);
         report.covered_ticks += u64::from(held.is_covered);

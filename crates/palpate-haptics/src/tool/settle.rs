@@ -22,8 +22,9 @@ use super::friction::{Cone, Hold, MOST_AROUND};
 use super::room::Room;
 use super::scan::Scan;
 use super::shell::Shell;
-use super::twist::{Twist, cross, in_space};
+use super::twist::Twist;
 use crate::nearby::Nearby;
+use crate::rotation::{cross, in_space};
 
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
 const MOST_TURNS: usize = 6;

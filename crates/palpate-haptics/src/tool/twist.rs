@@ -7,10 +7,9 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::{Pose, Rotation, Vector};
+use palpate_field::{Pose, Vector};
 
-/// Below this angle [rad], sin θ / θ is one to the last bit.
-const TINY: f64 = 1e-9;
+use crate::rotation::{cross, in_place, in_space, turn_between, turned};
 
 /// How a pose changes: its origin moves, then it turns about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +29,7 @@ impl<const D: usize> Twist<D> {
         if from.rotation == to.rotation {
             return Self { linear, angular: Vector::ZERO };
         }
-        Self { linear, angular: angle(to.rotation * from.rotation.inverse()) }
+        Self { linear, angular: turn_between(&from.rotation, &to.rotation) }
     }
 
     /// A part of the motion.
@@ -48,9 +47,7 @@ impl<const D: usize> Twist<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn moved(&self, pose: &Pose<D>) -> Pose<D> {
-        let turned = turn(self.angular) * pose.rotation;
-        // Made orthonormal again, so that rounding never adds up.
-        let rotation = Rotation::from_matrix(*turned.matrix()).unwrap_or(pose.rotation);
+        let rotation = turned(&pose.rotation, self.angular);
         Pose::new(rotation, pose.translation + self.linear)
     }
 
@@ -78,64 +75,10 @@ impl<const D: usize> Twist<D> {
     }
 }
 
-/// A vector of the plane or of space, in space.
-pub(super) fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
-    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
-}
-
-/// The first coordinates of a vector of space.
-pub(super) fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
-    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
-}
-
-/// a × b.
-pub(super) fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
-    let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
-    Vector([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-}
-
-/// The rotation by a vector: `R = I + (sin θ / θ) W + (2 sin²(θ/2) / θ²) W²` with `W v = w × v`
-/// and `θ = ‖w‖` (Rodrigues 1840).
-fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
-    let angle = w.norm();
-    let (first, second) = if angle > TINY {
-        let half = libm::sin(0.5 * angle);
-        (libm::sin(angle) / angle, 2.0 * half * half / (angle * angle))
-    } else {
-        (1.0, 0.5)
-    };
-    let column = |axis: usize| {
-        let e = Vector::<f64, 3>::unit(axis);
-        let turned = cross(w, e);
-        e + turned * first + cross(w, turned) * second
-    };
-    let (x, y, z) = (column(0), column(1), column(2));
-    let rows: [[f64; D]; D] = std::array::from_fn(|i| {
-        let row = [x, y, z].map(|column| column.0.get(i).copied().unwrap_or(0.0));
-        std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
-    });
-    Rotation::from_matrix(rows).unwrap_or_else(|_| Rotation::identity())
-}
-
-/// The vector of a rotation, at most π long: `2 atan2(‖q‖, w) q / ‖q‖` of its quaternion.
-fn angle<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
-    let rows = std::array::from_fn(|i| {
-        let unit = Vector::<f64, 3>::unit(i).0;
-        std::array::from_fn(|k| {
-            let inside = rotation.matrix().get(i).and_then(|row| row.get(k));
-            inside.or(unit.get(k)).copied().unwrap_or(0.0)
-        })
-    });
-    let Ok(rotation) = Rotation::<3>::from_matrix(rows) else { return Vector::ZERO };
-    let [x, y, z, w] = rotation.quaternion();
-    let axis = Vector([x, y, z]);
-    let sine = axis.norm();
-    if sine > 0.0 { axis * (2.0 * libm::atan2(sine, w) / sine) } else { Vector::ZERO }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use palpate_field::Rotation;
 
     #[test]
     fn a_twist_between_poses_leads_from_one_to_the_other() {

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! How a device in a hand turns while the torque on it is held.
+//!
+//! Its moment of inertia `I` is the same about every axis, so that no axis turns another: about
+//! each, what turns moves as [`motion`](crate::motion) says, with angles for lengths. The stretch
+//! of the hand's spring is the turn that leads from the device to where the hand wants it. Between
+//! two reads the three angles move on their own, by `Δθ`, and the device turns by the vector of
+//! the three: so the work of the torque held is `τ·Δθ` exactly, and what is read tells `Δθ`.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Rotation, Vector};
+use palpate_haptics::{
+    HapticsError, TurnState, TurningProfile, limited, not_negative, positive, turn_between,
+    turned,
+};
+
+use crate::hand::{Hand, Wrist};
+use crate::motion::{Axis, Body, Energies, Load, Parts};
+
+/// The turning part of a simulated device.
+#[derive(Clone, Debug)]
+pub(crate) struct Turning<const D: usize> {
+    wrist: Wrist,
+    body: Body,
+    max_torque: f64,
+    encoder_step: f64,
+    orientation: Rotation<D>,
+    /// [rad/s].
+    spin: Vector<f64, 3>,
+    /// The torque held [N·m].
+    torque: Vector<f64, 3>,
+    /// What was read last.
+    reading: TurnState<D>,
+    /// Where the hand wanted it then.
+    target: Rotation<D>,
+    energies: Energies,
+}
+
+impl<const D: usize> Turning<D> {
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] if the profile's inertia, least damping, friction or encoder step
+    /// is negative or not finite, its largest torque negative or NaN, nothing has an inertia, or
+    /// device and hand are too fast to be followed.
+    pub(crate) fn new(profile: &TurningProfile, hand: &Hand<D>) -> Result<Self, HapticsError> {
+        let wrist = hand.wrist().clone();
+        not_negative("inertia", profile.inertia, "kg·m²")?;
+        positive("inertia of device and hand", profile.inertia + wrist.inertia, "kg·m²")?;
+        not_negative("turning least_damping", profile.least_damping, "N·m·s/rad")?;
+        not_negative("turning friction", profile.friction, "N·m")?;
+        let encoder_step = not_negative("turning encoder_step", profile.encoder_step, "rad")?;
+        if profile.max_torque != f64::INFINITY {
+            not_negative("max_torque", profile.max_torque, "N·m")?;
+        }
+        let body = Body::new(&Parts {
+            masses: (profile.inertia, wrist.inertia),
+            damping: profile.least_damping,
+            friction: profile.friction,
+            grip_stiffness: wrist.stiffness,
+            grip_damping: wrist.damping,
+        })?;
+        let identity = Rotation::identity();
+        Ok(Self {
+            wrist,
+            body,
+            max_torque: profile.max_torque,
+            encoder_step,
+            orientation: identity,
+            spin: Vector::ZERO,
+            torque: Vector::ZERO,
+            reading: TurnState::at_rest(identity),
+            target: identity,
+            energies: Energies::default(),
+        })
+    }
+
+    /// What was read last.
+    pub(crate) fn reading(&self) -> TurnState<D> {
+        self.reading
+    }
+
+    /// How it is turned, as no encoder sees it.
+    pub(crate) fn state(&self) -> TurnState<D> {
+        TurnState { orientation: self.orientation, angular_velocity: self.spin }
+    }
+
+    pub(crate) fn torque(&self) -> Vector<f64, 3> {
+        self.torque
+    }
+
+    pub(crate) fn energies(&self) -> &Energies {
+        &self.energies
+    }
+
+    /// `½ I ω²` of device and hand [J].
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        0.5 * self.body.mass() * self.spin.dot(self.spin)
+    }
+
+    /// Holds a torque from now on [N·m]; in the plane, what of it is about z.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn write(&mut self, torque: Vector<f64, 3>) {
+        self.torque = limited(about_axes::<D>(torque), self.max_torque);
+    }
+
+    /// Turns the device to where the hand wants it.
+    pub(crate) fn start(&mut self, time: f64) {
+        self.target = self.wanted(time);
+        (self.orientation, self.spin) = (self.target, Vector::ZERO);
+        self.reading = TurnState::at_rest(self.encoded());
+    }
+
+    /// Moves from the time `last` to `time` [s].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn advance(&mut self, last: f64, time: f64) {
+        let duration = time - last;
+        let target = self.wanted(time);
+        let stretch = turn_between(&self.orientation, &self.target);
+        let next = turn_between(&self.orientation, &target);
+        let rates = (next - stretch) * (1.0 / duration);
+        let push = about_axes::<D>(self.wrist.push);
+        let loads = self.torque.0.into_iter().zip(push.0).zip(stretch.0).zip(rates.0);
+        let mut way = Vector::ZERO;
+        let axes = self.spin.0.iter_mut().zip(&mut way.0).zip(loads).skip(fixed::<D>());
+        for ((spin, way), (((force, push), target), target_velocity)) in axes {
+            let mut axis = Axis { position: 0.0, velocity: *spin };
+            let load = Load { force, push, target, target_velocity };
+            self.energies.add(&self.body.advance(&mut axis, load, duration));
+            (*way, *spin) = (axis.position, axis.velocity);
+        }
+        self.orientation = turned(&self.orientation, way);
+        self.target = target;
+        let orientation = self.encoded();
+        let angular_velocity =
+            turn_between(&self.reading.orientation, &orientation) * (1.0 / duration);
+        self.reading = TurnState { orientation, angular_velocity };
+    }
+
+    /// How the hand wants the device to be turned.
+    fn wanted(&self, time: f64) -> Rotation<D> {
+        let path = self.wrist.path.as_ref();
+        let turn = path.map_or(Vector::ZERO, |path| path.state_at(time).position);
+        turned(&Rotation::identity(), about_axes::<D>(turn))
+    }
+
+    /// The orientation in whole steps of the encoder.
+    fn encoded(&self) -> Rotation<D> {
+        let step = self.encoder_step;
+        if step > 0.0 {
+            let identity = Rotation::identity();
+            let turn = turn_between(&identity, &self.orientation);
+            turned(&identity, Vector(turn.0.map(|x| (x / step).round() * step)))
+        } else {
+            self.orientation
+        }
+    }
+}
+
+/// What of a vector is about axes that there are.
+fn about_axes<const D: usize>(mut turn: Vector<f64, 3>) -> Vector<f64, 3> {
+    turn.0.iter_mut().take(fixed::<D>()).for_each(|x| *x = 0.0);
+    turn
+}
+
+/// The axes about which nothing turns: the first two in the plane.
+fn fixed<const D: usize>() -> usize {
+    if D < 3 { 2 } else { 0 }
+}

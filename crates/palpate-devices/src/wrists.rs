@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What known devices can do about their axes: of each, the numbers of the worst axis.
+
+use std::borrow::Cow;
+
+use palpate_haptics::TurningProfile;
+
+use crate::profiles::{FORCE_RISES, Origin};
+
+/// What is known of a device about its axes, but for the numbers that are assumed of all.
+pub(crate) struct Torques {
+    torque: f64,
+    continuous_torque: f64,
+    stiffness: f64,
+    damping: f64,
+    inertia: f64,
+    friction: f64,
+    encoder_step: f64,
+    origin: Origin,
+}
+
+/// The least damping of what senses turns and gives no torque [N·m·s/rad]; nothing depends on it.
+const FREE_WRIST: f64 = 1e-3;
+
+/// The gimbal of the Phantom Premium 1.5 6DOF and 3.0 6DOF.
+pub(crate) const PREMIUM: Torques = Torques {
+    torque: 0.188,
+    continuous_torque: 0.048,
+    stiffness: 0.3,
+    damping: 0.004,
+    inertia: 5e-5,
+    friction: 2e-3,
+    // 0.0080°
+    encoder_step: 1.4e-4,
+    origin: Origin {
+        source: "torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024); \
+                 lasting torque and encoder step: the maker's data sheet, roll",
+        assumed: &["max_torque_rate", "inertia", "least_damping", "friction"],
+    },
+};
+
+/// The wrist of the omega.6 and the omega.7.
+pub(crate) const OMEGA: Torques = Torques {
+    torque: 0.0,
+    continuous_torque: 0.0,
+    stiffness: 0.0,
+    damping: 0.0,
+    inertia: 1e-4,
+    friction: 2e-3,
+    // 0.09°
+    encoder_step: 1.57e-3,
+    origin: Origin {
+        source: "the maker's data sheet: senses turns and gives no torque",
+        assumed: &["inertia", "least_damping", "friction"],
+    },
+};
+
+/// The wrist of the sigma.7 and the lambda.7.
+pub(crate) const SIGMA: Torques = Torques {
+    torque: 0.2,
+    continuous_torque: 0.2,
+    stiffness: 1.0,
+    damping: 0.07,
+    inertia: 2e-4,
+    friction: 4e-3,
+    // 0.013°
+    encoder_step: 2.27e-4,
+    origin: Origin {
+        source: "torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024); \
+                 encoder step: the maker's data sheet",
+        assumed: &[
+            "continuous_torque",
+            "max_torque_rate",
+            "inertia",
+            "least_damping",
+            "friction",
+        ],
+    },
+};
+
+/// The wrist of the Virtuose 6D.
+pub(crate) const VIRTUOSE_6D: Torques = Torques {
+    torque: 3.1,
+    continuous_torque: 1.0,
+    stiffness: 20.0,
+    damping: 0.5,
+    inertia: 5e-3,
+    friction: 0.05,
+    encoder_step: 2e-4,
+    origin: Origin {
+        source: "torques: the maker's data sheet",
+        assumed: &[
+            "max_torque_rate",
+            "max_stiffness",
+            "max_damping",
+            "inertia",
+            "least_damping",
+            "friction",
+            "encoder_step",
+        ],
+    },
+};
+
+/// The profile of a wrist.
+pub(crate) const fn turning(torques: &Torques) -> TurningProfile {
+    TurningProfile {
+        max_torque: torques.torque,
+        continuous_torque: torques.continuous_torque,
+        max_torque_rate: torques.torque * FORCE_RISES,
+        max_stiffness: torques.stiffness,
+        max_damping: torques.damping,
+        inertia: torques.inertia,
+        // K T / 2 at 1 kHz.
+        least_damping: if torques.torque > 0.0 {
+            0.5e-3 * torques.stiffness
+        } else {
+            FREE_WRIST
+        },
+        friction: torques.friction,
+        encoder_step: torques.encoder_step,
+        source: Cow::Borrowed(torques.origin.source),
+        assumed: Cow::Borrowed(torques.origin.assumed),
+    }
+}

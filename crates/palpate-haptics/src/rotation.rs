@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Turns as vectors: along their axis, as long as their angle [rad]; in the plane along z.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Rotation, Vector};
+
+/// Below this angle [rad], sin θ / θ is one to the last bit.
+const TINY: f64 = 1e-9;
+
+/// `rotation` turned further by a vector along the axis, as long as the angle [rad]; in the plane
+/// along z.
+///
+/// Orthonormal to rounding, so that turns may be chained for ever.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+///
+/// ```
+/// use palpate_field::{Rotation, Vector};
+/// use palpate_haptics::turned;
+///
+/// let quarter = turned(&Rotation::<2>::identity(), Vector([0.0, 0.0, 0.5]));
+/// assert!((turned(&quarter, Vector([0.0, 0.0, 0.25])).angle() - 0.75).abs() < 1e-15);
+/// ```
+#[must_use]
+pub fn turned<const D: usize>(rotation: &Rotation<D>, by: Vector<f64, 3>) -> Rotation<D> {
+    let turned = turn(by) * *rotation;
+    Rotation::from_matrix(*turned.matrix()).unwrap_or(*rotation)
+}
+
+/// The vector that turns `from` into `to`, at most π long [rad]: undoes [`turned`].
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+///
+/// ```
+/// use palpate_field::{Rotation, Vector};
+/// use palpate_haptics::{turn_between, turned};
+///
+/// let (from, by) = (Rotation::<3>::identity(), Vector([0.25, -0.5, 1.0]));
+/// assert!((turn_between(&from, &turned(&from, by)) - by).norm() < 1e-15);
+/// ```
+#[must_use]
+pub fn turn_between<const D: usize>(from: &Rotation<D>, to: &Rotation<D>) -> Vector<f64, 3> {
+    angle(*to * from.inverse())
+}
+
+/// A vector of the plane or of space, in space.
+pub(crate) fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
+    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
+}
+
+/// The first coordinates of a vector of space.
+pub(crate) fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
+    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
+}
+
+/// a × b.
+pub(crate) fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
+    let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
+    Vector([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+}
+
+/// The rotation by a vector: `R = I + (sin θ / θ) W + (2 sin²(θ/2) / θ²) W²` with `W v = w × v`
+/// and `θ = ‖w‖` (Rodrigues 1840).
+fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
+    let angle = w.norm();
+    let (first, second) = if angle > TINY {
+        let half = libm::sin(0.5 * angle);
+        (libm::sin(angle) / angle, 2.0 * half * half / (angle * angle))
+    } else {
+        (1.0, 0.5)
+    };
+    let column = |axis: usize| {
+        let e = Vector::<f64, 3>::unit(axis);
+        let turned = cross(w, e);
+        e + turned * first + cross(w, turned) * second
+    };
+    let (x, y, z) = (column(0), column(1), column(2));
+    let rows: [[f64; D]; D] = std::array::from_fn(|i| {
+        let row = [x, y, z].map(|column| column.0.get(i).copied().unwrap_or(0.0));
+        std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
+    });
+    Rotation::from_matrix(rows).unwrap_or_else(|_| Rotation::identity())
+}
+
+/// The vector of a rotation, at most π long: `2 atan2(‖q‖, w) q / ‖q‖` of its quaternion.
+fn angle<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
+    let rows = std::array::from_fn(|i| {
+        let unit = Vector::<f64, 3>::unit(i).0;
+        std::array::from_fn(|k| {
+            let inside = rotation.matrix().get(i).and_then(|row| row.get(k));
+            inside.or(unit.get(k)).copied().unwrap_or(0.0)
+        })
+    });
+    let Ok(rotation) = Rotation::<3>::from_matrix(rows) else { return Vector::ZERO };
+    let [x, y, z, w] = rotation.quaternion();
+    let axis = Vector([x, y, z]);
+    let sine = axis.norm();
+    if sine > 0.0 { axis * (2.0 * libm::atan2(sine, w) / sine) } else { Vector::ZERO }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::cases;
+
+    #[test]
+    fn a_turn_between_two_rotations_leads_from_one_to_the_other() {
+        cases(300, |u| {
+            let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 1e-3);
+            let mut vector = || Ok::<_, arbitrary::Error>(Vector([draw()?, draw()?, draw()?]));
+            let from = turned(&Rotation::<3>::identity(), vector()? * 3.0);
+            let by = vector()?;
+            let to = turned(&from, by);
+            assert!((turn_between(&from, &to) - by).norm() < 1e-14, "{by:?}");
+            let flat = Vector([0.0, 0.0, by[2]]);
+            let planar = turned(&Rotation::<2>::identity(), flat);
+            assert!((planar.angle() - by[2]).abs() < 1e-15);
+            assert!((turn_between(&Rotation::identity(), &planar) - flat).norm() < 1e-15);
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn a_quarter_about_z_takes_x_to_y_and_a_thousand_turns_keep_a_rotation_one() {
+        let quarter = Vector([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
+        let turned_once = turned(&Rotation::<3>::identity(), quarter);
+        let y = turned_once.rotate(Vector([1.0, 0.0, 0.0]));
+        assert!((y - Vector([0.0, 1.0, 0.0])).norm() < 1e-15);
+        let mut rotation = turned_once;
+        for _ in 0..1000 {
+            rotation = turned(&rotation, Vector([0.3, -0.2, 0.5]));
+        }
+        let there_and_back = rotation * rotation.inverse();
+        let off = turn_between(&Rotation::identity(), &there_and_back);
+        assert!(off.norm() < 1e-15, "{off:?}");
+    }
+}

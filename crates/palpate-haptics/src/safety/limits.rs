@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a device can do, along its axes or about them, in one form: torques are to angles what
+//! forces are to lengths, so that each rule and each stage stands once.
+
+use std::borrow::Cow;
+
+use super::Rule;
+use crate::device::{DeviceProfile, TurningProfile};
+use crate::error::{HapticsError, not_negative, positive_or_infinite};
+
+/// A limit with its name and its unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    value: f64,
+    name: &'static str,
+    unit: &'static str,
+}
+
+impl Limit {
+    fn new(value: f64, name: &'static str, unit: &'static str) -> Self {
+        Self { value, name, unit }
+    }
+
+    /// The limit, which must be positive.
+    pub(crate) fn positive(&self) -> Result<f64, HapticsError> {
+        positive_or_infinite(self.name, self.value, self.unit)
+    }
+
+    /// The limit, which must be zero or more and finite.
+    pub(crate) fn not_negative(&self) -> Result<f64, HapticsError> {
+        not_negative(self.name, self.value, self.unit)
+    }
+}
+
+/// The numbers of a profile, along axes or about them. Named as those along.
+#[derive(Clone, Debug)]
+pub(crate) struct Limits {
+    pub(crate) max_force: Limit,
+    pub(crate) continuous_force: Limit,
+    pub(crate) max_force_rate: Limit,
+    pub(crate) max_stiffness: Limit,
+    pub(crate) max_damping: Limit,
+    pub(crate) mass: Limit,
+    pub(crate) least_damping: Limit,
+    pub(crate) friction: Limit,
+    pub(crate) encoder_step: Limit,
+    /// The rules, in the order in which they are asked.
+    pub(crate) rules: [Rule; 4],
+    pub(crate) is_turning: bool,
+    pub(crate) assumed: Cow<'static, [&'static str]>,
+}
+
+impl Limits {
+    /// Along the axes of a device.
+    pub(crate) fn along(device: &DeviceProfile) -> Self {
+        Self {
+            max_force: Limit::new(device.max_force, "max_force", "N"),
+            continuous_force: Limit::new(device.continuous_force, "continuous_force", "N"),
+            max_force_rate: Limit::new(device.max_force_rate, "max_force_rate", "N/s"),
+            max_stiffness: Limit::new(device.max_stiffness, "max_stiffness", "N/m"),
+            max_damping: Limit::new(device.max_damping, "max_damping", "N·s/m"),
+            mass: Limit::new(device.mass, "mass", "kg"),
+            least_damping: Limit::new(device.least_damping, "least_damping", "N·s/m"),
+            friction: Limit::new(device.friction, "friction", "N"),
+            encoder_step: Limit::new(device.encoder_step, "encoder_step", "m"),
+            rules: [Rule::Passivity, Rule::Quantisation, Rule::MaxStiffness, Rule::MaxDamping],
+            is_turning: false,
+            assumed: device.assumed.clone(),
+        }
+    }
+
+    /// About the axes of a device.
+    pub(crate) fn about(device: &TurningProfile) -> Self {
+        let limit = |value, name, unit| Limit::new(value, name, unit);
+        Self {
+            max_force: limit(device.max_torque, "max_torque", "N·m"),
+            continuous_force: limit(device.continuous_torque, "continuous_torque", "N·m"),
+            max_force_rate: limit(device.max_torque_rate, "max_torque_rate", "N·m/s"),
+            max_stiffness: limit(device.max_stiffness, "turning max_stiffness", "N·m/rad"),
+            max_damping: limit(device.max_damping, "turning max_damping", "N·m·s/rad"),
+            mass: limit(device.inertia, "inertia", "kg·m²"),
+            least_damping: limit(device.least_damping, "turning least_damping", "N·m·s/rad"),
+            friction: limit(device.friction, "turning friction", "N·m"),
+            encoder_step: limit(device.encoder_step, "turning encoder_step", "rad"),
+            rules: [
+                Rule::AngularPassivity,
+                Rule::AngularQuantisation,
+                Rule::MaxAngularStiffness,
+                Rule::MaxAngularDamping,
+            ],
+            is_turning: true,
+            assumed: device.assumed.clone(),
+        }
+    }
+}

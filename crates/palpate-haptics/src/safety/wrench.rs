@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What stands between a wanted force and torque and a hand.
+//!
+//! Whether energy was taken before it is given is a question to force and torque together: a
+//! lever that was turned into a wall may give by a force what it took by a torque. So one
+//! observer sees `F·v + τ·ω`, and what it allows passes the other stages as force and as torque.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::ops::{Add, Mul, Sub};
+
+use palpate_field::Vector;
+
+use super::channel::{Channel, Moment};
+use super::limits::Limits;
+use super::passivity::{Directed, Passivity, PassivityOptions, Seen};
+use super::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
+use crate::error::{HapticsError, not_negative};
+
+/// What goes along axes, and what turns about them: a force [N] and a torque [N·m], a place [m]
+/// and an angle [rad], or their velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Both<const D: usize> {
+    pub(crate) along: Vector<f64, D>,
+    pub(crate) about: Vector<f64, 3>,
+}
+
+impl<const D: usize> Both<D> {
+    /// With `factor` times as much about axes.
+    fn turning(self, factor: f64) -> Self {
+        Self { about: self.about * factor, ..self }
+    }
+}
+
+impl<const D: usize> Add for Both<D> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { along: self.along + other.along, about: self.about + other.about }
+    }
+}
+
+impl<const D: usize> Sub for Both<D> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { along: self.along - other.along, about: self.about - other.about }
+    }
+}
+
+impl<const D: usize> Mul<f64> for Both<D> {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self { along: self.along * factor, about: self.about * factor }
+    }
+}
+
+impl<const D: usize> Directed for Both<D> {
+    const ZERO: Self = Self { along: Vector::ZERO, about: Vector::ZERO };
+
+    fn dot(self, other: Self) -> f64 {
+        self.along.dot(other.along) + self.about.dot(other.about)
+    }
+
+    fn norm(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    fn is_finite(&self) -> bool {
+        self.along.is_finite() && self.about.is_finite()
+    }
+}
+
+/// A device that turns in a tick, as its chain sees it. Device coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WrenchState<const D: usize> {
+    /// Where it is [m], and the sum of all its turns so far [rad].
+    pub(crate) position: Both<D>,
+    pub(crate) velocity: Both<D>,
+    /// As [`PortState::free_force`](super::PortState::free_force).
+    pub(crate) free_force: Vector<f64, D>,
+    pub(crate) is_late: bool,
+}
+
+/// The safety chain of a device that turns: [`SafetyChain`](super::SafetyChain) for a force and a
+/// torque.
+///
+/// With a radian as long as `u = √(κ/K)`, a stretch of the coupling in any direction, turning or
+/// not, is as stiff as in any other, and holds `½ (|F|² + |τ/u|²) / K`. So the passivity stage
+/// sees one spring in all directions, on the least damping `min(b, b_θ / u²)`, the least mass and
+/// the slowest change of both: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, nothing is ever changed.
+#[derive(Clone, Debug)]
+pub(crate) struct WrenchChain<const D: usize> {
+    /// Along axes, and about them.
+    accepted: (Accepted, Accepted),
+    /// A radian as a length [m].
+    unit: f64,
+    passivity: Passivity<Both<D>>,
+    force: Channel<D>,
+    torque: Channel<3>,
+    /// Written so far [N·m].
+    largest_torque: f64,
+}
+
+impl<const D: usize> WrenchChain<D> {
+    /// A chain for a device of these limits, along axes and about them, that renders what was
+    /// accepted, at `rate` [Hz].
+    ///
+    /// # Errors
+    ///
+    /// As [`SafetyChain::new`](super::SafetyChain::new).
+    pub(crate) fn new(
+        (along, about): (&Limits, &Limits),
+        accepted: (Accepted, Accepted),
+        options: &SafetyOptions,
+        rate: f64,
+    ) -> Result<Self, HapticsError> {
+        let stiffness = accepted.0.device_stiffness;
+        let unit = (accepted.1.device_stiffness / stiffness).sqrt();
+        let square = unit * unit;
+        let damping =
+            along.least_damping.positive()?.min(about.least_damping.positive()? / square);
+        let rate_of_change =
+            along.max_force_rate.positive()?.min(about.max_force_rate.positive()? / unit);
+        let passivity = PassivityOptions {
+            is_on: options.has_passivity_control && damping < f64::INFINITY,
+            stiffness,
+            damping,
+            mass: along.mass.not_negative()?.min(about.mass.not_negative()? / square),
+            max_rate: rate_of_change,
+            reserve: not_negative("reserve", options.reserve, "J")?,
+            period: 1.0 / rate,
+        };
+        Ok(Self {
+            accepted,
+            unit,
+            passivity: Passivity::new(passivity),
+            force: Channel::new(along, options, rate)?,
+            torque: Channel::new(about, options, rate)?,
+            largest_torque: 0.0,
+        })
+    }
+
+    /// What to write where `wanted` is wanted, at the device, in one tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn step(&mut self, wanted: Both<D>, state: &WrenchState<D>) -> Both<D> {
+        let WrenchState { position, velocity, free_force, is_late } = *state;
+        // What is not a number reaches no stage that remembers; the guards answer for it.
+        let is_sound =
+            [wanted, position, velocity].iter().all(Both::is_finite) && free_force.is_finite();
+        let unit = self.unit;
+        let (position, velocity) = (position.turning(unit), velocity.turning(unit));
+        let seen = Seen { position, velocity, wants_ramp: false };
+        let as_lengths = wanted.turning(1.0 / unit);
+        let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
+        // What is not changed keeps its bits.
+        let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
+        let moment = Moment { is_sound, is_late, wants_ramp: false };
+        let (along, force_left) = self.force.step((allowed.along, free_force), &moment);
+        let (about, torque_left) = self.torque.step((allowed.about, Vector::ZERO), &moment);
+        let left = Both { along: force_left, about: torque_left };
+        self.passivity.written(left.turning(1.0 / unit));
+        self.largest_torque = self.largest_torque.max(about.norm());
+        Both { along, about }
+    }
+
+    /// Lowers the largest force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        self.force.lower_limit(max_force);
+    }
+
+    /// Lowers the largest torque [N·m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_torque(&mut self, max_torque: f64) {
+        self.torque.lower_limit(max_torque);
+    }
+
+    /// Stops force and torque.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn stop(&mut self) {
+        self.force.stop();
+        self.torque.stop();
+    }
+
+    /// Lets force and torque rise again.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn release(&mut self) {
+        self.force.release();
+        self.torque.release();
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn passivity(&self) -> PassivityReport {
+        self.passivity.report()
+    }
+
+    pub(crate) fn report(&self) -> SafetyReport {
+        let (along, about) = &self.accepted;
+        let turning = TurningReport::of(about, self.largest_torque, &self.torque);
+        SafetyReport {
+            turning: Some(turning),
+            ..SafetyReport::of(along, self.passivity.report(), &self.force)
+        }
+    }
+}
