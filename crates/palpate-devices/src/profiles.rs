@@ -72,20 +72,6 @@ struct Assumed {
 /// How often a second a force rises from nothing to all of it [1/s]: in 2 ms.
 pub(crate) const FORCE_RISES: f64 = 500.0;
 
-const VIRTUOSE: Origin = Origin {
-    source: "forces: the maker's data sheet",
-    assumed: &[
-        "max_force_rate",
-        "max_stiffness",
-        "max_damping",
-        "workspace_radius",
-        "mass",
-        "least_damping",
-        "friction",
-        "encoder_step",
-    ],
-};
-
 const fn profile(
     origin: &Origin,
     name: &'static str,
@@ -357,7 +343,7 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "virtuose6d",
         turning_profile(
-            (&VIRTUOSE, "Haption Virtuose 6D"),
+            (&ASSUMED, "Haption Virtuose 6D"),
             Published { force: 35.0, stiffness: 2000.0, damping: 30.0, workspace: 0.3 },
             Assumed {
                 continuous_force: 10.0,

@@ -24,6 +24,19 @@ pub(crate) struct Torques {
 /// The least damping of what senses turns and gives no torque [N·m·s/rad]; nothing depends on it.
 const FREE_WRIST: f64 = 1e-3;
 
+const DRIVERS: &str =
+    "largest torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024)";
+
+/// What is assumed where the drivers say the largest torque, stiffness and damping.
+const BUT_LARGEST: &[&str] = &[
+    "continuous_torque",
+    "max_torque_rate",
+    "inertia",
+    "least_damping",
+    "friction",
+    "encoder_step",
+];
+
 /// The gimbal of the Phantom Premium 1.5 6DOF and 3.0 6DOF.
 pub(crate) const PREMIUM: Torques = Torques {
     torque: 0.188,
@@ -34,11 +47,7 @@ pub(crate) const PREMIUM: Torques = Torques {
     friction: 2e-3,
     // 0.0080°
     encoder_step: 1.4e-4,
-    origin: Origin {
-        source: "torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024); \
-                 lasting torque and encoder step: the maker's data sheet, roll",
-        assumed: &["max_torque_rate", "inertia", "least_damping", "friction"],
-    },
+    origin: Origin { source: DRIVERS, assumed: BUT_LARGEST },
 };
 
 /// The wrist of the omega.6 and the omega.7.
@@ -52,8 +61,8 @@ pub(crate) const OMEGA: Torques = Torques {
     // 0.09°
     encoder_step: 1.57e-3,
     origin: Origin {
-        source: "the maker's data sheet: senses turns and gives no torque",
-        assumed: &["inertia", "least_damping", "friction"],
+        source: "drivers of CHAI3D 3.3.0 (Conti et al., 2024): senses turns and gives no torque",
+        assumed: &["inertia", "least_damping", "friction", "encoder_step"],
     },
 };
 
@@ -67,17 +76,7 @@ pub(crate) const SIGMA: Torques = Torques {
     friction: 4e-3,
     // 0.013°
     encoder_step: 2.27e-4,
-    origin: Origin {
-        source: "torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024); \
-                 encoder step: the maker's data sheet",
-        assumed: &[
-            "continuous_torque",
-            "max_torque_rate",
-            "inertia",
-            "least_damping",
-            "friction",
-        ],
-    },
+    origin: Origin { source: DRIVERS, assumed: BUT_LARGEST },
 };
 
 /// The wrist of the Virtuose 6D.
@@ -90,8 +89,10 @@ pub(crate) const VIRTUOSE_6D: Torques = Torques {
     friction: 0.05,
     encoder_step: 2e-4,
     origin: Origin {
-        source: "torques: the maker's data sheet",
+        source: "none: all of the order of the maker's data sheet",
         assumed: &[
+            "max_torque",
+            "continuous_torque",
             "max_torque_rate",
             "max_stiffness",
             "max_damping",
