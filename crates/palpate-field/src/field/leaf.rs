@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::kernel::Kernel;
-use crate::machine::{Block, Column, Gradients, Job, Lane, PointJob, run, run_point};
+use crate::machine::{Block, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point};
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
@@ -107,6 +107,26 @@ impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T,
     }
 }
 
+/// A kernel where it is placed: in short blocks, whose calls take as long as their numbers.
+struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
+
+impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
+    #[inline(always)]
+    fn lane(&self, p: Vector<S, D>, (): ()) -> S {
+        S::evaluate(self.0, self.1.to_body(p))
+    }
+}
+
+impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T, D>)>
+    for Placed<'_, K, D>
+{
+    #[inline(always)]
+    fn lane(&self, p: Vector<T, D>, (): ()) -> (T, Vector<T, D>) {
+        let (distance, gradient) = self.0.distance_gradient(self.1.to_body(p));
+        (distance, self.1.gradient_to_world(gradient))
+    }
+}
+
 /// Moves points into the body's frame.
 struct ToBody<'a, const D: usize>(&'a Placement<D>);
 
@@ -166,6 +186,9 @@ impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, 
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
         match &self.placement {
             None => run(&Values(&self.kernel), p, &(), count, out),
+            Some(placement) if W == SHORT => {
+                run(&Placed(&self.kernel, placement), p, &(), count, out);
+            }
             Some(placement) => {
                 let mut q = Block::<S, D, W>::scratch();
                 run(&ToBody(placement), p, &(), count, &mut q);
@@ -186,6 +209,9 @@ impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> Differentiat
     ) {
         match &self.placement {
             None => run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
+            Some(placement) if W == SHORT => {
+                run(&Placed(&self.kernel, placement), p, &(), count, out);
+            }
             Some(placement) => {
                 let mut q = Block::<T, D, W>::scratch();
                 let mut in_body = Gradients::<T, D, W>::scratch();
