@@ -127,17 +127,17 @@ where
     J: Job<A::Item, B::Item, Out::Item>,
 {
     #[cfg(target_arch = "x86_64")]
-    match InstructionSet::in_use() {
-        // SAFETY: in_use() returns only sets for which is_available() found
-        // every feature that the function is compiled with.
-        InstructionSet::Avx512 if Out::WIDTH > Out::LINE => {
+    {
+        let set = InstructionSet::in_use();
+        if set == InstructionSet::Avx512 && Out::WIDTH > Out::LINE {
+            // SAFETY: in_use() returns only sets for which is_available() found
+            // every feature that the function is compiled with.
             return unsafe { with_avx512(job, a, b, count, out) };
         }
-        // SAFETY: as above; AVX-512 includes AVX2.
-        InstructionSet::Avx512 | InstructionSet::Avx2 => {
+        if set >= InstructionSet::Avx2 {
+            // SAFETY: as above; AVX-512 includes AVX2.
             return unsafe { with_avx2(job, a, b, count, out) };
         }
-        InstructionSet::Baseline => {}
     }
     baseline(job, a, b, count, out);
 }
