@@ -16,17 +16,6 @@ use crate::error::{HapticsError, not_negative, positive};
 /// anywhere.
 const LONGEST: usize = 16;
 
-/// What a window's way is multiplied by for that of a period, from the shortest window on.
-const PER_WINDOW: [f64; LONGEST] = {
-    let mut inverses = [1.0; LONGEST];
-    let mut i = 1;
-    while i < LONGEST {
-        inverses[i] = 1.0 / (i + 1) as f64;
-        i += 1;
-    }
-    inverses
-};
-
 /// What is allowed beyond a step, as a part of it: positions in steps may be just a step off a
 /// line, and rounding is not to decide.
 const SLACK: f64 = 1e-6;
@@ -112,8 +101,8 @@ impl<const D: usize> VelocityEstimator<D> {
         let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
         let mut fitted = Vector::ZERO;
         self.window = 0;
-        let older = self.positions.iter().skip(1).zip(PER_WINDOW).take(longest);
-        for (oldest, per_window) in older {
+        for (window, oldest) in self.positions.iter().enumerate().skip(1).take(longest) {
+            let per_window = 1.0 / window as f64;
             let (way, step) = ((position - *oldest) * per_window, self.step * per_window);
             let mut is_on_line = true;
             for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
@@ -126,8 +115,7 @@ impl<const D: usize> VelocityEstimator<D> {
             if !is_on_line {
                 break;
             }
-            fitted = way;
-            self.window += 1;
+            (fitted, self.window) = (way, window);
         }
         let velocity = fitted * self.rate;
         if !velocity.is_finite() {
