@@ -14,6 +14,7 @@ mod peers;
 mod random;
 mod rounds;
 mod scenes;
+mod yardstick;
 
 use std::process::ExitCode;
 

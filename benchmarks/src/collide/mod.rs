@@ -18,6 +18,7 @@ use palpate::field::{Rotation, ShapeError, Vector};
 
 use crate::fields::Rows;
 use crate::random::Random;
+use crate::yardstick::Yardstick;
 
 /// What adds rows.
 type Part = fn(&mut Rows) -> Result<(), Box<dyn Error>>;
@@ -41,9 +42,11 @@ pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
 /// All rows of the suite, or those of one part.
 pub(crate) fn measure(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
+    let mut yardstick = Yardstick::new()?;
     for (name, part) in PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
         eprintln!("measuring {name} …");
         part(&mut rows)?;
+        yardstick.measure(&mut rows);
     }
     Ok(rows)
 }

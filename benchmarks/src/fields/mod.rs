@@ -19,6 +19,7 @@ use fidget::jit::JitFunction;
 use fidget::vm::VmFunction;
 use ours::Ours;
 use points::Points;
+pub(crate) use theirs::NOTHING;
 
 /// Keys and numbers.
 pub(crate) type Rows = BTreeMap<String, f64>;

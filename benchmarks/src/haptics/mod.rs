@@ -22,6 +22,7 @@ use palpate::haptics::{
 
 use crate::fields::Rows;
 use crate::scenes;
+use crate::yardstick::Yardstick;
 
 /// Ticks of a path: 20 s at 1 kHz.
 const TICKS: usize = 20_000;
@@ -48,11 +49,17 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     let s3 = scenes::spatial()?.into_iter().find(|work| work.name == "S3");
     let s3 = s3.ok_or("there is no S3")?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
-    ticks("tick.sphere", &sphere, 1, &mut rows)?;
-    ticks("tick.S3", &s3, 1, &mut rows)?;
-    ticks("tick.union_1000", &thousand, 1, &mut rows)?;
-    ticks("tick.ten_fingers_S3", &s3, 10, &mut rows)?;
-    ticks("tick.24_points_union_1000", &thousand, 24, &mut rows)?;
+    let mut yardstick = Yardstick::new()?;
+    for (key, shape, points) in [
+        ("tick.sphere", &sphere, 1),
+        ("tick.S3", &s3, 1),
+        ("tick.union_1000", &thousand, 1),
+        ("tick.ten_fingers_S3", &s3, 10),
+        ("tick.24_points_union_1000", &thousand, 24),
+    ] {
+        ticks(key, shape, points, &mut rows)?;
+        yardstick.measure(&mut rows);
+    }
     tool::ticks("tick.tool_1000_points_S3", &s3, &mut rows)?;
     Ok(rows)
 }

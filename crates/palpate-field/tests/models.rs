@@ -99,8 +99,14 @@ fn place(u: &mut Unstructured<'_>) -> Result<[f64; 3]> {
     Ok(at)
 }
 
-/// What is wrong with a result of `result` that is `value` at `at`.
-fn check(result: &Model, value: Double, at: &[f64; 3]) -> std::result::Result<(), String> {
+/// What is wrong with a result of `result` that is `value` at `at`, of operands up to `size`:
+/// in a difference of two, twice the precision is that of the two.
+fn check(
+    result: &Model,
+    value: Double,
+    at: &[f64; 3],
+    size: f64,
+) -> std::result::Result<(), String> {
     let numbers = [result.value, result.lower, result.upper];
     let sound = result.lower >= 0.0 && result.upper >= 0.0;
     if !sound || !numbers.iter().chain(&result.gradient).all(|x| x.is_finite()) {
@@ -108,7 +114,7 @@ fn check(result: &Model, value: Double, at: &[f64; 3]) -> std::result::Result<()
     }
     let above = value - plane(result, at);
     let parts = numbers.iter().chain(&result.gradient);
-    let slack = TWICE * parts.fold(value.to_f64().abs(), |sum, x| sum + x.abs());
+    let slack = TWICE * parts.fold(size + value.to_f64().abs(), |sum, x| sum + x.abs());
     let below_low = (above + Double::constant(result.lower)).to_f64() + slack;
     let above_high = (above - Double::constant(result.upper)).to_f64() - slack;
     if below_low < 0.0 || above_high > 0.0 {
@@ -143,7 +149,8 @@ fn encloses<const N: usize>(
                 *number = member(u, model, &at)?;
             }
             let Some(value) = on_numbers(numbers) else { continue };
-            if let Err(complaint) = check(&result, value, &at) {
+            let size = numbers.iter().map(|x| x.to_f64().abs()).sum();
+            if let Err(complaint) = check(&result, value, &at, size) {
                 return Ok(Err(format!("{complaint}\n  operands {models:?}")));
             }
         }

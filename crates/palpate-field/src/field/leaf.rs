@@ -55,6 +55,12 @@ impl<const D: usize> Placement<D> {
         Self { world_from_body, columns, single }
     }
 
+    /// `Rᵀ`, row by row.
+    #[inline(always)]
+    pub(crate) fn columns(&self) -> &[[f64; D]; D] {
+        &self.columns
+    }
+
     /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
@@ -137,6 +143,16 @@ impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for ToBody<'_,
     }
 }
 
+/// Moves boxes along the axes into the body's frame.
+struct BoxesToBody<'a, const D: usize>(&'a Placement<D>);
+
+impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for BoxesToBody<'_, D> {
+    #[inline(always)]
+    fn lane(&self, p: Vector<S, D>, (): ()) -> Vector<S, D> {
+        Vector(S::box_to_body(p.0, self.0))
+    }
+}
+
 /// Turns gradients from the body's frame into the world's.
 struct GradientsToWorld<'a, const D: usize>(&'a Placement<D>);
 
@@ -191,7 +207,11 @@ impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, 
             }
             Some(placement) => {
                 let mut q = Block::<S, D, W>::scratch();
-                run(&ToBody(placement), p, &(), count, &mut q);
+                if p.are_boxes() {
+                    run(&BoxesToBody(placement), p, &(), count, &mut q);
+                } else {
+                    run(&ToBody(placement), p, &(), count, &mut q);
+                }
                 run(&Values(&self.kernel), &q, &(), count, out);
             }
         }

@@ -192,19 +192,23 @@ impl<S: Lane + fmt::Debug, const W: usize> fmt::Debug for Column<S, W> {
 /// assert_eq!(points.get(3), Vector([1.0, 2.0]));
 /// ```
 #[derive(Clone)]
-pub struct Block<S: Lane, const D: usize, const W: usize>([Column<S, W>; D]);
+pub struct Block<S: Lane, const D: usize, const W: usize> {
+    columns: [Column<S, W>; D],
+    /// Every point is a box along the axes: [`Lane::is_box`].
+    boxes: bool,
+}
 
 impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     /// All points at the origin.
     #[must_use]
     pub fn zero() -> Self {
-        Self(std::array::from_fn(|_| Column::zero()))
+        Self { columns: std::array::from_fn(|_| Column::zero()), boxes: true }
     }
 
     /// Memory for an output.
     #[inline(always)]
     pub(crate) fn scratch() -> Self {
-        Self(std::array::from_fn(|_| Column::scratch()))
+        Self { columns: std::array::from_fn(|_| Column::scratch()), boxes: false }
     }
 
     /// The point in lane `i`.
@@ -215,7 +219,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Vector<S, D> {
-        Vector(array!(k < D => self.0[k].get(i)))
+        Vector(array!(k < D => self.columns[k].get(i)))
     }
 
     /// Puts points into the first `count` lanes, and more of the last where evaluations
@@ -228,13 +232,15 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     pub fn fill(&mut self, count: usize, mut point: impl FnMut(usize) -> Vector<S, D>) {
         assert!(count <= W, "{count} points in {W} lanes");
         let lanes = filled::<Column<S, W>>(count);
+        self.boxes = true;
         for i in 0..lanes {
             let point = point(i.min(count.max(1) - 1));
+            self.boxes = self.boxes && S::is_box(&point.0);
             for k in 0..D {
-                self.0[k].lanes.write(i, point.0[k]);
+                self.columns[k].lanes.write(i, point.0[k]);
             }
         }
-        for column in &mut self.0 {
+        for column in &mut self.columns {
             column.written = lanes;
         }
     }
@@ -246,9 +252,16 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     /// If there is no lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, point: Vector<S, D>) {
+        self.boxes = self.boxes && S::is_box(&point.0);
         for k in 0..D {
-            self.0[k].set(i, point.0[k]);
+            self.columns[k].set(i, point.0[k]);
         }
+    }
+
+    /// Every point is a box along the axes.
+    #[inline(always)]
+    pub(crate) fn are_boxes(&self) -> bool {
+        self.boxes
     }
 }
 
@@ -257,14 +270,14 @@ impl<S: Lane, const D: usize, const W: usize> Rows for Block<S, D, W> {
 
     #[inline(always)]
     fn written(&self) -> usize {
-        self.0.iter().fold(usize::MAX, |least, column| least.min(column.written))
+        self.columns.iter().fold(usize::MAX, |least, column| least.min(column.written))
     }
 
     #[inline(always)]
     unsafe fn read(&self, i: usize) -> Vector<S, D> {
         // SAFETY: the caller promises that `i` is less than `written` of every
         // column.
-        Vector(array!(k < D => unsafe { self.0[k].lanes.read(i) }))
+        Vector(array!(k < D => unsafe { self.columns[k].lanes.read(i) }))
     }
 }
 
@@ -275,13 +288,13 @@ impl<S: Lane, const D: usize, const W: usize> RowsMut for Block<S, D, W> {
     #[inline(always)]
     fn write(&mut self, i: usize, point: Vector<S, D>) {
         for k in 0..D {
-            self.0[k].lanes.write(i, point.0[k]);
+            self.columns[k].lanes.write(i, point.0[k]);
         }
     }
 
     #[inline(always)]
     unsafe fn set_written(&mut self, count: usize) {
-        for column in &mut self.0 {
+        for column in &mut self.columns {
             column.written = count;
         }
     }
@@ -289,7 +302,7 @@ impl<S: Lane, const D: usize, const W: usize> RowsMut for Block<S, D, W> {
 
 impl<S: Lane + fmt::Debug, const D: usize, const W: usize> fmt::Debug for Block<S, D, W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_list().entries(&self.0).finish()
+        f.debug_list().entries(&self.columns).finish()
     }
 }
 

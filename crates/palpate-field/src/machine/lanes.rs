@@ -6,6 +6,7 @@
 use std::fmt;
 use std::mem::MaybeUninit;
 
+use crate::field::Placement;
 use crate::kernel::Kernel;
 use crate::scalar::{Float, Model, Scalar};
 use crate::vector::Vector;
@@ -65,6 +66,19 @@ pub trait Lane: Scalar + Send + Sync + 'static {
 
     /// `kernel` at `p`, by the best rule the kernel has for this number.
     fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
+
+    /// `true` if these are the coordinates of a box along the axes, without remainders:
+    /// then [`box_to_body`](Self::box_to_body) may move it. A number is no box.
+    #[inline(always)]
+    fn is_box<const D: usize>(_: &[Self; D]) -> bool {
+        false
+    }
+
+    /// A box in a body's frame.
+    #[inline(always)]
+    fn box_to_body<const D: usize>(p: [Self; D], placement: &Placement<D>) -> [Self; D] {
+        placement.to_body(Vector(p)).0
+    }
 }
 
 impl<T: Float, const W: usize> LaneArray<T> for Lanes<T, W> {
@@ -169,5 +183,16 @@ impl Lane for Model {
     #[inline(always)]
     fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
         kernel.model(p)
+    }
+
+    #[inline(always)]
+    fn is_box<const D: usize>(p: &[Self; D]) -> bool {
+        (0..D).all(|i| p[i].is_side(i))
+    }
+
+    #[inline(always)]
+    fn box_to_body<const D: usize>(p: [Self; D], placement: &Placement<D>) -> [Self; D] {
+        let translation = &placement.world_from_body.translation;
+        Self::moved_cell(p, &translation.0, placement.columns())
     }
 }

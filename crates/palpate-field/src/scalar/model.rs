@@ -18,6 +18,10 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 /// and its product are off by at most eight units.
 const INFLATE: f64 = 1.0 + 8.0 * UNIT;
 
+/// What sums begin with: `−0 + x` is `x` whatever its sign, so that no addition is left of
+/// it.
+const NONE: f64 = -0.0;
+
 /// What stands for "no bound": large beyond every length, small enough that
 /// products with it stay finite.
 const UNBOUNDED: f64 = 1e60;
@@ -69,6 +73,36 @@ impl Model {
             let mut gradient = [0.0; 3];
             gradient[i] = half[i];
             Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
+        })
+    }
+
+    /// `true` of coordinate `i` of a [`cell`](Self::cell).
+    #[inline(always)]
+    pub(crate) fn is_side(&self, i: usize) -> bool {
+        let along_others = (0..3).filter(|k| *k != i).map(|k| self.gradient[k]);
+        along_others.chain([self.lower, self.upper]).all(|part| part == 0.0)
+    }
+
+    /// `W (p − t)` of the coordinates of a [`cell`](Self::cell), as
+    /// [`weighted_sum`](Scalar::weighted_sum) has it of any.
+    #[inline(always)]
+    pub(crate) fn moved_cell<const D: usize>(
+        cell: [Self; D],
+        translation: &[f64; D],
+        weights: &[[f64; D]; D],
+    ) -> [Self; D] {
+        let centre = array!(k < D => cell[k].value - translation[k]);
+        array!(i < D => {
+            let mut gradient = [0.0; 3];
+            let (mut value, mut size) = (NONE, NONE);
+            for k in 0..D {
+                let weight = weights[i][k];
+                gradient[k] = weight * cell[k].gradient[k];
+                value += weight * centre[k];
+                size += f64::abs(weight) * (f64::abs(centre[k]) + f64::abs(cell[k].gradient[k]));
+            }
+            let error = (D as f64 + 4.0) * UNIT * size;
+            Self { value, gradient, lower: error, upper: error }
         })
     }
 
@@ -276,13 +310,19 @@ impl Add for Model {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self {
+        let sum = Self {
             value: self.value + other.value,
             gradient: array!(k < 3 => self.gradient[k] + other.gradient[k]),
             lower: self.lower + other.lower,
             upper: self.upper + other.upper,
-        }
-        .rounded(2.0)
+        };
+        // What is added to nothing is not rounded: so little is left of adding a constant.
+        let rounded = |k: usize| {
+            let is_sum = self.gradient[k] != 0.0 && other.gradient[k] != 0.0;
+            choose(is_sum, f64::abs(sum.gradient[k]), 0.0)
+        };
+        let size = f64::abs(sum.value) + (rounded(0) + rounded(1) + rounded(2));
+        sum.widened(2.0 * UNIT * (size + (sum.lower + sum.upper)))
     }
 }
 

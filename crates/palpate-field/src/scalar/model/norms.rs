@@ -4,19 +4,46 @@
 //! Models of norms, and of distances to an orthant in them: convex, so that below
 //! they are bounded by a tangent plane, and above by their curvature.
 
-use super::{INFLATE, MaxOf, Model, UNBOUNDED, UNIT, choose};
+use super::{INFLATE, MaxOf, Model, NONE, UNBOUNDED, UNIT, choose};
 use crate::scalar::power;
 use crate::scalar::{Scalar, power::TINY};
 use crate::vector::{array, unrolled};
 
-/// How far a norm or orthant distance of value `n` may exceed its tangent plane
-/// when its arguments move by at most `d`: `c·d²/2(n − d)` where its second derivative
-/// is at most `c` over its value, or `2d`, since neither is steeper than one.
-#[inline(always)]
-fn excess(n: f64, d: f64, curvature: f64) -> f64 {
-    let far = n > 1.25 * d;
-    let curved = 0.5 * curvature * d * d / choose(far, n - d, 1.0);
-    choose(far, Scalar::min(curved, d + d), d + d) * INFLATE
+/// How far the arguments of a function move over a cell.
+struct Moves<const N: usize> {
+    /// Each by at most this.
+    each: [f64; N],
+    /// `Σ eachᵢ`: no less than the length of the whole move.
+    sum: f64,
+    /// `Σ eachᵢ²`.
+    squares: f64,
+}
+
+impl<const N: usize> Moves<N> {
+    #[inline(always)]
+    fn of(x: &[Model; N]) -> Self {
+        let each = array!(i < N => x[i].deviation());
+        let (mut sum, mut squares) = (each[0], each[0] * each[0]);
+        for step in &each[1..] {
+            sum += step;
+            squares += step * step;
+        }
+        Self { each, sum, squares }
+    }
+
+    /// How far a norm of value `n`, or a distance to an orthant in it, may exceed its
+    /// tangent plane: `c·‖δ‖²/2n`, if the second derivative of half the norm's square is at
+    /// most `c`.
+    ///
+    /// For then `‖x + δ‖² ≤ n² + 2n ∇·δ + c‖δ‖²`, of which the root lies below its tangent
+    /// at `n²`. Of an orthant the negative `xᵢ` count as zero: no `xᵢ + δᵢ` has a positive
+    /// part larger than `δᵢ` on top of that.
+    #[inline(always)]
+    fn curved(&self, n: f64, inverse: f64, curvature: f64) -> f64 {
+        let curved = self.squares * inverse * (0.5 * curvature * INFLATE * INFLATE);
+        // The inverse of a smaller norm may be no number.
+        choose(n > TINY, curved, UNBOUNDED)
+    }
 }
 
 /// How far the roundings of a value and of each component of its gradient leave them
@@ -38,9 +65,9 @@ const fn of_powers<const P: u32>() -> Roundings {
     Roundings { value: 8.0 * UNIT, gradient: (6 * (P - 1) + 7) as f64 * UNIT }
 }
 
-/// A function of `x` that nowhere lies below its tangent plane: `value` and
-/// `gradient` at the centre, at most `above` over the plane, off by `roundings` of
-/// numbers up to `size`.
+/// A function of `x` that nowhere lies below its tangent plane and is nowhere steeper
+/// than one: `value` and `gradient` at the centre, at most `above` over the plane, off by
+/// `roundings` of numbers up to `size`.
 ///
 /// A component's rounding is relative: of a remainder that lifts the plane, it takes
 /// nothing that the remainder does not bring. So it counts over what may lower it alone.
@@ -49,11 +76,11 @@ fn convex<const N: usize>(
     value: f64,
     gradient: [f64; N],
     x: &[Model; N],
-    above: f64,
+    (moves, above): (&Moves<N>, f64),
     (roundings, size): (Roundings, f64),
 ) -> Model {
-    let mut slopes = [0.0; 3];
-    let (mut lower, mut upper, mut reach) = (0.0, 0.0, 0.0);
+    let mut slopes = [NONE; 3];
+    let (mut lower, mut upper, mut reach) = (NONE, NONE, NONE);
     unrolled!(i < N => {
         let size = f64::abs(gradient[i]);
         let positive = gradient[i] > 0.0;
@@ -62,6 +89,8 @@ fn convex<const N: usize>(
         upper += size * choose(positive, x[i].upper, x[i].lower);
         reach += size * x[i].slope();
     });
+    let steepest = (moves.sum + (reach + lower.max_of(upper))) * INFLATE;
+    let above = Scalar::min(above, steepest);
     let fixed = roundings.value * size + roundings.gradient * reach;
     Model {
         value,
@@ -76,21 +105,24 @@ fn convex<const N: usize>(
 pub(super) fn norm<const N: usize>(x: [Model; N]) -> Model {
     let n = <f64 as Scalar>::norm(array!(i < N => x[i].value));
     let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
-    let d = Model::radius(&x);
+    let moves = Moves::of(&x);
     let unit = array!(i < N => x[i].value * inverse);
-    convex(n, unit, &x, excess(n, d, 1.0), (OF_SQUARES, n))
+    let above = moves.curved(n, inverse, 1.0);
+    convex(n, unit, &x, (&moves, above), (OF_SQUARES, n))
 }
 
-/// The second derivative is `(P − 1)/n` times the diagonal of `(|xᵢ|/n)^(P−2) ≤ 1`, less
-/// the square of the gradient.
+/// Half the square of a norm of the powers `P ≥ 2` has a second derivative of at most
+/// `P − 1` in that norm (Ball, Carlen and Lieb, 1994), which is no longer than the
+/// Euclidean one.
 #[inline(always)]
 pub(super) fn power_norm<const P: u32, const N: usize>(x: [Model; N]) -> Model {
     let values = array!(i < N => x[i].value);
     let split = power::split::<f64, P, N>(values);
     let n = split.largest * split.root;
-    let d = Model::radius(&x);
-    let above = excess(n, d, f64::from(P) - 1.0);
-    convex(n, split.gradient::<P>(values), &x, above, (of_powers::<P>(), n + TINY / UNIT))
+    let moves = Moves::of(&x);
+    let above = moves.curved(n, 1.0 / choose(n > 0.0, n, 1.0), f64::from(P) - 1.0);
+    let gradient = split.gradient::<P>(values);
+    convex(n, gradient, &x, (&moves, above), (of_powers::<P>(), n + TINY / UNIT))
 }
 
 #[inline(always)]
@@ -99,25 +131,32 @@ pub(super) fn orthant<const N: usize>(q: [Model; N]) -> Model {
     let n = <f64 as Scalar>::norm(positive);
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
     let outside = array!(i < N => positive[i] * inverse);
-    to_orthant((n, outside), &q, 1.0, OF_SQUARES)
+    to_orthant((n, inverse, outside), &q, 1.0, OF_SQUARES)
 }
 
 #[inline(always)]
 pub(super) fn power_orthant<const P: u32, const N: usize>(q: [Model; N]) -> Model {
     let positive = array!(i < N => q[i].value.max_of(0.0));
     let split = power::split::<f64, P, N>(positive);
-    let outside = (split.largest * split.root, split.gradient::<P>(positive));
-    to_orthant(outside, &q, f64::from(P) - 1.0, of_powers::<P>())
+    let n = split.largest * split.root;
+    let inverse = 1.0 / choose(n > 0.0, n, 1.0);
+    let outside = split.gradient::<P>(positive);
+    to_orthant((n, inverse, outside), &q, f64::from(P) - 1.0, of_powers::<P>())
 }
 
 /// An orthant distance is convex and grows with each `qᵢ`: below, its subgradient is
-/// a bound. Above, nothing is added where one face rules the whole cell.
+/// a bound.
 ///
-/// Given are the value and gradient where some `qᵢ` is positive, and how much the norm
-/// is curved, as for [`excess`].
+/// Given are the norm of the positive parts, its inverse and its gradient where it is
+/// positive, and how much the norm is curved, as for [`Moves::curved`].
+///
+/// Above, while the largest `qᵢ` alone may be positive, the plane is that `qᵢ` itself. Where
+/// it goes down to `low`, the others up to `other`, the distance exceeds it by at most
+/// `other − low`, or nothing; if they become positive, by no more than the sum of their
+/// positive parts on top of what `low` lacks to zero.
 #[inline(always)]
 fn to_orthant<const N: usize>(
-    (n, outside): (f64, [f64; N]),
+    (n, inverse, outside): (f64, f64, [f64; N]),
     q: &[Model; N],
     curvature: f64,
     roundings: Roundings,
@@ -129,16 +168,24 @@ fn to_orthant<const N: usize>(
             largest = largest.max_of(q[i].value);
         }
     });
+    let moves = Moves::of(q);
     let mut free = 1.0;
+    let (mut low, mut other, mut beyond) = (NONE, -UNBOUNDED, NONE);
     let gradient = array!(i < N => {
         let face = choose(q[i].value < largest, 0.0, free);
         free -= face;
+        let top = q[i].value + moves.each[i];
+        low = choose(face > 0.0, q[i].value - moves.each[i], low);
+        other = choose(face > 0.0, other, other.max_of(top));
+        beyond += choose(face > 0.0, 0.0, top.max_of(0.0));
         choose(n > 0.0, outside[i], face)
     });
     debug_assert!(free <= 0.0, "some face has the largest value");
-    let d = Model::radius(q);
-    let one_face = second + d < 0.0 && largest - second > d + d;
-    let above = choose(one_face, 0.0, excess(n, d, curvature));
+    let over_others = choose(other > 0.0, beyond - Scalar::min(low, 0.0), other - low);
+    let rounding = 8.0 * UNIT * (f64::abs(largest) + moves.sum);
+    let over_face = ((over_others + rounding) * INFLATE).max_of(0.0);
+    let over_plane = moves.curved(n, inverse, curvature);
+    let above = choose(second > 0.0, over_plane, Scalar::min(over_plane, over_face));
     let size = n + f64::abs(largest) + TINY / UNIT;
-    convex(n + Scalar::min(largest, 0.0), gradient, q, above, (roundings, size))
+    convex(n + Scalar::min(largest, 0.0), gradient, q, (&moves, above), (roundings, size))
 }
