@@ -115,7 +115,7 @@ pub(crate) fn pose(
 pub(crate) fn build(members: &[Placed]) -> Result<Shape<3>, Box<dyn Error>> {
     let mut shapes = Vec::with_capacity(members.len());
     for member in members {
-        shapes.push(member.entry.build(&member.arguments)?.placed(&member.pose)?);
+        shapes.push(member.entry.build_at(&member.arguments, &member.pose)?);
     }
     Ok(Shape::union(shapes)?)
 }

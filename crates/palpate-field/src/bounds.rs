@@ -4,7 +4,8 @@
 //! Boxes and balls that bound a shape.
 
 use crate::pose::Pose;
-use crate::vector::{Point, Vector, array};
+use crate::scalar::Scalar;
+use crate::vector::{Point, Vector, array, unrolled};
 
 /// A box along the axes, `min ≤ p ≤ max` in each coordinate [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,12 +30,14 @@ impl<const D: usize> Aabb<D> {
 
     /// The centre of the box [m].
     #[must_use]
+    #[inline]
     pub fn centre(&self) -> Point<D> {
         Vector(array!(i < D => 0.5 * (self.min[i] + self.max[i])))
     }
 
     /// Half the edge lengths [m].
     #[must_use]
+    #[inline]
     pub fn half_extents(&self) -> Vector<f64, D> {
         Vector(array!(i < D => 0.5 * (self.max[i] - self.min[i])))
     }
@@ -57,25 +60,22 @@ impl<const D: usize> Aabb<D> {
 
     /// The smallest box around this one after `pose`.
     #[must_use]
+    #[inline(always)]
     pub fn placed(&self, pose: &Pose<D>) -> Self {
         let centre = pose.transform_point(self.centre());
         let half = self.half_extents();
         let matrix = pose.rotation.matrix();
         let reach = Vector(array!(i < D => Vector(matrix[i]).abs().dot(half)));
-        Self { min: centre - reach, max: centre + reach }.rounded_outwards()
+        // Room for the roundings of a change of frame.
+        let mut largest = 0.0;
+        unrolled!(i < D => largest = Scalar::max(largest, centre[i].abs() + reach[i]));
+        Self { min: centre - reach, max: centre + reach }.grown(8.0 * f64::EPSILON * largest)
     }
 
     /// `true` if `point` lies in the box or on its faces.
     #[must_use]
     pub fn contains(&self, point: Point<D>) -> bool {
         (0..D).all(|i| self.min[i] <= point[i] && point[i] <= self.max[i])
-    }
-
-    /// Room for the roundings of a change of frame.
-    fn rounded_outwards(self) -> Self {
-        let largest =
-            (0..D).fold(0.0_f64, |m, i| m.max(self.min[i].abs()).max(self.max[i].abs()));
-        self.grown(8.0 * f64::EPSILON * largest)
     }
 }
 
@@ -145,7 +145,7 @@ impl<const D: usize> Bounds<D> {
     ///
     /// The ball is about the centre of the box.
     #[must_use]
-    pub fn union_of(parts: impl Iterator<Item = Option<Self>> + Clone) -> Option<Self> {
+    pub fn union_of<'a>(parts: impl Iterator<Item = Option<&'a Self>> + Clone) -> Option<Self> {
         let mut others = parts.clone();
         let mut aabb = others.next()??.aabb;
         for part in others {
@@ -153,7 +153,7 @@ impl<const D: usize> Bounds<D> {
         }
         let around = Self::of_box(aabb).ball;
         let reach = parts.flatten().fold(0.0_f64, |reach, Self { ball, .. }| {
-            reach.max((ball.centre - around.centre).norm() + ball.radius)
+            Scalar::max(reach, (ball.centre - around.centre).norm() + ball.radius)
         });
         let radius = around.radius.min(reach * (1.0 + 4.0 * f64::EPSILON));
         Some(Self { aabb, ball: BoundingBall { radius, ..around } })
@@ -171,6 +171,7 @@ impl<const D: usize> Bounds<D> {
 
     /// Bounds after `pose`.
     #[must_use]
+    #[inline(always)]
     pub fn placed(&self, pose: &Pose<D>) -> Self {
         let centre = pose.transform_point(self.ball.centre);
         let slack = 8.0 * f64::EPSILON * (centre.norm() + self.ball.radius);

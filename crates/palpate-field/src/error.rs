@@ -113,7 +113,10 @@ pub const LARGEST_LENGTH: f64 = 1e15;
 /// lose the range of single precision.
 pub const SMALLEST_LENGTH: f64 = 1e-15;
 
+const FINITE: &str = "finite and at most 1e15";
+
 /// Checks that `value` is finite and positive.
+#[inline]
 pub(crate) fn positive(
     parameter: &'static str,
     value: f64,
@@ -123,11 +126,12 @@ pub(crate) fn positive(
     if (SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&value) {
         Ok(value)
     } else {
-        Err(ShapeError::number(parameter, rule_of_range(value, "positive"), value, unit))
+        Err(out_of_range(parameter, "positive", value, unit))
     }
 }
 
 /// Checks that `value` is finite and not negative.
+#[inline]
 pub(crate) fn not_negative(
     parameter: &'static str,
     value: f64,
@@ -136,11 +140,12 @@ pub(crate) fn not_negative(
     if (0.0..=LARGEST_LENGTH).contains(&value) {
         Ok(value)
     } else {
-        Err(ShapeError::number(parameter, rule_of_range(value, "zero or more"), value, unit))
+        Err(out_of_range(parameter, "zero or more", value, unit))
     }
 }
 
 /// Checks that `value` is finite.
+#[inline]
 pub(crate) fn finite(
     parameter: &'static str,
     value: f64,
@@ -149,16 +154,24 @@ pub(crate) fn finite(
     if value.abs() <= LARGEST_LENGTH {
         Ok(value)
     } else {
-        Err(ShapeError::number(parameter, "finite and at most 1e15", value, unit))
+        Err(out_of_range(parameter, FINITE, value, unit))
     }
 }
 
-fn rule_of_range(value: f64, rule: &'static str) -> &'static str {
-    if value > LARGEST_LENGTH {
-        "finite and at most 1e15"
+/// Apart, so that the checks are short where they are inlined.
+#[cold]
+fn out_of_range(
+    parameter: &'static str,
+    rule: &'static str,
+    value: f64,
+    unit: Unit,
+) -> ShapeError {
+    let rule = if value > LARGEST_LENGTH {
+        FINITE
     } else if value > 0.0 {
         "at least 1e-15"
     } else {
         rule
-    }
+    };
+    ShapeError::number(parameter, rule, value, unit)
 }

@@ -8,7 +8,7 @@
 
 use std::ops::Mul;
 
-use crate::error::{ShapeError, Unit};
+use crate::error::{ShapeError, Unit, finite};
 use crate::vector::{Point, Vector, array};
 
 /// How far the columns of a matrix may be from orthonormal to be taken as a
@@ -31,6 +31,7 @@ impl<const D: usize> Rotation<D> {
 
     /// The rows of the rotation's matrix.
     #[must_use]
+    #[inline]
     pub fn matrix(&self) -> &[[f64; D]; D] {
         &self.matrix
     }
@@ -263,6 +264,19 @@ impl<const D: usize> Pose<D> {
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.inverse();
         Self::new(rotation, -rotation.rotate(self.translation))
+    }
+
+    /// Refuses motions to where no shape may be.
+    pub(crate) fn check(&self) -> Result<(), ShapeError> {
+        for x in self.translation.0 {
+            finite("translate", x, Unit::Metre)?;
+        }
+        Ok(())
+    }
+
+    /// `true` if nothing is moved.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.translation == Vector::ZERO && self.rotation == Rotation::identity()
     }
 
     /// `true` if no number is NaN or infinite.

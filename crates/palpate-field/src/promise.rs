@@ -24,12 +24,14 @@ pub enum Quality {
 impl Quality {
     /// `Exact` if both are, else `Bound`, or the weaker if one is weaker still.
     #[must_use]
+    #[inline]
     pub fn and(self, other: Self) -> Self {
         self.max(other)
     }
 
     /// The same, but at best a bound.
     #[must_use]
+    #[inline]
     pub fn bounded(self) -> Self {
         self.max(Self::Bound)
     }
@@ -52,6 +54,7 @@ impl Rounding {
     /// The error of a formula of `operations` rounded operations on numbers up
     /// to `|p| + size` [m].
     #[must_use]
+    #[inline]
     pub fn of_operations(operations: f64, size: f64) -> Self {
         let per_metre = operations * f64::EPSILON;
         Self { constant: per_metre * size, per_metre }
@@ -59,12 +62,14 @@ impl Rounding {
 
     /// The error for points at most `radius` [m] from the origin.
     #[must_use]
+    #[inline]
     pub fn within(&self, radius: f64) -> f64 {
         self.constant + self.per_metre * radius
     }
 
     /// The larger error of both, at every radius.
     #[must_use]
+    #[inline]
     pub fn or(&self, other: &Self) -> Self {
         Self {
             constant: self.constant.max(other.constant),
@@ -74,6 +79,7 @@ impl Rounding {
 
     /// The error of a sum or of nested steps.
     #[must_use]
+    #[inline]
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             constant: self.constant + other.constant,
@@ -84,12 +90,14 @@ impl Rounding {
     /// The error at points that were up to `offset` [m] further out and
     /// `stretch` times as far before.
     #[must_use]
+    #[inline]
     pub fn at(&self, stretch: f64, offset: f64) -> Self {
         Self { constant: self.within(offset), per_metre: self.per_metre * stretch }
     }
 
     /// The error of `factor` times the value.
     #[must_use]
+    #[inline]
     pub fn times(&self, factor: f64) -> Self {
         Self { constant: self.constant * factor, per_metre: self.per_metre * factor }
     }
@@ -200,6 +208,7 @@ impl<const D: usize> Promise<D> {
 
     /// The promise after a rigid motion, which keeps everything but symmetry.
     #[must_use]
+    #[inline(always)]
     pub fn placed(&self, pose: &Pose<D>) -> Self {
         let offset = pose.translation.norm();
         // Subtract, then D products and sums a coordinate.

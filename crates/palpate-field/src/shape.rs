@@ -35,6 +35,35 @@ impl<const D: usize> Shape<D> {
         Self::from_node(Arc::new(Leaf::new(kernel)))
     }
 
+    /// A closed formula, moved by `world_from_body`: the same as
+    /// [`placed`](Self::placed) makes of [`from_kernel`](Self::from_kernel), built at once.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let world_from_body = Pose::translation(Vector([1.0, 2.0]));
+    /// let ball = Shape::from_kernel_at(Ball::new(0.5)?, &world_from_body)?;
+    /// assert_eq!(ball.distance(Vector([1.0, 4.0])), 1.5);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If a number of the pose is not finite.
+    pub fn from_kernel_at(
+        kernel: impl Kernel<D>,
+        world_from_body: &Pose<D>,
+    ) -> Result<Self, ShapeError> {
+        world_from_body.check()?;
+        Ok(if world_from_body.is_identity() {
+            Self::from_kernel(kernel)
+        } else {
+            Self::from_node(Arc::new(Leaf::at(kernel, world_from_body)))
+        })
+    }
+
     /// A field that is no formula as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
         Self::from_node(Arc::new(Custom(field)))
@@ -91,6 +120,11 @@ impl<const D: usize> Shape<D> {
     #[must_use]
     pub fn depth(&self) -> usize {
         self.depth
+    }
+
+    /// The members, if this is a sharp union; leaves are not asked.
+    pub(crate) fn members(&self) -> Option<&[Self]> {
+        if self.depth == 1 { None } else { self.field.members() }
     }
 
     /// The node that answers.

@@ -86,6 +86,33 @@ fn gradients_written_by_hand_are_derivatives() {
     gradients_are_duals::<3>(100);
 }
 
+fn built_where_it_is<const D: usize>()
+where
+    Space: Dimension<D> + Turn<D>,
+{
+    let catalogue = <Space as Dimension<D>>::CATALOGUE;
+    let mut which = 0;
+    cases::check(10 * catalogue.len() as u64, |u| {
+        let entry = &catalogue[which % catalogue.len()];
+        which += 1;
+        let drawn = draw::arguments::<D>(u, entry.name, entry.parameters)?;
+        let Some(arguments) = drawn else {
+            return Ok(Err(format!("no arguments found for {}", entry.name)));
+        };
+        let pose = draw::pose(u)?;
+        let moved = entry.build(&arguments).and_then(|shape| shape.placed(&pose));
+        let at_once = entry.build_at(&arguments, &pose);
+        let (moved, at_once) = (format!("{moved:?}"), format!("{at_once:?}"));
+        Ok(if moved == at_once { Ok(()) } else { Err(format!("{moved}, and {at_once}")) })
+    });
+}
+
+#[test]
+fn primitives_built_where_they_are_are_those_moved_there() {
+    built_where_it_is::<2>();
+    built_where_it_is::<3>();
+}
+
 /// A motion of a motion is the motion of both.
 #[test]
 fn motions_compose() {

@@ -19,8 +19,6 @@ use crate::vector::{Vector, array};
 pub struct Placement<const D: usize> {
     /// The pose it was made from.
     pub world_from_body: Pose<D>,
-    /// The columns of its rotation.
-    columns: [[f64; D]; D],
     /// The same numbers in single precision.
     single: Single<D>,
 }
@@ -29,30 +27,25 @@ pub struct Placement<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Single<const D: usize> {
     translation: [f32; D],
-    columns: [[f32; D]; D],
     rows: [[f32; D]; D],
 }
 
-fn in_single<const D: usize>(matrix: &[[f64; D]; D]) -> [[f32; D]; D] {
-    let mut single = [[0.0; D]; D];
-    for (single, row) in single.iter_mut().zip(matrix) {
-        *single = array!(i < D => row[i] as f32);
-    }
-    single
+/// A column of a matrix, of its rows.
+#[inline(always)]
+fn column<S: Float, const D: usize>(rows: &[[S; D]; D], k: usize) -> [S; D] {
+    array!(i < D => rows[i][k])
 }
 
 impl<const D: usize> Placement<D> {
     /// The change of coordinates to a body at `world_from_body`.
     #[must_use]
     pub fn new(world_from_body: Pose<D>) -> Self {
-        let columns = *world_from_body.rotation.inverse().matrix();
-        let rows = world_from_body.rotation.matrix();
-        let single = Single {
-            translation: array!(i < D => world_from_body.translation[i] as f32),
-            columns: in_single(&columns),
-            rows: in_single(rows),
-        };
-        Self { world_from_body, columns, single }
+        let mut rows = [[0.0; D]; D];
+        for (single, row) in rows.iter_mut().zip(world_from_body.rotation.matrix()) {
+            *single = array!(i < D => row[i] as f32);
+        }
+        let translation = array!(i < D => world_from_body.translation[i] as f32);
+        Self { world_from_body, single: Single { translation, rows } }
     }
 
     /// `Rᵀ`, row by row.
@@ -64,10 +57,12 @@ impl<const D: usize> Placement<D> {
     /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        let t = &self.world_from_body.translation;
+        let Pose { rotation, translation } = &self.world_from_body;
         let single = &self.single;
-        let q = array!(i < D => p.0[i].minus_stored(t[i], single.translation[i]));
-        Vector(array!(i < D => S::stored_sum(q, &self.columns[i], &single.columns[i])))
+        let q = array!(i < D => p.0[i].minus_stored(translation[i], single.translation[i]));
+        Vector(array!(k < D => {
+            S::stored_sum(q, &column(rotation.matrix(), k), &column(&single.rows, k))
+        }))
     }
 
     /// `R·v`: a gradient in the body's frame, back in the world's.
@@ -90,6 +85,13 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
     pub(crate) fn new(kernel: K) -> Self {
         let promise = kernel.promise();
         Self { kernel, placement: None, promise }
+    }
+
+    /// The promise is made and moved in registers: all of it is inlined.
+    #[inline(always)]
+    pub(crate) fn at(kernel: K, world_from_body: &Pose<D>) -> Self {
+        let promise = kernel.promise().placed(world_from_body);
+        Self { kernel, placement: Some(Placement::new(*world_from_body)), promise }
     }
 }
 
@@ -254,16 +256,16 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
 
     fn placed(mut self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
         let leaf = Arc::make_mut(&mut self);
-        let (world_from_body, promise) = match &leaf.placement {
-            None => (*pose, leaf.promise.placed(pose)),
+        let world_from_body = match &leaf.placement {
+            None => *pose,
             Some(placement) => {
                 // From the kernel's promise, so that boxes do not grow twice.
-                let moved = *pose * placement.world_from_body;
-                (moved, leaf.kernel.promise().placed(&moved))
+                leaf.promise = leaf.kernel.promise();
+                *pose * placement.world_from_body
             }
         };
+        leaf.promise = leaf.promise.placed(&world_from_body);
         leaf.placement = Some(Placement::new(world_from_body));
-        leaf.promise = promise;
         Ok(Shape::from_node(self))
     }
 }

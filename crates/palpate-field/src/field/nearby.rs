@@ -76,7 +76,7 @@ impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
 fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
     let promise = member.promise();
     let skippable = promise.above_bounds && promise.inside != Quality::Lipschitz;
-    match promise.bounds {
+    match &promise.bounds {
         Some(bounds) if skippable => bounds.ball,
         _ => BoundingBall { centre: Vector::ZERO, radius: f64::INFINITY },
     }

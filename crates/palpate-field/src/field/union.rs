@@ -54,8 +54,8 @@ impl<const D: usize> Union<D> {
         let nearby = Nearby::new(&mut members);
         let extent = members
             .iter()
-            .filter_map(|m| m.promise().bounds)
-            .fold(0.0_f64, |far, bounds| far.max(bounds.radius_about_origin()));
+            .filter_map(|m| m.promise().bounds.as_ref())
+            .fold(0.0_f64, |far, bounds| Scalar::max(far, bounds.radius_about_origin()));
         // Rounding is given in double precision; single is 2²⁹ times coarser.
         let coarser = f64::from(f32::EPSILON) / f64::EPSILON;
         let rounding = promise.rounding.times(2.0 * coarser);

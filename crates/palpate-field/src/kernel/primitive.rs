@@ -5,6 +5,7 @@
 
 use crate::error::{ShapeError, Unit};
 use crate::kernel::Kernel;
+use crate::pose::Pose;
 use crate::shape::Shape;
 use crate::vector::Vector;
 
@@ -120,7 +121,7 @@ pub struct Entry<const D: usize> {
     pub parameters: &'static [Parameter],
     /// How it bounds its values over a cell.
     pub model: ModelRule,
-    build: fn(&[Argument]) -> Result<Shape<D>, ShapeError>,
+    build: fn(&[Argument], &Pose<D>) -> Result<Shape<D>, ShapeError>,
     example: fn() -> Result<Shape<D>, ShapeError>,
 }
 
@@ -131,7 +132,7 @@ impl<const D: usize> Entry<D> {
             about: K::ABOUT,
             parameters: K::PARAMETERS,
             model: K::MODEL,
-            build: |arguments| K::from_arguments(arguments).map(Shape::from_kernel),
+            build: |arguments, pose| Shape::from_kernel_at(K::from_arguments(arguments)?, pose),
             example: || K::example().map(Shape::from_kernel),
         }
     }
@@ -142,7 +143,20 @@ impl<const D: usize> Entry<D> {
     ///
     /// If an argument is of the wrong kind or breaks the parameter's rule.
     pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
-        (self.build)(arguments)
+        self.build_at(arguments, &Pose::identity())
+    }
+
+    /// As [`build`](Self::build), moved by `world_from_body`.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build), or if a number of the pose is not finite.
+    pub fn build_at(
+        &self,
+        arguments: &[Argument],
+        world_from_body: &Pose<D>,
+    ) -> Result<Shape<D>, ShapeError> {
+        (self.build)(arguments, world_from_body)
     }
 
     /// The example of the primitive, of about 1 m.

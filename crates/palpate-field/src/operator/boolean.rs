@@ -64,7 +64,9 @@ pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<
 /// As [`joined`], in place: a union of many copies no promise.
 fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
     a.lipschitz = a.lipschitz.max(b.lipschitz);
-    a.region = common_region(a.region, b.region);
+    if b.region.is_some() {
+        a.region = common_region(a.region, b.region);
+    }
     a.convex = false;
     for (a, b) in a.symmetric.iter_mut().zip(b.symmetric) {
         *a &= b;
@@ -108,11 +110,11 @@ fn unite<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
 /// The promise of the union of `members`; `None` if there are none.
 fn promise_of_members<const D: usize>(members: &[Shape<D>]) -> Option<Promise<D>> {
     let (first, rest) = members.split_first()?;
-    let bounds = Bounds::union_of(members.iter().map(|member| member.promise().bounds));
-    let mut promise = Promise { bounds, ..*first.promise() };
+    let mut promise = *first.promise();
     for member in rest {
         unite(&mut promise, member.promise());
     }
+    promise.bounds = Bounds::union_of(members.iter().map(|m| m.promise().bounds.as_ref()));
     Some(promise)
 }
 
@@ -194,13 +196,10 @@ impl<const D: usize> Shape<D> {
     ///
     /// If there are no shapes, or they are nested too deeply.
     pub fn union(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
-        let shapes = shapes.into_iter();
-        let mut members = Vec::with_capacity(shapes.size_hint().0);
-        for shape in shapes {
-            match shape.field().members() {
-                Some(nested) => members.extend_from_slice(nested),
-                None => members.push(shape),
-            }
+        let mut members: Vec<Self> = shapes.into_iter().collect();
+        if members.iter().any(|shape| shape.members().is_some()) {
+            let own = |shape| Self::members(shape).unwrap_or(std::slice::from_ref(shape));
+            members = members.iter().flat_map(own).cloned().collect();
         }
         if members.len() == 1 {
             return Ok(members.swap_remove(0));

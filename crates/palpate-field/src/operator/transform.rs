@@ -101,10 +101,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// If a number is not finite, or shapes are nested too deeply.
     pub fn placed(self, world_from_body: &Pose<D>) -> Result<Self, ShapeError> {
-        for x in world_from_body.translation.0 {
-            crate::error::finite("translate", x, Unit::Metre)?;
-        }
-        if *world_from_body == Pose::identity() {
+        world_from_body.check()?;
+        if world_from_body.is_identity() {
             return Ok(self);
         }
         self.taking_motion(world_from_body).or_else(|child| {

@@ -26,7 +26,7 @@ pub(super) fn in_profile<S: Scalar>(p: Vector<S, 3>) -> [S; 2] {
 /// The bounds of what a box of `half_width` and `half_height` holds when turned
 /// about the y axis.
 pub(super) fn turned_bounds(half_width: f64, half_height: f64) -> Bounds<3> {
-    let radius = half_width.hypot(half_height) * (1.0 + 4.0 * f64::EPSILON);
+    let radius = Vector([half_width, half_height]).norm() * (1.0 + 4.0 * f64::EPSILON);
     Bounds::centred(Vector([half_width, half_height, half_width]), radius)
 }
 
