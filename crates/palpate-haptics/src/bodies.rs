@@ -275,6 +275,8 @@ pub struct Bodies<const D: usize> {
     pub(crate) has_moved: bool,
     /// What was done to each in the last tick.
     reactions: Vec<Reaction<D>>,
+    /// The same of a tick that is only rehearsed.
+    rehearsed: Vec<Reaction<D>>,
     /// Room for the numbers of those that are near: a box, as a clone of a vector has less
     /// room than the vector.
     list: Box<[u32]>,
@@ -299,7 +301,8 @@ impl<const D: usize> Bodies<D> {
         let has_regions = bodies.iter().any(|body| body.region.is_some());
         let (reactions, list) = scratch(bodies.len());
         let has_moved = false;
-        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, list })
+        let rehearsed = reactions.clone();
+        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, rehearsed, list })
     }
 
     /// The bodies.
@@ -343,6 +346,13 @@ impl<const D: usize> Bodies<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn put_back(&mut self, (list, reactions): (Box<[u32]>, Vec<Reaction<D>>)) {
         (self.list, self.reactions) = (list, reactions);
+    }
+
+    /// Puts what was done to each, and what was rehearsed, in the place of each other.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn swap_reactions(&mut self) {
+        std::mem::swap(&mut self.reactions, &mut self.rehearsed);
     }
 
     /// The motion of this tick is over.
@@ -399,6 +409,7 @@ impl<const D: usize> From<Shape<D>> for Bodies<D> {
             lipschitz: promise.lipschitz,
             has_regions: body.region.is_some(),
             has_moved: false,
+            rehearsed: reactions.clone(),
             reactions,
             list,
             bodies: vec![body],

@@ -17,10 +17,13 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Counts what a stage made of a force; returns that.
+    /// Counts what a stage made of a force, which is nothing if it let it pass; returns what
+    /// is left of it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn count<V: Directed>(&mut self, before: V, after: V) -> V {
+    #[inline]
+    pub(crate) fn count<V: Directed>(&mut self, before: V, changed: Option<V>) -> V {
+        let Some(after) = changed else { return before };
         // NaN differs from itself.
         if before != after {
             self.ticks += 1;

@@ -171,9 +171,10 @@ impl<V: Directed> Passivity<V> {
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
         let part = if self.options.is_on { self.part(wanted, held, way, state) } else { 1.0 };
-        let allowed = if part < 1.0 { wanted * part } else { wanted };
+        let changed = (part < 1.0).then(|| wanted * part);
+        let allowed = self.report.effect.count(wanted, changed);
         self.last = Some(Last { position: state.position, wanted, written: allowed });
-        self.report.effect.count(wanted, allowed)
+        allowed
     }
 
     /// Takes the force that was written in the end.
