@@ -547,16 +547,19 @@ fn hand<const D: usize>(
 ) -> (Point<D>, f64) {
     let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
     let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
-    let (mut sum, mut count) = (Vector::ZERO, 0.0);
-    for (position, _) in known.clone() {
+    let (mut sum, mut count, mut motion) = (Vector::ZERO, 0.0, 0.0_f64);
+    for (position, touch) in known.clone() {
         sum += position;
         count += 1.0;
+        motion = motion.max((position - touch.proxy).norm());
     }
     let centre = if count > 0.0 { sum * (1.0 / count) } else { Vector::ZERO };
-    let (mut radius, mut motion) = (0.0_f64, 0.0_f64);
-    for (position, touch) in known {
-        radius = radius.max((position - centre).norm());
-        motion = motion.max((position - touch.proxy).norm());
+    let mut radius = 0.0_f64;
+    // One alone is the centre.
+    if count > 1.0 {
+        for (position, _) in known {
+            radius = radius.max((position - centre).norm());
+        }
     }
     (centre, radius + WAYS * (motion + options.probe.radius()))
 }

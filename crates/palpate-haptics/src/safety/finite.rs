@@ -13,8 +13,10 @@ use super::PortState;
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
-    let vectors = [wanted, state.position, state.velocity, state.free_force];
-    vectors.iter().all(Vector::is_finite)
+    // Zero times a number is zero; times what is none, NaN.
+    let vectors = [state.position, state.velocity, state.free_force];
+    let nothing = vectors.into_iter().fold(wanted * 0.0, |sum, vector| sum + vector * 0.0);
+    nothing == Vector::ZERO
 }
 
 /// No force, unless what led to `force` was sound and it is finite.
