@@ -174,10 +174,14 @@ impl<const D: usize> Body<D> {
     }
 
     /// Likewise from all that the ball met on its way in this tick [m].
+    #[inline]
     fn above_way(&self, point: Point<D>) -> f64 {
-        let Some(now) = self.ball.filter(|_| self.has_moved) else {
-            return self.above_ball(point);
-        };
+        if self.has_moved { self.above_moved(point) } else { self.above_ball(point) }
+    }
+
+    #[inline(never)]
+    fn above_moved(&self, point: Point<D>) -> f64 {
+        let Some(now) = self.ball else { return f64::NEG_INFINITY };
         let before = self.world_from_before.transform_point(self.in_body(now.centre));
         let all = now.union(&BoundingBall { centre: before, ..now });
         (point - all.centre).norm() - all.radius

@@ -31,11 +31,14 @@ pub(crate) fn shortened<const D: usize>(
     max_force: f64,
 ) -> Option<Vector<f64, D>> {
     // Written so that NaN is shortened.
-    if force.norm() <= max_force {
-        return None;
-    }
+    (!(force.norm() <= max_force)).then(|| of_length(force, max_force))
+}
+
+/// A vector of this length along `force`; zero if that is not finite.
+#[cold]
+fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, D> {
     // The norm of a huge but finite force overflows; its direction does not.
-    Some(force.normalized().map_or(Vector::ZERO, |direction| direction * max_force))
+    force.normalized().map_or(Vector::ZERO, |direction| direction * length)
 }
 
 #[cfg(test)]

@@ -23,7 +23,15 @@ impl Effect {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline]
     pub(crate) fn count<V: Directed>(&mut self, before: V, changed: Option<V>) -> V {
-        let Some(after) = changed else { return before };
+        match changed {
+            None => before,
+            Some(after) => self.note(before, after),
+        }
+    }
+
+    /// Apart from the way of a force that every stage lets pass.
+    #[cold]
+    fn note<V: Directed>(&mut self, before: V, after: V) -> V {
         // NaN differs from itself.
         if before != after {
             self.ticks += 1;
