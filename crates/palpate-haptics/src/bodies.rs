@@ -5,8 +5,6 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::cmp::Ordering;
-
 use palpate_field::{
     BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, Vector,
 };
@@ -387,11 +385,10 @@ impl<const D: usize> Bodies<D> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(&self.bodies) {
             let away = body.above_way(centre);
+            // Written so that NaN is near.
+            let is_far = away > radius;
             match list.get_mut(count) {
-                // Written so that NaN is near.
-                Some(place)
-                    if !matches!(away.partial_cmp(&radius), Some(Ordering::Greater)) =>
-                {
+                Some(place) if !is_far => {
                     *place = index;
                     count += 1;
                 }

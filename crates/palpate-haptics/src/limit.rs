@@ -31,7 +31,8 @@ pub(crate) fn shortened<const D: usize>(
     max_force: f64,
 ) -> Option<Vector<f64, D>> {
     // Written so that NaN is shortened.
-    (!(force.norm() <= max_force)).then(|| of_length(force, max_force))
+    let passes = force.norm() <= max_force;
+    (!passes).then(|| of_length(force, max_force))
 }
 
 /// A vector of this length along `force`; zero if that is not finite.

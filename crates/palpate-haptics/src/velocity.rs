@@ -121,7 +121,8 @@ impl<const D: usize> VelocityEstimator<D> {
             let step = self.step * per_window(window);
             for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
                 // Written so that NaN ends the window.
-                if !(*least <= *way && *way <= *most) {
+                let is_on_line = *least <= *way && *way <= *most;
+                if !is_on_line {
                     return window - 1;
                 }
                 // Of numbers alone, of which the larger is one instruction.
