@@ -76,6 +76,7 @@ impl Oscillator {
     /// The responses after `time` [s].
     ///
     /// Real-time: a fixed number of operations, no system mathematics.
+    #[inline(never)]
     pub(crate) fn response(&self, time: f64) -> Response {
         let (decay, spring) = (self.decay * time, self.spring * time * time);
         // The terms sₙ tⁿ⁻¹ and sₙ₊₁ tⁿ.

@@ -5,8 +5,6 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::cmp::Ordering;
-
 use palpate_field::{
     BoundingBall, LARGEST_LENGTH, Point, Pose, Quality, Rounding, Shape, Vector,
 };
@@ -174,10 +172,14 @@ impl<const D: usize> Body<D> {
     }
 
     /// Likewise from all that the ball met on its way in this tick [m].
+    #[inline]
     fn above_way(&self, point: Point<D>) -> f64 {
-        let Some(now) = self.ball.filter(|_| self.has_moved) else {
-            return self.above_ball(point);
-        };
+        if self.has_moved { self.above_moved(point) } else { self.above_ball(point) }
+    }
+
+    #[inline(never)]
+    fn above_moved(&self, point: Point<D>) -> f64 {
+        let Some(now) = self.ball else { return f64::NEG_INFINITY };
         let before = self.world_from_before.transform_point(self.in_body(now.centre));
         let all = now.union(&BoundingBall { centre: before, ..now });
         (point - all.centre).norm() - all.radius
@@ -275,6 +277,8 @@ pub struct Bodies<const D: usize> {
     pub(crate) has_moved: bool,
     /// What was done to each in the last tick.
     reactions: Vec<Reaction<D>>,
+    /// The same of a tick that is only rehearsed.
+    rehearsed: Vec<Reaction<D>>,
     /// Room for the numbers of those that are near: a box, as a clone of a vector has less
     /// room than the vector.
     list: Box<[u32]>,
@@ -299,7 +303,8 @@ impl<const D: usize> Bodies<D> {
         let has_regions = bodies.iter().any(|body| body.region.is_some());
         let (reactions, list) = scratch(bodies.len());
         let has_moved = false;
-        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, list })
+        let rehearsed = reactions.clone();
+        Ok(Self { bodies, size, lipschitz, has_regions, has_moved, reactions, rehearsed, list })
     }
 
     /// The bodies.
@@ -345,6 +350,13 @@ impl<const D: usize> Bodies<D> {
         (self.list, self.reactions) = (list, reactions);
     }
 
+    /// Puts what was done to each, and what was rehearsed, in the place of each other.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn swap_reactions(&mut self) {
+        std::mem::swap(&mut self.reactions, &mut self.rehearsed);
+    }
+
     /// The motion of this tick is over.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -373,11 +385,10 @@ impl<const D: usize> Bodies<D> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(&self.bodies) {
             let away = body.above_way(centre);
+            // Written so that NaN is near.
+            let is_far = away > radius;
             match list.get_mut(count) {
-                // Written so that NaN is near.
-                Some(place)
-                    if !matches!(away.partial_cmp(&radius), Some(Ordering::Greater)) =>
-                {
+                Some(place) if !is_far => {
                     *place = index;
                     count += 1;
                 }
@@ -399,6 +410,7 @@ impl<const D: usize> From<Shape<D>> for Bodies<D> {
             lipschitz: promise.lipschitz,
             has_regions: body.region.is_some(),
             has_moved: false,
+            rehearsed: reactions.clone(),
             reactions,
             list,
             bodies: vec![body],

@@ -119,6 +119,7 @@ impl<'a, const D: usize> Tick<'a, D> {
         self
     }
 
+    #[inline(never)]
     fn tell(&mut self, body: u32, kind: EventKind) {
         // There is room for all that can happen: it is set aside at the start.
         if self.events.len() < self.events.capacity() {
@@ -214,18 +215,17 @@ impl<const D: usize> ContactPoint<D> {
         let following = self.proxy.follow(tick.nearby, device);
         let before = Before::of(touch);
         let body = tick.nearby.body(following.body);
-        *touch = Touch {
-            device,
-            velocity: state.velocity,
-            proxy: following.proxy,
-            wanted: Vector::ZERO,
-            force: Vector::ZERO,
-            normal: following.normal,
-            contact: following.contact,
-            body: following.body,
-            is_slipping: following.is_slipping,
-            evaluations: following.evaluations,
-        };
+        // Field by field: a copy of a whole waits for its parts to be written.
+        touch.device = device;
+        touch.velocity = state.velocity;
+        touch.proxy = following.proxy;
+        touch.wanted = Vector::ZERO;
+        touch.force = Vector::ZERO;
+        touch.normal = following.normal;
+        touch.contact = following.contact;
+        touch.body = following.body;
+        touch.is_slipping = following.is_slipping;
+        touch.evaluations = following.evaluations;
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);

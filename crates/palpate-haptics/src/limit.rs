@@ -19,13 +19,27 @@ use palpate_field::Vector;
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 #[must_use]
 pub fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> Vector<f64, D> {
-    let norm = force.norm();
-    if norm <= max_force {
-        force
-    } else {
-        // The norm of a huge but finite force overflows; its direction does not.
-        force.normalized().map_or(Vector::ZERO, |direction| direction * max_force)
-    }
+    shortened(force, max_force).unwrap_or(force)
+}
+
+/// Likewise; none if `force` is no longer than that.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+#[inline]
+pub(crate) fn shortened<const D: usize>(
+    force: Vector<f64, D>,
+    max_force: f64,
+) -> Option<Vector<f64, D>> {
+    // Written so that NaN is shortened.
+    let passes = force.norm() <= max_force;
+    (!passes).then(|| of_length(force, max_force))
+}
+
+/// A vector of this length along `force`; zero if that is not finite.
+#[cold]
+fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, D> {
+    // The norm of a huge but finite force overflows; its direction does not.
+    force.normalized().map_or(Vector::ZERO, |direction| direction * length)
 }
 
 #[cfg(test)]

@@ -250,7 +250,9 @@ impl<const D: usize> Proxy<D> {
         let Probe { radius, budget } = self.probe;
         let mut sampler = Sampler::new((nearby, self.pierced), radius, budget, extent);
 
-        self.heal(&mut sampler);
+        if !self.pierced.is_empty() {
+            self.heal(&mut sampler);
+        }
         let mut is_pushed = false;
         if nearby.has_moved() && self.at.is_some() {
             let pushed = self.pushed(&mut sampler, [last, carried]);
@@ -299,6 +301,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Where the body that is touched carries the proxy: away from `last`, but not out of the
     /// neighbourhood of it, the device and the bodies.
+    #[inline(never)]
     fn carried(&mut self, nearby: &Nearby<'_, D>, [last, device]: [Point<D>; 2]) -> Point<D> {
         let touched = self.at.filter(|_| self.contact).and_then(|at| nearby.body(at.body));
         let Some(body) = touched.filter(|body| body.has_moved()) else { return last };
@@ -312,6 +315,7 @@ impl<const D: usize> Proxy<D> {
     }
 
     /// What is there at the proxy, of which nothing is known any more.
+    #[inline(never)]
     fn look_again(&self, sampler: &mut Sampler<'_, D>, at: Point<D>) -> Option<Sample<D>> {
         let body = self.at.map_or(0, |at| at.body);
         let unknown = Sample { point: at, gap: f64::NEG_INFINITY, tangent: None, body };
@@ -319,10 +323,8 @@ impl<const D: usize> Proxy<D> {
     }
 
     /// Lets layers hold again that the hand is away from.
+    #[inline(never)]
     fn heal(&mut self, sampler: &mut Sampler<'_, D>) {
-        if self.pierced.is_empty() {
-            return;
-        }
         let (device, radius) = (self.device, self.probe.radius);
         let before = self.pierced;
         self.pierced.heal(|index, level| {
@@ -339,6 +341,7 @@ impl<const D: usize> Proxy<D> {
 
     /// Where other bodies stop a proxy that its body carries from one place to another, or
     /// push it to; none if it meets none.
+    #[inline(never)]
     fn pushed(
         &self,
         sampler: &mut Sampler<'_, D>,
@@ -363,6 +366,7 @@ impl<const D: usize> Proxy<D> {
     /// A point on or outside the offset surface near `from`, and whether it had to be moved
     /// there: up the gradient by `(r − f) / ‖∇f‖` until it is out. None if half the budget does
     /// not lead out.
+    #[inline(never)]
     fn place(
         &mut self,
         sampler: &mut Sampler<'_, D>,

@@ -61,9 +61,9 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 
 /// Runs `servo` with `device` and reports what happened.
 ///
-/// Tick `k` is at `k / rate` of the servo's time. In real time the loop sleeps, asks the field
-/// once where each proxy is, so that the tick finds it in the caches, and spins up to each tick;
-/// a tick that comes more than a period late moves all later ones, so that the servo never
+/// Tick `k` is at `k / rate` of the servo's time. In real time the loop sleeps, and rehearses each
+/// tick up to the moment at which it begins, so that the tick finds its code and data in the
+/// caches; a tick that comes more than a period late moves all later ones, so that the servo never
 /// hurries after lost time. The device's largest force becomes the servo's, if it is smaller.
 /// Whatever ends the run, the last forces written are zero.
 ///

@@ -6,6 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::hint::black_box;
+use std::mem::swap;
 
 use palpate_field::{Point, Pose, Vector};
 
@@ -77,17 +78,36 @@ const WAYS: f64 = 32.0;
 #[derive(Clone, Debug)]
 pub struct Servo<const D: usize> {
     bodies: Bodies<D>,
-    points: Vec<ContactPoint<D>>,
+    contacts: Contacts<D>,
+    /// What a tick is rehearsed on.
+    doubles: Contacts<D>,
     /// What is felt at the one point, if it is a tool with a shape.
     tool: Option<Box<Hung<D>>>,
-    touches: Vec<Touch<D>>,
-    events: Vec<Event>,
-    /// The forces to write [N], in device coordinates.
-    forces: Vec<Vector<f64, D>>,
     setting: Setting<D>,
     protection: Option<Box<Protection<D>>>,
     /// Ticks done.
     tick: u64,
+}
+
+/// Contact points and what the last tick made of them.
+#[derive(Clone, Debug)]
+struct Contacts<const D: usize> {
+    points: Vec<ContactPoint<D>>,
+    touches: Vec<Touch<D>>,
+    events: Vec<Event>,
+    /// The forces to write [N], in device coordinates.
+    forces: Vec<Vector<f64, D>>,
+}
+
+impl<const D: usize> Contacts<D> {
+    fn new(probe: Probe, points: usize) -> Self {
+        Self {
+            points: vec![ContactPoint::new(probe); points],
+            touches: vec![Touch::NONE; points],
+            events: Vec::with_capacity(MOST_EVENTS * points),
+            forces: vec![Vector::ZERO; points],
+        }
+    }
 }
 
 impl<const D: usize> Servo<D> {
@@ -111,12 +131,10 @@ impl<const D: usize> Servo<D> {
         positive_or_infinite("max_force", options.max_force, "N")?;
         Ok(Self {
             bodies: bodies.into(),
-            points: vec![ContactPoint::new(options.probe); points],
+            contacts: Contacts::new(options.probe, points),
+            doubles: Contacts::new(options.probe, points),
             tool: None,
             protection: None,
-            touches: vec![Touch::NONE; points],
-            events: Vec::with_capacity(MOST_EVENTS * points),
-            forces: vec![Vector::ZERO; points],
             setting: Setting {
                 options,
                 map: WorkspaceMap::default(),
@@ -203,7 +221,7 @@ impl<const D: usize> Servo<D> {
             hung.port = limited.turning(&accepted, rate)?;
         }
         let port = limited.port(&accepted, rate)?;
-        self.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
+        self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         self.bodies = bodies;
         self.protection = Some(Box::new(protection.clone()));
         Ok(accepted)
@@ -281,7 +299,7 @@ impl<const D: usize> Servo<D> {
 
     /// Guides every contact point.
     pub fn guide(&mut self, guides: &[Guide<D>]) {
-        for point in &mut self.points {
+        for point in &mut self.contacts.points {
             point.guides = guides.to_vec();
         }
     }
@@ -301,13 +319,13 @@ impl<const D: usize> Servo<D> {
     /// The contact points after the last tick.
     #[must_use]
     pub fn touches(&self) -> &[Touch<D>] {
-        &self.touches
+        &self.contacts.touches
     }
 
     /// The forces of the last tick, to be written to the device [N]: in its coordinates.
     #[must_use]
     pub fn forces(&self) -> &[Vector<f64, D>] {
-        &self.forces
+        &self.contacts.forces
     }
 
     /// What the safety chain of every contact point did so far; nothing if there is none.
@@ -317,7 +335,12 @@ impl<const D: usize> Servo<D> {
         if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
             return vec![chain.report()];
         }
-        self.points.iter().filter_map(|point| point.port.as_ref()).map(Port::report).collect()
+        self.contacts
+            .points
+            .iter()
+            .filter_map(|point| point.port.as_ref())
+            .map(Port::report)
+            .collect()
     }
 
     /// The energy at a contact point since the start; none of a servo that is not protected.
@@ -329,7 +352,8 @@ impl<const D: usize> Servo<D> {
         if let Some(energy) = turning.and_then(TurningPort::energy) {
             return energy;
         }
-        let port = self.points.get(point as usize).and_then(|point| point.port.as_ref());
+        let port =
+            self.contacts.points.get(point as usize).and_then(|point| point.port.as_ref());
         port.map_or(Energy::default(), Port::energy)
     }
 
@@ -351,13 +375,13 @@ impl<const D: usize> Servo<D> {
     }
 
     fn ports(&mut self) -> impl Iterator<Item = &mut Port<D>> {
-        self.points.iter_mut().filter_map(|point| point.port.as_mut())
+        self.contacts.points.iter_mut().filter_map(|point| point.port.as_mut())
     }
 
     /// What happened in the last tick.
     #[must_use]
     pub fn events(&self) -> &[Event] {
-        &self.events
+        &self.contacts.events
     }
 
     /// What was done to each body in the last tick.
@@ -383,7 +407,7 @@ impl<const D: usize> Servo<D> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn replace_bodies(&mut self, bodies: Bodies<D>) -> Bodies<D> {
-        for point in &mut self.points {
+        for point in &mut self.contacts.points {
             point.proxy.forget_bodies();
         }
         if let Some(hung) = &mut self.tool {
@@ -425,24 +449,43 @@ impl<const D: usize> Servo<D> {
     /// evaluates the field at most [`Probe::budget`] times a point, and once more for each
     /// magnet in reach; for a tool, [`ToolOptions::budget`](crate::ToolOptions::budget) times.
     pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
-        self.events.clear();
         if let Some(hung) = &mut self.tool {
-            let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
+            self.contacts.events.clear();
+            let points = self
+                .contacts
+                .points
+                .iter_mut()
+                .zip(&mut self.contacts.touches)
+                .zip(&mut self.contacts.forces);
             for (index, ((point, touch), force)) in points.enumerate() {
                 let at = (point, &mut self.bodies);
                 *force = hung.tick(at, &self.setting, state(states, index), touch);
             }
             let told = hung.tool.events().iter().take(MOST_EVENTS);
-            self.events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
+            self.contacts.events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
             self.tick += 1;
-            return &self.touches;
+            return &self.contacts.touches;
         }
+        self.render(states);
+        self.bodies.settle();
+        self.tick += 1;
+        &self.contacts.touches
+    }
+
+    /// A tick of contact points, up to its end.
+    ///
+    /// Never inlined: a tick finds warm what its rehearsal warmed, which is the code at this
+    /// place.
+    #[inline(never)]
+    fn render(&mut self, states: &[PointState<D>]) {
+        let Contacts { points, touches, events, forces } = &mut self.contacts;
+        events.clear();
         let (mut list, mut reactions) = self.bodies.take_scratch();
         reactions.fill(Reaction::NONE);
-        let hand = || hand(&self.touches, states, &self.setting);
+        let hand = || hand(touches, states, &self.setting);
         let nearby = nearby(&self.bodies, hand, &mut list);
-        let mut tick = Tick::new(&nearby, &self.setting, self.tick, &mut self.events);
-        let points = self.points.iter_mut().zip(&mut self.touches).zip(&mut self.forces);
+        let mut tick = Tick::new(&nearby, &self.setting, self.tick, events);
+        let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
             *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
             let touched = nearby.body(touch.body).filter(|_| touch.contact);
@@ -452,9 +495,6 @@ impl<const D: usize> Servo<D> {
             }
         }
         self.bodies.put_back((list, reactions));
-        self.bodies.settle();
-        self.tick += 1;
-        &self.touches
     }
 
     /// Does what [`step`](Self::step) would with `states`, on doubles of the contact points:
@@ -467,17 +507,20 @@ impl<const D: usize> Servo<D> {
             black_box(self.bodies.everything().look(hung.tool.touch().pose.translation));
             return;
         }
-        let told = self.events.len();
-        let (mut list, reactions) = self.bodies.take_scratch();
-        let hand = || hand(&self.touches, states, &self.setting);
-        let nearby = nearby(&self.bodies, hand, &mut list);
-        let mut tick = Tick::new(&nearby, &self.setting, self.tick, &mut self.events);
-        for (index, (point, touch)) in self.points.iter().zip(&self.touches).enumerate() {
-            let (mut double, mut touch) = (point.double(), *touch);
-            black_box(double.tick(tick.of_point(0), state(states, index), &mut touch));
+        let contacts = self.contacts.points.iter().zip(&self.contacts.touches);
+        let doubles = self.doubles.points.iter_mut().zip(&mut self.doubles.touches);
+        for ((double, its_touch), (point, touch)) in doubles.zip(contacts) {
+            (*double, *its_touch) = (point.double(), *touch);
         }
-        self.bodies.put_back((list, reactions));
-        self.events.truncate(told);
+        self.change_places();
+        self.render(states);
+        self.change_places();
+    }
+
+    /// Puts what a tick changes and its doubles in the place of each other.
+    fn change_places(&mut self) {
+        swap(&mut self.contacts, &mut self.doubles);
+        self.bodies.swap_reactions();
     }
 }
 
@@ -504,16 +547,19 @@ fn hand<const D: usize>(
 ) -> (Point<D>, f64) {
     let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
     let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
-    let (mut sum, mut count) = (Vector::ZERO, 0.0);
-    for (position, _) in known.clone() {
+    let (mut sum, mut count, mut motion) = (Vector::ZERO, 0.0, 0.0_f64);
+    for (position, touch) in known.clone() {
         sum += position;
         count += 1.0;
+        motion = motion.max((position - touch.proxy).norm());
     }
     let centre = if count > 0.0 { sum * (1.0 / count) } else { Vector::ZERO };
-    let (mut radius, mut motion) = (0.0_f64, 0.0_f64);
-    for (position, touch) in known {
-        radius = radius.max((position - centre).norm());
-        motion = motion.max((position - touch.proxy).norm());
+    let mut radius = 0.0_f64;
+    // One alone is the centre.
+    if count > 1.0 {
+        for (position, _) in known {
+            radius = radius.max((position - centre).norm());
+        }
     }
     (centre, radius + WAYS * (motion + options.probe.radius()))
 }

@@ -54,8 +54,9 @@ pub struct VelocityEstimator<const D: usize> {
     rate: f64,
     /// How far from the line a position may be [m].
     step: f64,
-    /// The newest first.
-    positions: [Point<D>; LONGEST + 1],
+    /// Round and round: from the newest on, the older the farther.
+    positions: [Point<D>; LONGEST],
+    newest: usize,
     known: usize,
     window: usize,
 }
@@ -71,7 +72,8 @@ impl<const D: usize> VelocityEstimator<D> {
         Ok(Self {
             rate: positive("rate", rate, "Hz")?,
             step: not_negative("encoder_step", encoder_step, "m")? * (1.0 + SLACK),
-            positions: [Vector::ZERO; LONGEST + 1],
+            positions: [Vector::ZERO; LONGEST],
+            newest: 0,
             known: 0,
             window: 0,
         })
@@ -90,39 +92,52 @@ impl<const D: usize> VelocityEstimator<D> {
             self.reset();
             return Vector::ZERO;
         }
-        self.positions.rotate_right(1);
-        if let Some(newest) = self.positions.first_mut() {
-            *newest = position;
+        let longest = if self.step > 0.0 { self.known } else { self.known.min(1) };
+        self.window = self.window_to(position, longest);
+        let velocity = match self.way(position, self.window) {
+            Some(way) => way * self.rate,
+            None => Vector::ZERO,
+        };
+        self.newest = (self.newest + LONGEST - 1) % LONGEST;
+        if let Some(place) = self.positions.get_mut(self.newest) {
+            *place = position;
         }
-        self.known = (self.known + 1).min(LONGEST + 1);
-        let longest = if self.step > 0.0 { self.known - 1 } else { (self.known - 1).min(1) };
-        // A line from the newest position passes all of a window, by a step at most, if its way
-        // in a period is between these.
-        let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
-        let mut fitted = Vector::ZERO;
-        self.window = 0;
-        for (window, oldest) in self.positions.iter().enumerate().skip(1).take(longest) {
-            let per_window = 1.0 / window as f64;
-            let (way, step) = ((position - *oldest) * per_window, self.step * per_window);
-            let mut is_on_line = true;
-            for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
-                // Written so that NaN ends the window.
-                is_on_line &= *least <= *way && *way <= *most;
-                // Of numbers alone, of which the larger is one instruction.
-                *least = if *least > way - step { *least } else { way - step };
-                *most = if *most < way + step { *most } else { way + step };
-            }
-            if !is_on_line {
-                break;
-            }
-            (fitted, self.window) = (way, window);
-        }
-        let velocity = fitted * self.rate;
+        self.known = (self.known + 1).min(LONGEST);
         if !velocity.is_finite() {
             self.window = 0;
             return Vector::ZERO;
         }
         velocity
+    }
+
+    /// The longest window up to `position` in which the positions lie on a line.
+    #[inline]
+    fn window_to(&self, position: Point<D>, longest: usize) -> usize {
+        // A line from the newest position passes all of a window, by a step at most, if its way
+        // in a period is between these.
+        let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
+        for window in 1..=longest {
+            let Some(way) = self.way(position, window) else { return window - 1 };
+            let step = self.step * per_window(window);
+            for ((way, least), most) in way.0.iter().zip(&mut least).zip(&mut most) {
+                // Written so that NaN ends the window.
+                let is_on_line = *least <= *way && *way <= *most;
+                if !is_on_line {
+                    return window - 1;
+                }
+                // Of numbers alone, of which the larger is one instruction.
+                *least = if *least > way - step { *least } else { way - step };
+                *most = if *most < way + step { *most } else { way + step };
+            }
+        }
+        longest
+    }
+
+    /// The way in a period from the position so many periods ago; none from this one.
+    #[inline]
+    fn way(&self, position: Point<D>, window: usize) -> Option<Vector<f64, D>> {
+        let oldest = self.positions.get((self.newest + window.checked_sub(1)?) % LONGEST)?;
+        Some((position - *oldest) * per_window(window))
     }
 
     /// Forgets all positions.
@@ -136,6 +151,12 @@ impl<const D: usize> VelocityEstimator<D> {
     pub fn window(&self) -> usize {
         self.window
     }
+}
+
+/// By way of 32 bits, from which a conversion is one instruction.
+#[inline]
+fn per_window(window: usize) -> f64 {
+    1.0 / f64::from(window as u32)
 }
 
 #[cfg(test)]

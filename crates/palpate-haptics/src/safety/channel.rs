@@ -91,8 +91,7 @@ impl<const D: usize> Channel<D> {
             self.slew.restart();
             self.closing.restart();
         }
-        let closed = self.closing.limit(force);
-        let force = self.effects.slew.count(force, closed);
+        let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
         // What the stages left of all of it, they left of the part that is observed.
         let left = if force == all { 1.0 } else { force.dot(all) / all.dot(all) };
@@ -153,11 +152,16 @@ impl<const D: usize> Channel<D> {
             self.ramp.restart();
         }
         let effects = &mut self.effects;
-        let force = effects.ramp.count(force, force * self.ramp.step(true));
-        let force = effects.watchdog.count(force, force * self.watchdog.step(moment.is_late));
-        let left = if self.is_stopped { Vector::ZERO } else { force };
-        effects.emergency_stop.count(force, left)
+        let force = effects.ramp.count(force, part(force, self.ramp.step(true)));
+        let left = self.watchdog.step(moment.is_late);
+        let force = effects.watchdog.count(force, part(force, left));
+        effects.emergency_stop.count(force, self.is_stopped.then_some(Vector::ZERO))
     }
+}
+
+/// A part of a force; none if it is all of it.
+fn part<const D: usize>(force: Vector<f64, D>, factor: f64) -> Option<Vector<f64, D>> {
+    (factor != 1.0).then(|| force * factor)
 }
 
 /// Both forces together; of one alone the same bits.

@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::limited;
+use crate::limit::shortened;
 
 /// From this part of the continuous force on, larger forces are shortened. Nearer to one, they
 /// are shortened later and faster.
@@ -35,15 +35,23 @@ impl ContinuousLimit {
         Self { continuous_force, part, heat: 0.0 }
     }
 
+    /// What is left of a force; none if all of it.
+    ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit<const D: usize>(&self, force: Vector<f64, D>) -> Vector<f64, D> {
+    pub(crate) fn limit<const D: usize>(
+        &self,
+        force: Vector<f64, D>,
+    ) -> Option<Vector<f64, D>> {
         let norm = force.norm();
+        if norm <= self.continuous_force {
+            return None;
+        }
         let load = self.root_mean_square() / self.continuous_force;
         let blend = ((load - ONSET) / (1.0 - ONSET)).clamp(0.0, 1.0);
-        if norm <= self.continuous_force || blend <= 0.0 {
-            return force;
+        if blend <= 0.0 {
+            return None;
         }
-        limited(force, norm + (self.continuous_force - norm) * blend)
+        shortened(force, norm + (self.continuous_force - norm) * blend)
     }
 
     /// Takes the force that was written in the end.
@@ -71,7 +79,7 @@ mod tests {
         let wanted = Vector([0.0, 6.0]);
         let mut written = wanted;
         for tick in 0..20_000 {
-            let next = limit.limit(wanted);
+            let next = limit.limit(wanted).unwrap_or(wanted);
             // h = 36 (1 − e^−t) reaches (0.9 · 2)² at t = 0.0943 s.
             assert!(tick > 94 || next == wanted);
             assert!((next - written).norm() < 0.6, "smoothly");
@@ -87,7 +95,7 @@ mod tests {
         let mut limit = ContinuousLimit::new(2.0, 0.1, 1000.0);
         let wanted = Vector([2.0, 0.0]);
         for _ in 0..2000 {
-            assert_eq!(limit.limit(wanted), wanted);
+            assert_eq!(limit.limit(wanted), None);
             limit.written(wanted);
         }
         assert!((limit.root_mean_square() - 2.0).abs() < 1e-6);
@@ -97,6 +105,6 @@ mod tests {
     fn without_a_continuous_force_nothing_is_changed() {
         let mut limit = ContinuousLimit::new(f64::INFINITY, 0.1, 1000.0);
         limit.written(Vector([1e200, 0.0]));
-        assert_eq!(limit.limit(Vector([1e200, 1.0])), Vector([1e200, 1.0]));
+        assert_eq!(limit.limit(Vector([1e200, 1.0])), None);
     }
 }

@@ -17,10 +17,21 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Counts what a stage made of a force; returns that.
+    /// Counts what a stage made of a force, which is nothing if it let it pass; returns what
+    /// is left of it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn count<V: Directed>(&mut self, before: V, after: V) -> V {
+    #[inline]
+    pub(crate) fn count<V: Directed>(&mut self, before: V, changed: Option<V>) -> V {
+        match changed {
+            None => before,
+            Some(after) => self.note(before, after),
+        }
+    }
+
+    /// Apart from the way of a force that every stage lets pass.
+    #[cold]
+    fn note<V: Directed>(&mut self, before: V, after: V) -> V {
         // NaN differs from itself.
         if before != after {
             self.ticks += 1;

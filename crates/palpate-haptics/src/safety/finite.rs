@@ -13,13 +13,18 @@ use super::PortState;
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
-    let vectors = [wanted, state.position, state.velocity, state.free_force];
-    vectors.iter().all(Vector::is_finite)
+    // Zero times a number is zero; times what is none, NaN.
+    let vectors = [state.position, state.velocity, state.free_force];
+    let nothing = vectors.into_iter().fold(wanted * 0.0, |sum, vector| sum + vector * 0.0);
+    nothing == Vector::ZERO
 }
 
-/// `force` if what led to it was sound and it is finite, or no force.
+/// No force, unless what led to `force` was sound and it is finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn guarded<const D: usize>(force: Vector<f64, D>, sound: bool) -> Vector<f64, D> {
-    if sound && force.is_finite() { force } else { Vector::ZERO }
+pub(crate) fn guarded<const D: usize>(
+    force: Vector<f64, D>,
+    sound: bool,
+) -> Option<Vector<f64, D>> {
+    (!(sound && force.is_finite())).then_some(Vector::ZERO)
 }

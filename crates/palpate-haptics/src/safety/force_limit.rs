@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::limited;
+use crate::limit::shortened;
 
 /// Shortens what is longer than a length, keeping its direction.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +29,13 @@ impl ForceLimit {
         self.max_force = self.max_force.min(max_force);
     }
 
+    /// What is left of a force; none if all of it.
+    ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit<const D: usize>(&self, force: Vector<f64, D>) -> Vector<f64, D> {
-        limited(force, self.max_force)
+    pub(crate) fn limit<const D: usize>(
+        &self,
+        force: Vector<f64, D>,
+    ) -> Option<Vector<f64, D>> {
+        shortened(force, self.max_force)
     }
 }

@@ -108,6 +108,9 @@ pub struct PassivityReport {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passivity<V> {
     options: PassivityOptions,
+    /// How far a force moves the device's mass in a tick [m/N]: of one that is not known, not
+    /// at all.
+    yielding: f64,
     /// Taken in, credited and capped [J].
     balance: f64,
     /// Leaks of the wanted forces in contact, and what damping is sure to lose [J].
@@ -143,8 +146,16 @@ struct Last<V> {
 
 impl<V: Directed> Passivity<V> {
     pub(crate) fn new(options: PassivityOptions) -> Self {
-        let (balance, leaks, losses) = (0.0, 0.0, 0.0);
-        Self { options, balance, leaks, losses, last: None, report: PassivityReport::default() }
+        let PassivityOptions { mass, period, .. } = options;
+        Self {
+            options,
+            yielding: if mass > 0.0 { 0.5 * period * period / mass } else { 0.0 },
+            balance: 0.0,
+            leaks: 0.0,
+            losses: 0.0,
+            last: None,
+            report: PassivityReport::default(),
+        }
     }
 
     /// The force that may be written in place of `wanted`; of what is not sound, as it is.
@@ -170,10 +181,12 @@ impl<V: Directed> Passivity<V> {
             self.balance = self.balance.max(self.stored(wanted));
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
-        let part = if self.options.is_on { self.part(wanted, held, way, state) } else { 1.0 };
-        let allowed = if part < 1.0 { wanted * part } else { wanted };
+        let may_give = self.options.is_on && wanted != V::ZERO;
+        let part = if may_give { self.part(wanted, held, way, state) } else { 1.0 };
+        let changed = (part < 1.0).then(|| wanted * part);
+        let allowed = self.report.effect.count(wanted, changed);
         self.last = Some(Last { position: state.position, wanted, written: allowed });
-        self.report.effect.count(wanted, allowed)
+        allowed
     }
 
     /// Takes the force that was written in the end.
@@ -199,6 +212,11 @@ impl<V: Directed> Passivity<V> {
     /// Books the tick that ends now, over which the device moved by `way`.
     fn observe(&mut self, last: &Last<V>, wanted: V, way: V) {
         let PassivityOptions { damping, reserve, period, .. } = self.options;
+        if [last.written, last.wanted, wanted] == [V::ZERO; 3] {
+            // No force does work, and none holds energy.
+            self.balance = self.balance.min(0.0);
+            return;
+        }
         let given = last.written.dot(way);
         let report = &mut self.report;
         report.energy_in += (-given).max(0.0);
@@ -215,8 +233,12 @@ impl<V: Directed> Passivity<V> {
                 self.balance += loss;
             }
         }
-        let most = self.stored(wanted).max(self.stored(last.wanted));
-        self.balance = self.balance.min(most);
+        let largest = if wanted.dot(wanted) > last.wanted.dot(last.wanted) {
+            wanted
+        } else {
+            last.wanted
+        };
+        self.balance = self.balance.min(self.stored(largest));
         if !(self.balance.is_finite() && self.leaks.is_finite() && self.losses.is_finite()) {
             // Numbers overflowed: nothing is known to have been taken in.
             (self.balance, self.leaks, self.losses) = (-reserve, 1.0, 0.0);
@@ -235,10 +257,9 @@ impl<V: Directed> Passivity<V> {
 
     /// The part of `wanted` that gives out no more than there is.
     fn part(&self, wanted: V, held: V, way: V, state: &Seen<V>) -> f64 {
-        let PassivityOptions { damping, mass, max_rate, reserve, period, .. } = self.options;
+        let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve).max(0.0);
-        // How far a force moves the mass in a tick. Of a mass that is not known, nothing.
-        let yielding = if mass > 0.0 { 0.5 * period * period / mass } else { 0.0 };
+        let yielding = self.yielding;
         // The mean velocity of the last tick is half a tick old, and what was held has changed
         // it since. The estimate may be older, or better: the one that gives more out counts.
         let by_way = way + held * yielding;
@@ -249,9 +270,12 @@ impl<V: Directed> Passivity<V> {
         let loss = if self.is_covered() { damping * moved.dot(moved) / period } else { 0.0 };
         // Where the force cannot be taken back at once, what it gives out until it is: the power
         // of now, falling to nothing. Only where it may have to be.
-        let power = wanted.dot(coasting).max(0.0) / period;
-        let trailing =
-            if self.is_covered() { 0.0 } else { 0.5 * wanted.norm() / max_rate * power };
+        let trailing = if self.is_covered() {
+            0.0
+        } else {
+            let power = wanted.dot(coasting).max(0.0) / period;
+            0.5 * wanted.norm() / max_rate * power
+        };
         if wanted.dot(moved) + trailing - loss <= available {
             return 1.0;
         }

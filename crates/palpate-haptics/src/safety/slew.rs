@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::limited;
+use crate::limit::shortened;
 
 /// Follows a force by at most so much a tick, on the straight line to it.
 #[derive(Clone, Copy, Debug)]
@@ -23,15 +23,20 @@ impl<const D: usize> SlewLimit<D> {
         Self { step: max_rate / rate, last: Vector::ZERO }
     }
 
+    /// How far a force is followed; none if all the way.
+    ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
-        let change = force - self.last;
-        if change.norm() <= self.step {
-            self.last = force;
-        } else {
-            self.last += limited(change, self.step);
+    pub(crate) fn limit(&mut self, force: Vector<f64, D>) -> Option<Vector<f64, D>> {
+        match shortened(force - self.last, self.step) {
+            None => {
+                self.last = force;
+                None
+            }
+            Some(change) => {
+                self.last += change;
+                Some(self.last)
+            }
         }
-        self.last
     }
 
     /// The next force follows none.
@@ -48,11 +53,11 @@ mod tests {
     fn a_force_is_reached_in_equal_steps() {
         let mut slew = SlewLimit::new(1000.0, 1000.0);
         let wanted = Vector([0.0, 2.5]);
-        let steps: Vec<_> = (0..4).map(|_| slew.limit(wanted).0[1]).collect();
+        let steps: Vec<_> = (0..4).map(|_| slew.limit(wanted).unwrap_or(wanted).0[1]).collect();
         assert_eq!(steps, [1.0, 2.0, 2.5, 2.5]);
         slew.restart();
-        assert_eq!(slew.limit(wanted), Vector([0.0, 1.0]));
+        assert_eq!(slew.limit(wanted), Some(Vector([0.0, 1.0])));
         let mut free = SlewLimit::new(f64::INFINITY, 1000.0);
-        assert_eq!(free.limit(wanted), wanted);
+        assert_eq!(free.limit(wanted), None);
     }
 }
