@@ -48,12 +48,6 @@ impl<const D: usize> Placement<D> {
         Self { world_from_body, single: Single { translation, rows } }
     }
 
-    /// `Rᵀ`, row by row.
-    #[inline(always)]
-    pub(crate) fn columns(&self) -> &[[f64; D]; D] {
-        &self.columns
-    }
-
     /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
     #[inline(always)]
     pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {

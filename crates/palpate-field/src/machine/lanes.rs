@@ -8,6 +8,7 @@ use std::mem::MaybeUninit;
 
 use crate::field::Placement;
 use crate::kernel::Kernel;
+use crate::pose::Pose;
 use crate::scalar::{Float, Model, Scalar};
 use crate::vector::Vector;
 
@@ -192,7 +193,7 @@ impl Lane for Model {
 
     #[inline(always)]
     fn box_to_body<const D: usize>(p: [Self; D], placement: &Placement<D>) -> [Self; D] {
-        let translation = &placement.world_from_body.translation;
-        Self::moved_cell(p, &translation.0, placement.columns())
+        let Pose { rotation, translation } = &placement.world_from_body;
+        Self::cell_to_body(p, &translation.0, rotation.matrix())
     }
 }

@@ -83,20 +83,20 @@ impl Model {
         along_others.chain([self.lower, self.upper]).all(|part| part == 0.0)
     }
 
-    /// `W (p − t)` of the coordinates of a [`cell`](Self::cell), as
-    /// [`weighted_sum`](Scalar::weighted_sum) has it of any.
+    /// `Rᵀ(p − t)` of the coordinates of a [`cell`](Self::cell), as
+    /// [`weighted_sum`](Scalar::weighted_sum) has it of any. Given are the rows of `R`.
     #[inline(always)]
-    pub(crate) fn moved_cell<const D: usize>(
+    pub(crate) fn cell_to_body<const D: usize>(
         cell: [Self; D],
         translation: &[f64; D],
-        weights: &[[f64; D]; D],
+        rows: &[[f64; D]; D],
     ) -> [Self; D] {
         let centre = array!(k < D => cell[k].value - translation[k]);
         array!(i < D => {
             let mut gradient = [0.0; 3];
             let (mut value, mut size) = (NONE, NONE);
             for k in 0..D {
-                let weight = weights[i][k];
+                let weight = rows[k][i];
                 gradient[k] = weight * cell[k].gradient[k];
                 value += weight * centre[k];
                 size += f64::abs(weight) * (f64::abs(centre[k]) + f64::abs(cell[k].gradient[k]));
