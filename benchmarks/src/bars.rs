@@ -105,6 +105,11 @@ const IN_THE_PLANE: &[(&str, &str)] = &[
     ("world.1000_planar_bodies.step_ns", "world.1000_bodies.step_ns"),
 ];
 
+/// Whether a row is in nanoseconds.
+pub(crate) fn is_time(key: &str) -> bool {
+    key.ends_with(".ns") || key.ends_with("_ns")
+}
+
 /// Prints all rows and how they stand against their bars, or the rows as JSON. Of a part of
 /// a suite the bars of other parts are left out.
 ///
@@ -129,10 +134,8 @@ pub(crate) fn print(rows: &Rows, bars: &[Bar], is_part: bool, as_json: bool) {
     let in_the_plane = IN_THE_PLANE.iter().filter(|(key, _)| rows.contains_key(*key));
     let in_the_plane = in_the_plane.map(|(key, other)| (*key, rows.get(*other).copied(), 1.0));
     let bars = bars.iter().filter(|(key, _)| !is_part || rows.contains_key(*key));
-    let bars = bars.map(|(key, bar)| {
-        let is_time = key.ends_with(".ns") || key.ends_with("_ns");
-        (*key, Some(*bar), if is_time { slower } else { 1.0 })
-    });
+    let bars =
+        bars.map(|(key, bar)| (*key, Some(*bar), if is_time(key) { slower } else { 1.0 }));
     let (mut reached, mut here, mut all) = (0, 0, 0);
     for (key, bar, allowed) in bars.chain(in_the_plane) {
         let number = rows.get(key).copied().unwrap_or(f64::NAN);
