@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Interleaved rounds: every subject once a round, so that what disturbs the
-//! machine disturbs all alike. What counts is the fastest: a disturbance only adds.
+//! machine disturbs all alike.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -11,7 +11,7 @@ use std::time::Instant;
 use crate::bars::is_time;
 use crate::fields::Rows;
 
-/// Rounds; the fastest of them is reported.
+/// Rounds; the median of them is reported.
 const ROUNDS: usize = 21;
 
 /// What a subject is repeated for in a round at least [ns].
@@ -54,7 +54,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// The least time of each subject a unit [ns], in their order.
+/// The median time of each subject a unit [ns], in their order.
 pub(crate) fn measure(subjects: &mut [Subject<'_>]) -> Vec<(String, f64)> {
     let repeats: Vec<usize> = subjects
         .iter_mut()
@@ -65,14 +65,21 @@ pub(crate) fn measure(subjects: &mut [Subject<'_>]) -> Vec<(String, f64)> {
             ((LONG_ENOUGH / once).ceil() as usize).max(1)
         })
         .collect();
-    let mut times = vec![f64::INFINITY; subjects.len()];
+    let mut times = vec![Vec::with_capacity(ROUNDS); subjects.len()];
     for _ in 0..ROUNDS {
-        for ((subject, repeats), least) in subjects.iter_mut().zip(&repeats).zip(&mut times) {
+        for ((subject, repeats), times) in subjects.iter_mut().zip(&repeats).zip(&mut times) {
             let run = time(|| (subject.run)(), *repeats);
-            *least = least.min(run / (*repeats * subject.units) as f64);
+            times.push(run / (*repeats * subject.units) as f64);
         }
     }
-    subjects.iter().zip(times).map(|(subject, time)| (subject.key.clone(), time)).collect()
+    subjects
+        .iter()
+        .zip(times)
+        .map(|(subject, mut times)| {
+            times.sort_by(f64::total_cmp);
+            (subject.key.clone(), times[ROUNDS / 2])
+        })
+        .collect()
 }
 
 /// The time of `repeats` runs [ns].
