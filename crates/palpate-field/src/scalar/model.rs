@@ -93,14 +93,15 @@ impl Model {
     ) -> [Self; D] {
         let centre = array!(k < D => cell[k].value - translation[k]);
         array!(i < D => {
-            let mut gradient = [0.0; 3];
+            let gradient = array!(k < 3 => {
+                if k < D { rows[k][i] * cell[k].gradient[k] } else { 0.0 }
+            });
             let (mut value, mut size) = (NONE, NONE);
-            for k in 0..D {
-                let weight = rows[k][i];
-                gradient[k] = weight * cell[k].gradient[k];
-                value += weight * centre[k];
-                size += f64::abs(weight) * (f64::abs(centre[k]) + f64::abs(cell[k].gradient[k]));
-            }
+            unrolled!(k < D => {
+                value += rows[k][i] * centre[k];
+                size += f64::abs(rows[k][i]) * f64::abs(centre[k]);
+            });
+            unrolled!(k < 3 => size += f64::abs(gradient[k]));
             let error = (D as f64 + 4.0) * UNIT * size;
             Self { value, gradient, lower: error, upper: error }
         })

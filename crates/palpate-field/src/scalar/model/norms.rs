@@ -23,11 +23,11 @@ impl<const N: usize> Moves<N> {
     #[inline(always)]
     fn of(x: &[Model; N]) -> Self {
         let each = array!(i < N => x[i].deviation());
-        let (mut sum, mut squares) = (each[0], each[0] * each[0]);
-        for step in &each[1..] {
-            sum += step;
-            squares += step * step;
-        }
+        let (mut sum, mut squares) = (NONE, NONE);
+        unrolled!(i < N => {
+            sum += each[i];
+            squares += each[i] * each[i];
+        });
         Self { each, sum, squares }
     }
 
