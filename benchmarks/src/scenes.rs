@@ -34,6 +34,11 @@ pub(crate) fn spatial() -> Result<Vec<Work<3>>, Box<dyn Error>> {
     scenes.into_iter().map(|(name, text, half)| in_space(name, text, half)).collect()
 }
 
+/// S3.
+pub(crate) fn s3() -> Result<Work<3>, Box<dyn Error>> {
+    in_space("S3", S3, 1.1)
+}
+
 /// The union of a thousand placed primitives.
 pub(crate) fn thousand() -> Result<Work<3>, Box<dyn Error>> {
     in_space("thousand", THOUSAND, 0.6)

@@ -30,8 +30,7 @@ pub(crate) struct Yardstick {
 
 impl Yardstick {
     pub(crate) fn new() -> Result<Self, Box<dyn Error>> {
-        let s3 = scenes::spatial()?.into_iter().find(|work| work.name == "S3");
-        let s3 = s3.ok_or("there is no S3")?;
+        let s3 = scenes::s3()?;
         let mut random = Random::new(7);
         let mut point = || random.point([0.0; 3], s3.half).map(|x| x as f32);
         let points = (0..POINTS).map(|_| point()).collect();

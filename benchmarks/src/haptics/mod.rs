@@ -51,8 +51,7 @@ pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
 fn run() -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
     let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
-    let s3 = scenes::spatial()?.into_iter().find(|work| work.name == "S3");
-    let s3 = s3.ok_or("there is no S3")?.shape.scaled(RADIUS)?;
+    let s3 = scenes::s3()?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
     let mut yardstick = Yardstick::new()?;
     for (key, shape, points) in [
