@@ -19,7 +19,12 @@ mod yardstick;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use mimalloc::MiMalloc;
 use palpate::field::InstructionSet;
+
+/// That of the program `palpate`, for all subjects.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Measures palpate beside its peers.
 #[derive(Debug, Parser)]

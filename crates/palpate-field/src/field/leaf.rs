@@ -109,7 +109,7 @@ impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T,
     }
 }
 
-/// A kernel where it is placed: in short blocks, whose calls take as long as their numbers.
+/// A kernel where it is placed.
 struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
 
 impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
@@ -146,18 +146,6 @@ impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for BoxesToBod
     #[inline(always)]
     fn lane(&self, p: Vector<S, D>, (): ()) -> Vector<S, D> {
         Vector(S::box_to_body(p.0, self.0))
-    }
-}
-
-/// Turns gradients from the body's frame into the world's.
-struct GradientsToWorld<'a, const D: usize>(&'a Placement<D>);
-
-impl<T: Float, const D: usize> Job<(T, Vector<T, D>), (), (T, Vector<T, D>)>
-    for GradientsToWorld<'_, D>
-{
-    #[inline(always)]
-    fn lane(&self, (distance, gradient): (T, Vector<T, D>), (): ()) -> (T, Vector<T, D>) {
-        (distance, self.0.gradient_to_world(gradient))
     }
 }
 
@@ -198,7 +186,8 @@ impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, 
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
         match &self.placement {
             None => run(&Values(&self.kernel), p, &(), count, out),
-            Some(placement) if W == SHORT => {
+            // In short blocks a second call takes as long as the numbers.
+            Some(placement) if S::MOVED_IN_LOOP || W == SHORT => {
                 run(&Placed(&self.kernel, placement), p, &(), count, out);
             }
             Some(placement) => {
@@ -225,16 +214,7 @@ impl<T: Float + Lane, K: Kernel<D>, const D: usize, const W: usize> Differentiat
     ) {
         match &self.placement {
             None => run(&ValuesAndGradients(&self.kernel), p, &(), count, out),
-            Some(placement) if W == SHORT => {
-                run(&Placed(&self.kernel, placement), p, &(), count, out);
-            }
-            Some(placement) => {
-                let mut q = Block::<T, D, W>::scratch();
-                let mut in_body = Gradients::<T, D, W>::scratch();
-                run(&ToBody(placement), p, &(), count, &mut q);
-                run(&ValuesAndGradients(&self.kernel), &q, &(), count, &mut in_body);
-                run(&GradientsToWorld(placement), &in_body, &(), count, out);
-            }
+            Some(placement) => run(&Placed(&self.kernel, placement), p, &(), count, out),
         }
     }
 }

@@ -62,6 +62,11 @@ pub trait Lane: Scalar + Send + Sync + 'static {
     /// Lanes are worked through in lines of this many.
     const LINE: usize;
 
+    /// Whether kernels move their points themselves, in the loop that evaluates: what moves
+    /// the next then fills the time in which this one waits for its roots. Not if the numbers
+    /// of both do not fit into registers.
+    const MOVED_IN_LOOP: bool;
+
     /// The smallest and the largest value that the number stands for.
     fn range(&self) -> (f64, f64);
 
@@ -155,6 +160,7 @@ macro_rules! float_lane {
         impl Lane for $t {
             type Lanes<const W: usize> = Lanes<$t, W>;
             const LINE: usize = <$t as Float>::LINE;
+            const MOVED_IN_LOOP: bool = true;
 
             #[inline(always)]
             fn range(&self) -> (f64, f64) {
@@ -175,6 +181,7 @@ float_lane!(f64);
 impl Lane for Model {
     type Lanes<const W: usize> = ModelLanes<W>;
     const LINE: usize = 8;
+    const MOVED_IN_LOOP: bool = false;
 
     #[inline(always)]
     fn range(&self) -> (f64, f64) {
