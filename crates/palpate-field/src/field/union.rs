@@ -11,13 +11,14 @@ use std::sync::Arc;
 use super::combine::{GradientFold, ValueFold, placed_children};
 use super::nearby::Nearby;
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use crate::bounds::BoundingBall;
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::operator::boolean::Smaller;
 use crate::pose::Pose;
 use crate::promise::Promise;
 use crate::scalar::{Float, Scalar};
 use crate::shape::Shape;
-use crate::vector::{Point, Vector};
+use crate::vector::Vector;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits
 /// of single precision: every member is asked.
@@ -39,13 +40,6 @@ pub(crate) struct Union<const D: usize> {
 struct Slack {
     constant: f64,
     per_metre: f64,
-}
-
-/// A ball that holds the points asked for.
-#[derive(Clone, Copy, Debug)]
-struct Query<const D: usize> {
-    centre: Point<D>,
-    radius: f64,
 }
 
 impl<const D: usize> Union<D> {
@@ -81,7 +75,7 @@ impl<const D: usize> Union<D> {
     fn for_each_near(
         &self,
         nearby: &Nearby<D>,
-        query: Query<D>,
+        query: BoundingBall<D>,
         value: impl FnMut(usize) -> f64,
         near: impl FnMut(usize) -> f64,
     ) {
@@ -113,7 +107,7 @@ impl<const D: usize> Union<D> {
         };
         let mut best: Option<(T, usize)> = None;
         let centre = Vector::of_coordinates(x.to_f64(), y.to_f64(), z.to_f64());
-        let query = Query { centre, radius: 0.0 };
+        let query = BoundingBall { centre, radius: 0.0 };
         let first = std::cell::Cell::new((usize::MAX, T::default()));
         let bound = |i| {
             let value = ask(i);
@@ -131,32 +125,6 @@ impl<const D: usize> Union<D> {
         best.unwrap_or((T::constant(f64::INFINITY), 0))
     }
 
-    /// The ball around the first `count` points or cells of a block.
-    fn ball_around<S: Lane, const W: usize>(p: &Block<S, D, W>, count: usize) -> Query<D> {
-        let mut low = Vector::<f64, D>::constant(f64::INFINITY);
-        let mut high = Vector::<f64, D>::constant(f64::NEG_INFINITY);
-        for i in 0..count.min(W) {
-            for (k, x) in p.get(i).0.iter().enumerate() {
-                let (least, most) = x.range();
-                low[k] = Scalar::min(low[k], least);
-                high[k] = Scalar::max(high[k], most);
-            }
-        }
-        // About the centre of their box; often much smaller than the ball around that.
-        let centre = (low + high) * 0.5;
-        let mut farthest = 0.0;
-        for i in 0..count.min(W) {
-            let mut squared = 0.0;
-            for (k, x) in p.get(i).0.iter().enumerate() {
-                let (least, most) = x.range();
-                let apart = Scalar::max(most - centre[k], centre[k] - least);
-                squared += apart * apart;
-            }
-            farthest = Scalar::max(farthest, squared);
-        }
-        Query { centre, radius: farthest.sqrt() * (1.0 + 8.0 * f64::EPSILON) }
-    }
-
     /// The members that matter in a block.
     fn near_block<S: Lane, const W: usize>(
         &self,
@@ -168,7 +136,7 @@ impl<const D: usize> Union<D> {
             self.members.iter().for_each(near);
             return;
         };
-        let query = Self::ball_around(p, count);
+        let query = p.ball_around(count);
         self.for_each_near(
             nearby,
             query,

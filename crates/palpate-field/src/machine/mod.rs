@@ -15,6 +15,7 @@
 )]
 
 mod block;
+mod extent;
 mod instruction_set;
 mod lanes;
 
