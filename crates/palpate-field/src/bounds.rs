@@ -46,8 +46,8 @@ impl<const D: usize> Aabb<D> {
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
-            min: Vector(array!(i < D => self.min[i].min(other.min[i]))),
-            max: Vector(array!(i < D => self.max[i].max(other.max[i]))),
+            min: Vector(array!(i < D => Scalar::min(self.min[i], other.min[i]))),
+            max: Vector(array!(i < D => Scalar::max(self.max[i], other.max[i]))),
         }
     }
 

@@ -5,6 +5,7 @@
 
 use crate::bounds::{BoundingBall, Bounds};
 use crate::pose::Pose;
+use crate::scalar::Scalar;
 use crate::vector::Point;
 
 /// What the value `f` of a field says about `d`, the distance to its surface.
@@ -72,8 +73,8 @@ impl Rounding {
     #[inline]
     pub fn or(&self, other: &Self) -> Self {
         Self {
-            constant: self.constant.max(other.constant),
-            per_metre: self.per_metre.max(other.per_metre),
+            constant: Scalar::max(self.constant, other.constant),
+            per_metre: Scalar::max(self.per_metre, other.per_metre),
         }
     }
 

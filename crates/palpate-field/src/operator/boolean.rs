@@ -63,7 +63,7 @@ pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<
 
 /// As [`joined`], in place: a union of many copies no promise.
 fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
-    a.lipschitz = a.lipschitz.max(b.lipschitz);
+    a.lipschitz = Scalar::max(a.lipschitz, b.lipschitz);
     if b.region.is_some() {
         a.region = common_region(a.region, b.region);
     }
@@ -71,7 +71,7 @@ fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
     for (a, b) in a.symmetric.iter_mut().zip(b.symmetric) {
         *a &= b;
     }
-    a.reach = a.reach.max(b.reach);
+    a.reach = Scalar::max(a.reach, b.reach);
     a.rounding = a.rounding.or(&b.rounding);
 }
 
