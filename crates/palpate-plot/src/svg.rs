@@ -35,22 +35,27 @@ pub(crate) fn write(drawing: &Drawing) -> String {
     svg
 }
 
+/// A stroke lies under its fill, as a halo does. They are two paths where a mark has both: not
+/// every renderer knows `paint-order`, and the halos of labels would cover their text.
 fn write_mark(svg: &mut String, mark: &Mark) {
-    svg.push_str("<path fill=\"");
-    svg.push_str(&mark.fill.map_or_else(|| "none".to_owned(), Color::hex));
-    svg.push('"');
-    if mark.is_even_odd {
-        svg.push_str(" fill-rule=\"evenodd\"");
-    }
     if let Some(stroke) = &mark.stroke {
+        svg.push_str("<path fill=\"none\"");
         write_stroke(svg, stroke);
-        if mark.fill.is_some() {
-            svg.push_str(" paint-order=\"stroke\"");
+        write_data(svg, mark);
+    }
+    if let Some(fill) = mark.fill {
+        svg.push_str(&format!("<path fill=\"{}\"", fill.hex()));
+        if mark.is_even_odd {
+            svg.push_str(" fill-rule=\"evenodd\"");
         }
+        if let Some(text) = &mark.text {
+            svg.push_str(&format!(" aria-label=\"{}\"", escape(text)));
+        }
+        write_data(svg, mark);
     }
-    if let Some(text) = &mark.text {
-        svg.push_str(&format!(" aria-label=\"{}\"", escape(text)));
-    }
+}
+
+fn write_data(svg: &mut String, mark: &Mark) {
     svg.push_str(" d=\"");
     write_path(svg, &mark.path);
     svg.push_str("\"/>\n");
