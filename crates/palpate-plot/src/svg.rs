@@ -41,6 +41,9 @@ fn write_mark(svg: &mut String, mark: &Mark) {
     if let Some(stroke) = &mark.stroke {
         svg.push_str("<path fill=\"none\"");
         write_stroke(svg, stroke);
+        if mark.text.is_some() {
+            svg.push_str(" aria-hidden=\"true\"");
+        }
         write_data(svg, mark);
     }
     if let Some(fill) = mark.fill {
