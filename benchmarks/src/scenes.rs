@@ -30,8 +30,12 @@ pub(crate) struct Work<const D: usize> {
 
 /// S1 to S4.
 pub(crate) fn spatial() -> Result<Vec<Work<3>>, Box<dyn Error>> {
-    let scenes = [("S1", S1, 1.1), ("S2", S2, 1.1), ("S3", S3, 1.1), ("S4", S4, 2.6)];
-    scenes.into_iter().map(|(name, text, half)| in_space(name, text, half)).collect()
+    Ok(vec![
+        in_space("S1", S1, 1.1)?,
+        in_space("S2", S2, 1.1)?,
+        s3()?,
+        in_space("S4", S4, 2.6)?,
+    ])
 }
 
 /// S3.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Simulated devices and gloves in a tick: nothing is allocated, whatever they are told.
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use palpate_devices::{

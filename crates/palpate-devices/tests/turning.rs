@@ -3,8 +3,7 @@
 
 //! Simulated devices that turn: their motion and energies, and tools on them, stable as theory
 //! says.
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-#![allow(clippy::float_cmp, reason = "tests compare exact numbers")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use palpate_devices::{
     Device, DeviceProfile, Hand, PointState, SimulatedDevice, TurnState, TurningProfile,

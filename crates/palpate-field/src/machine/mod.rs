@@ -9,7 +9,7 @@
 //! `unsafe` is allowed: to call functions compiled for an instruction set that
 //! was found at run time, and to leave scratch memory unwritten, which would cost
 //! more to clear than a leaf takes to evaluate.
-#![allow(
+#![expect(
     unsafe_code,
     reason = "calls code for a checked instruction set; scratch memory starts unwritten"
 )]
