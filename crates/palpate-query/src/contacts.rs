@@ -199,11 +199,11 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
             for parents in cells.chunks(SHORT / parts) {
-                let (mut block, mut count) = ([parents[0]; SHORT], 0);
+                let first = halves.len();
                 for parent in parents {
-                    parent.halve_into(parts, &mut block, &mut count);
+                    parent.halve_into(parts, halves);
                 }
-                self.look_at(&mut block, count, halves);
+                self.look_at(halves, first, first);
             }
             std::mem::swap(cells, halves);
             patches.radius *= 0.5;

@@ -71,6 +71,17 @@ impl<const N: usize, const D: usize> Element<N, D> {
         point
     }
 
+    /// The vertex that is least far along `way`.
+    #[inline]
+    pub(crate) fn lowest_along(&self, way: Vector<f64, D>) -> Point<D> {
+        let (mut lowest, mut least) = (self.vertices[0], f64::INFINITY);
+        for vertex in &self.vertices {
+            let along = way.dot(*vertex);
+            (lowest, least) = if along < least { (*vertex, along) } else { (lowest, least) };
+        }
+        lowest
+    }
+
     /// The distance of `p` from the farthest point of the element, a vertex.
     #[inline]
     pub(crate) fn farthest(&self, p: Point<D>) -> f64 {

@@ -32,6 +32,11 @@ impl Goal {
         Self { tolerance, apart: 0.0, is_sign: true }
     }
 
+    /// `true` if it is enough that something is at most zero.
+    pub(crate) fn is_sign(self) -> bool {
+        self.is_sign
+    }
+
     /// Cells with nothing below this need no more looking at.
     pub(crate) fn threshold(self, upper: f64) -> f64 {
         (upper - self.tolerance).min(self.apart + self.apart * f64::EPSILON + f64::MIN_POSITIVE)

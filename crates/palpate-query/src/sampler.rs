@@ -91,6 +91,13 @@ impl<'a, const D: usize> Sampler<'a, D> {
         self.shape.promise().convex
     }
 
+    /// The value at a point.
+    #[inline]
+    pub(crate) fn value(&mut self, p: Point<D>) -> f64 {
+        self.evaluations += 1;
+        self.shape.distance(p) - self.level
+    }
+
     /// The value at a point and its gradient.
     #[inline]
     pub(crate) fn slope(&mut self, p: Point<D>) -> (f64, Vector<f64, D>) {

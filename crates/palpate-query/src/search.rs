@@ -32,12 +32,15 @@ use crate::sampler::{Sampler, Samples, unit};
 /// Heights that are tried first, in radii.
 pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 
+/// Heights over the lowest point, in radii.
+const OVER_LOWEST: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 18.0];
+
 /// A cell's second height, as a share of its first.
 const LOWER: f64 = 0.4;
 
 /// What a height becomes when the plain ball said more, and when the lifted one nearly
 /// said all there is to say.
-const SHRINK: f64 = 0.25;
+const SHRINK: f64 = 0.5;
 const GROW: f64 = 1.5;
 
 /// Cells are halved no more often: they are then as small as roundings of the whole.
@@ -63,19 +66,12 @@ pub(crate) struct Cell<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Cell<N, D> {
-    /// Writes the first `halves` of its halves behind the first `count` parts, and counts
-    /// them.
+    /// Appends the first `count` of its halves.
     #[inline]
-    pub(crate) fn halve_into(
-        &self,
-        halves: usize,
-        parts: &mut [Self; SHORT],
-        count: &mut usize,
-    ) {
-        for element in &self.element.halves()[..halves] {
-            parts[*count] = Self { element: *element, level: self.level + 1, ..*self };
-            *count += 1;
-        }
+    pub(crate) fn halve_into(&self, count: usize, cells: &mut Vec<Self>) {
+        let level = self.level + 1;
+        let halves = self.element.halves();
+        cells.extend(halves[..count].iter().map(|&element| Self { element, level, ..*self }));
     }
 }
 
@@ -272,6 +268,16 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         if let Some(stop) = self.goal.reached(lower, self.upper) {
             return Err(self.answer(lower, stop));
         }
+        if self.goal.is_sign() {
+            let lowest = element.lowest_along(gradient);
+            if value + gradient.dot(lowest - centre) <= 0.0 {
+                let value = self.sampler.value(lowest);
+                self.found(lowest, value);
+                if self.goal.is_hit(self.upper) {
+                    return Err(self.answer(lower, Stop::SignKnown));
+                }
+            }
+        }
         let flat = element.flattened(&self.weights);
         if let Some(flat) = &flat {
             (self.weights, self.parts) = (flat.centre_weights(), 2);
@@ -284,7 +290,10 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             direction: unit(gradient),
             level: 0,
         };
-        self.look_around(&mut whole, centre);
+        let values = self.look_around(&mut whole, centre);
+        if self.goal.reached(whole.lower, self.upper).is_none() {
+            self.look_from_lowest(&mut whole, &values, (centre, gradient));
+        }
         Ok(whole)
     }
 
@@ -305,9 +314,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         }
     }
 
-    /// The vertices, and points over the centre at several heights.
+    /// The vertices, whose values it returns, and points over the centre at several heights.
     #[inline(always)]
-    fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) {
+    fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) -> [f64; N] {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
         let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
             None => cell.element.vertices[i],
@@ -317,10 +326,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         for (i, (p, value)) in points.into_iter().zip(values).enumerate() {
             match i.checked_sub(N) {
                 None => self.found(p, value),
-                Some(_) if self.goal.is_hit(self.upper) => return,
+                Some(_) if self.goal.is_hit(self.upper) => break,
                 Some(k) => {
-                    let lower =
-                        self.sampler.steepness.bound(p, value, cell.element.farthest(p));
+                    let lower = self.over(cell, p, value);
                     if lower > cell.lower {
                         cell.lower = lower;
                         cell.height = heights[k.min(heights.len() - 1)];
@@ -328,69 +336,122 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
                 }
             }
         }
+        std::array::from_fn(|i| values[i])
+    }
+
+    /// From the lowest point that is known: towards each vertex as far as its value and slope
+    /// and the vertex' value, as a parabola, make it least, and points over it.
+    ///
+    /// Most often that is a vertex, and the others are higher than the plane along the
+    /// surface through it: a ball that touches it from above then leaves nothing out.
+    #[inline]
+    fn look_from_lowest(
+        &mut self,
+        cell: &mut Cell<N, D>,
+        vertices: &[f64; N],
+        (centre, gradient): (Point<D>, Vector<f64, D>),
+    ) {
+        let lowest = self.best;
+        let value = self.upper - self.sampler.steepness.slack;
+        let gradient = if lowest == centre { gradient } else { self.sampler.slope(lowest).1 };
+        let direction = unit(gradient);
+        let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
+            None => {
+                let way = cell.element.vertices[i] - lowest;
+                let descent = -gradient.dot(way);
+                let bend = descent + vertices[i] - value;
+                let share = if descent > 0.0 { 0.5 * descent / bend } else { 0.0 };
+                lowest + way * share
+            }
+            Some(k) => {
+                lowest + direction * (OVER_LOWEST[k.min(OVER_LOWEST.len() - 1)] * self.radius)
+            }
+        });
+        let values = self.sampler.values(&points);
+        for (i, (p, value)) in points.into_iter().zip(values).enumerate() {
+            if i < N {
+                self.found(p, value);
+            } else {
+                cell.lower = larger(cell.lower, self.over(cell, p, value));
+            }
+        }
+    }
+
+    /// What a value anywhere says of a cell.
+    #[inline]
+    fn over(&self, cell: &Cell<N, D>, p: Point<D>, value: f64) -> f64 {
+        self.sampler.steepness.bound(p, value, cell.element.farthest(p))
     }
 
     /// Halves the cells of which least is known, a block of parts.
     #[inline]
     fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let mut parts = [cells[0]; SHORT];
-        let mut count = 0;
-        while count < SHORT && !cells.is_empty() {
-            let lowest = (1..cells.len())
-                .fold(0, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            cells.swap_remove(lowest).halve_into(self.parts, &mut parts, &mut count);
+        let first = cells.len();
+        let halved = (SHORT / self.parts).min(first);
+        let kept = first - halved;
+        for end in (kept..first).rev() {
+            let lowest = (0..end)
+                .fold(end, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
+            cells.swap(lowest, end);
+            let parent = cells[end];
+            parent.halve_into(self.parts, cells);
         }
-        self.look_at(&mut parts, count, cells);
+        self.look_at(cells, kept, first);
     }
 
-    /// Bounds the first `count` parts, and keeps those that matter.
+    /// Bounds the cells from `first` on, at most [`SHORT`], and keeps those that matter, behind
+    /// the first `kept`.
     #[inline]
-    pub(crate) fn look_at(
-        &mut self,
-        parts: &mut [Cell<N, D>; SHORT],
-        count: usize,
-        kept: &mut Vec<Cell<N, D>>,
-    ) {
-        for i in count..SHORT {
-            parts[i] = parts[count - 1];
-        }
-        let mut centres = [Vector::ZERO; SHORT];
-        for (centre, part) in centres.iter_mut().zip(&*parts) {
-            *centre = part.element.at(&self.weights);
-        }
-        let parts = &mut parts[..count];
+    pub(crate) fn look_at(&mut self, cells: &mut Vec<Cell<N, D>>, kept: usize, first: usize) {
+        let parts = &mut cells[first..];
+        let count = parts.len();
+        let mut points: [Point<D>; SHORT] =
+            std::array::from_fn(|i| parts[i.min(count - 1)].element.at(&self.weights));
         if parts[0].level.is_multiple_of(2) {
-            let (values, directions) = self.sampler.slopes(&centres);
+            let (values, directions) = self.sampler.slopes(&points);
             for (part, direction) in parts.iter_mut().zip(directions) {
                 part.direction = direction;
             }
-            self.settle(parts, &centres, &values);
-            self.lift(parts, &centres, &values, 1.0);
-            self.lift(parts, &centres, &values, LOWER);
+            self.settle(parts, &points, &values);
+            if count <= SHORT / 2 {
+                self.lift(parts, &points, &values, &[1.0, LOWER]);
+            } else {
+                self.lift(parts, &points, &values, &[1.0]);
+                self.lift(parts, &points, &values, &[LOWER]);
+            }
+        } else if count <= SHORT / 2 {
+            // There is room for what is over them.
+            let (centres, lifted) = points.split_at_mut(SHORT / 2);
+            for ((part, centre), point) in parts.iter().zip(&*centres).zip(lifted) {
+                *point = *centre + part.direction * part.height;
+            }
+            let values = self.sampler.values(&points);
+            let (centres, lifted) = points.split_at(SHORT / 2);
+            let (values, lifted_values) = values.split_at(SHORT / 2);
+            self.settle(parts, centres, values);
+            self.learn(parts, (centres, values), (lifted, lifted_values), 1.0);
         } else {
-            let values = self.sampler.values(&centres);
-            self.settle(parts, &centres, &values);
-            self.lift(parts, &centres, &values, 1.0);
+            let values = self.sampler.values(&points);
+            self.settle(parts, &points, &values);
+            self.lift(parts, &points, &values, &[1.0]);
         }
         let threshold = self.threshold();
-        for part in parts {
-            if part.lower < threshold && part.level < MOST_LEVELS {
-                kept.push(*part);
+        let mut end = kept;
+        for i in first..cells.len() {
+            if cells[i].lower < threshold && cells[i].level < MOST_LEVELS {
+                cells[end] = cells[i];
+                end += 1;
             } else {
-                self.dropped = self.dropped.min(part.lower);
+                self.dropped = self.dropped.min(cells[i].lower);
             }
         }
+        cells.truncate(end);
     }
 
     /// Bounds parts by the values at their centres.
     #[inline]
-    fn settle(
-        &mut self,
-        parts: &mut [Cell<N, D>],
-        centres: &[Point<D>; SHORT],
-        values: &[f64; SHORT],
-    ) {
+    fn settle(&mut self, parts: &mut [Cell<N, D>], centres: &[Point<D>], values: &[f64]) {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
             part.upper = *value + self.sampler.steepness.slack;
@@ -399,15 +460,15 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         }
     }
 
-    /// Bounds parts by points over their centres, at `share` of their heights, and
-    /// learns which heights say much.
+    /// Bounds parts by points over their centres, at `shares` of their heights, all in one
+    /// block.
     #[inline]
     fn lift(
         &mut self,
         parts: &mut [Cell<N, D>],
         centres: &[Point<D>; SHORT],
         values: &[f64; SHORT],
-        share: f64,
+        shares: &[f64],
     ) {
         let threshold = self.threshold();
         let is_open = |part: &Cell<N, D>| part.lower < threshold;
@@ -415,18 +476,33 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             return;
         }
         let mut points = *centres;
-        for (point, part) in points.iter_mut().zip(&*parts) {
-            *point += part.direction * (share * part.height);
+        let lanes = SHORT / shares.len();
+        for (points, share) in points.chunks_exact_mut(lanes).zip(shares) {
+            for ((point, part), centre) in points.iter_mut().zip(&*parts).zip(centres) {
+                *point = *centre + part.direction * (share * part.height);
+            }
         }
         let lifted = self.sampler.values(&points);
+        let lifted = points.chunks_exact(lanes).zip(lifted.chunks_exact(lanes));
+        for (lifted, share) in lifted.zip(shares) {
+            self.learn(parts, (centres, values), lifted, *share);
+        }
+    }
+
+    /// Bounds parts by values over their centres, at `share` of their heights, and learns
+    /// which heights say much.
+    #[inline]
+    fn learn(
+        &mut self,
+        parts: &mut [Cell<N, D>],
+        (centres, values): (&[Point<D>], &[f64]),
+        (points, lifted): (&[Point<D>], &[f64]),
+        share: f64,
+    ) {
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
             let radius = self.radius_of(part);
-            let lower = self.sampler.steepness.bound(
-                points[i],
-                lifted[i],
-                part.element.farthest(points[i]),
-            );
+            let lower = self.over(part, points[i], lifted[i]);
             if lower >= part.lower {
                 let nearly_all = values[i] - 0.25 * self.sampler.steepness.lipschitz * radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };

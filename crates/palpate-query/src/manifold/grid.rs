@@ -9,18 +9,21 @@ use palpate_field::{Aabb, Point};
 #[derive(Debug)]
 pub(super) struct Grid<const D: usize> {
     min: Point<D>,
-    side: f64,
+    /// Cubes in a metre.
+    per_metre: f64,
+    /// The square of the distance up to which points are near [m²].
+    near_squared: f64,
     counts: [usize; D],
     /// Where each cube's points begin in `members`, and the end.
     starts: Vec<u32>,
     /// Where those end that were not taken out.
     ends: Vec<u32>,
-    members: Vec<u32>,
+    members: Vec<(Point<D>, u32)>,
 }
 
 impl<const D: usize> Grid<D> {
-    /// Sorts points into cubes with sides of at least `side`.
-    pub(super) fn new(points: impl Iterator<Item = Point<D>> + Clone, side: f64) -> Self {
+    /// Sorts points into cubes with sides of at least `near`.
+    pub(super) fn new(points: impl Iterator<Item = Point<D>> + Clone, near: f64) -> Self {
         let number = points.clone().count();
         let aabb = Aabb::around(points.clone());
         let (min, extent) = aabb.map_or((Point::constant(0.0), Point::constant(0.0)), |aabb| {
@@ -28,15 +31,16 @@ impl<const D: usize> Grid<D> {
         });
         let mut grid = Self {
             min,
-            side,
+            per_metre: 1.0 / near,
+            near_squared: near * near,
             counts: [1; D],
             starts: Vec::new(),
             ends: Vec::new(),
-            members: Vec::new(),
+            members: vec![(Point::constant(0.0), 0); number],
         };
         loop {
             for k in 0..D {
-                grid.counts[k] = ((extent[k] / grid.side) as usize).saturating_add(1);
+                grid.counts[k] = ((extent[k] * grid.per_metre) as usize).saturating_add(1);
             }
             let places = grid.counts.iter().fold(1_usize, |n, count| n.saturating_mul(*count));
             // Empty places take time too: there are no more than points.
@@ -44,20 +48,18 @@ impl<const D: usize> Grid<D> {
                 grid.starts = vec![0; places + 1];
                 break;
             }
-            grid.side *= 2.0;
+            grid.per_metre *= 0.5;
         }
-        for p in points.clone() {
-            let place = grid.place(p);
+        let places: Vec<usize> = points.clone().map(|p| grid.place_of(grid.cube(p))).collect();
+        for place in &places {
             grid.starts[place + 1] += 1;
         }
         for place in 1..grid.starts.len() {
             grid.starts[place] += grid.starts[place - 1];
         }
         grid.ends = grid.starts.clone();
-        grid.members = vec![0; number];
-        for (i, p) in points.enumerate() {
-            let place = grid.place(p);
-            grid.members[grid.ends[place] as usize] = i as u32;
+        for ((i, p), place) in (0..).zip(points).zip(places) {
+            grid.members[grid.ends[place] as usize] = (p, i);
             grid.ends[place] += 1;
         }
         grid
@@ -65,26 +67,31 @@ impl<const D: usize> Grid<D> {
 
     fn cube(&self, p: Point<D>) -> [usize; D] {
         std::array::from_fn(|k| {
-            (((p[k] - self.min[k]) / self.side) as usize).min(self.counts[k] - 1)
+            (((p[k] - self.min[k]) * self.per_metre) as usize).min(self.counts[k] - 1)
         })
     }
 
-    fn place(&self, p: Point<D>) -> usize {
-        self.place_of(self.cube(p))
-    }
-
     fn place_of(&self, cube: [usize; D]) -> usize {
-        cube.iter().zip(self.counts).rfold(0, |place, (k, count)| place * count + k)
+        let mut place = 0;
+        for k in (0..D).rev() {
+            place = place * self.counts[k] + cube[k];
+        }
+        place
     }
 
-    /// Takes out the points within a side of `p`, and maybe some others, of which
-    /// `is_wanted` says so.
+    fn is_near(&self, p: Point<D>, other: Point<D>) -> bool {
+        let apart = p - other;
+        apart.dot(apart) < self.near_squared
+    }
+
+    /// Takes out the points near `p` of which `is_wanted` says so.
     pub(super) fn take(&mut self, p: Point<D>, mut is_wanted: impl FnMut(usize) -> bool) {
         self.each_place(p, |grid, place| {
             let (start, mut end) = (grid.starts[place] as usize, grid.ends[place] as usize);
             let mut i = start;
             while i < end {
-                if is_wanted(grid.members[i] as usize) {
+                let (point, member) = grid.members[i];
+                if grid.is_near(p, point) && is_wanted(member as usize) {
                     end -= 1;
                     grid.members.swap(i, end);
                 } else {
@@ -95,27 +102,36 @@ impl<const D: usize> Grid<D> {
         });
     }
 
-    /// Calls `visit` with the points that were taken out within a side of `p`, and maybe
-    /// some others.
+    /// Calls `visit` with the points near `p` that were taken out.
     pub(super) fn taken(&mut self, p: Point<D>, mut visit: impl FnMut(usize)) {
         self.each_place(p, |grid, place| {
             let (end, all) = (grid.ends[place] as usize, grid.starts[place + 1] as usize);
-            grid.members[end..all].iter().for_each(|&member| visit(member as usize));
+            for &(point, member) in &grid.members[end..all] {
+                if grid.is_near(p, point) {
+                    visit(member as usize);
+                }
+            }
         });
     }
 
     /// Calls `visit` with the cubes around a point.
     fn each_place(&mut self, p: Point<D>, mut visit: impl FnMut(&mut Self, usize)) {
         let centre = self.cube(p);
-        let first = centre.map(|k| k.saturating_sub(1));
-        let last: [usize; D] = std::array::from_fn(|k| (centre[k] + 1).min(self.counts[k] - 1));
-        let mut cube = first;
+        let (mut first, mut last) = (centre, centre);
+        for k in 0..D {
+            first[k] = centre[k].saturating_sub(1);
+            last[k] = (centre[k] + 1).min(self.counts[k] - 1);
+        }
+        // Those that differ in the first coordinate alone are next to each other.
+        let mut row = first;
         loop {
-            visit(self, self.place_of(cube));
-            // The next one, the first coordinate fastest.
-            let Some(k) = (0..D).find(|&k| cube[k] < last[k]) else { break };
-            cube[k] += 1;
-            cube[..k].copy_from_slice(&first[..k]);
+            let start = self.place_of(row);
+            for place in start..=start + last[0] - first[0] {
+                visit(self, place);
+            }
+            let Some(k) = (1..D).find(|&k| row[k] < last[k]) else { break };
+            row[k] += 1;
+            row[1..k].copy_from_slice(&first[1..k]);
         }
     }
 }

@@ -58,13 +58,11 @@ impl<const D: usize> Patches<'_, '_, D> {
                 continue;
             }
             let first = &candidates[seed];
-            let is_near = |i: usize, p| distance(candidates[i].point, p) < near;
             grid.take(first.point, |i| i == seed);
             is_owned[seed] = true;
             let mut is_slope = false;
             grid.taken(first.point, |i| {
-                let is_deeper = candidates[i].gap < first.gap - SLOPE * self.settings.depth();
-                is_slope |= is_deeper && is_near(i, first.point);
+                is_slope |= candidates[i].gap < first.gap - SLOPE * self.settings.depth();
             });
             if is_slope {
                 continue;
@@ -77,12 +75,11 @@ impl<const D: usize> Patches<'_, '_, D> {
                 next += 1;
                 grid.take(here, |i| {
                     let is_alike = candidates[i].normal.dot(first.normal) > ALIKE;
-                    let is_taken = is_alike && is_near(i, here);
-                    if is_taken {
+                    if is_alike {
                         is_owned[i] = true;
                         members.push(i);
                     }
-                    is_taken
+                    is_alike
                 });
             }
             self.span(seed, &members, group, &mut contacts);
