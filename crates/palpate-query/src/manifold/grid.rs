@@ -5,7 +5,8 @@
 
 use palpate_field::{Aabb, Point};
 
-/// Points sorted into cubes, so that those near a point are found in the cubes around.
+/// Points sorted into cubes, so that those near a point are found in the cubes around. They
+/// are taken out in groups of points that are alike.
 #[derive(Debug)]
 pub(super) struct Grid<const D: usize> {
     min: Point<D>,
@@ -18,6 +19,11 @@ pub(super) struct Grid<const D: usize> {
     starts: Vec<u32>,
     /// Where those end that were not taken out.
     ends: Vec<u32>,
+    /// Of each cube that the present group came to: where those end that are alike.
+    alike: Vec<u32>,
+    /// The last group that came to each cube.
+    groups: Vec<u32>,
+    group: u32,
     members: Vec<(Point<D>, u32)>,
 }
 
@@ -36,6 +42,9 @@ impl<const D: usize> Grid<D> {
             counts: [1; D],
             starts: Vec::new(),
             ends: Vec::new(),
+            alike: Vec::new(),
+            groups: Vec::new(),
+            group: 0,
             members: vec![(Point::constant(0.0), 0); number],
         };
         loop {
@@ -58,6 +67,8 @@ impl<const D: usize> Grid<D> {
             grid.starts[place] += grid.starts[place - 1];
         }
         grid.ends = grid.starts.clone();
+        grid.alike = grid.starts.clone();
+        grid.groups = vec![0; grid.starts.len()];
         for ((i, p), place) in (0..).zip(points).zip(places) {
             grid.members[grid.ends[place] as usize] = (p, i);
             grid.ends[place] += 1;
@@ -84,22 +95,60 @@ impl<const D: usize> Grid<D> {
         apart.dot(apart) < self.near_squared
     }
 
-    /// Takes out the points near `p` of which `is_wanted` says so.
-    pub(super) fn take(&mut self, p: Point<D>, mut is_wanted: impl FnMut(usize) -> bool) {
+    /// Takes out the point `index`, which is at `p`, and begins a group.
+    pub(super) fn begin(&mut self, p: Point<D>, index: usize) {
+        let place = self.place_of(self.cube(p));
+        let (start, end) = (self.starts[place] as usize, self.ends[place] as usize);
+        let is_it = |member: &(Point<D>, u32)| member.1 as usize == index;
+        if let Some(i) = self.members[start..end].iter().position(is_it) {
+            self.members.swap(start + i, end - 1);
+            self.ends[place] -= 1;
+        }
+        self.group += 1;
+    }
+
+    /// Takes out the points near `p` that are alike, which the group must agree on, and
+    /// appends them to `taken`.
+    pub(super) fn take(
+        &mut self,
+        p: Point<D>,
+        is_alike: impl Fn(usize) -> bool,
+        taken: &mut Vec<usize>,
+    ) {
         self.each_place(p, |grid, place| {
-            let (start, mut end) = (grid.starts[place] as usize, grid.ends[place] as usize);
-            let mut i = start;
-            while i < end {
+            if grid.groups[place] != grid.group {
+                grid.part(place, &is_alike);
+            }
+            let mut i = grid.starts[place] as usize;
+            while i < grid.alike[place] as usize {
                 let (point, member) = grid.members[i];
-                if grid.is_near(p, point) && is_wanted(member as usize) {
-                    end -= 1;
-                    grid.members.swap(i, end);
+                if grid.is_near(p, point) {
+                    taken.push(member as usize);
+                    grid.alike[place] -= 1;
+                    grid.ends[place] -= 1;
+                    let (alike, end) = (grid.alike[place] as usize, grid.ends[place] as usize);
+                    grid.members[i] = grid.members[alike];
+                    grid.members[alike] = grid.members[end];
+                    grid.members[end] = (point, member);
                 } else {
                     i += 1;
                 }
             }
-            grid.ends[place] = end as u32;
         });
+    }
+
+    /// Puts the points of a cube that are alike before the others.
+    fn part(&mut self, place: usize, is_alike: impl Fn(usize) -> bool) {
+        let start = self.starts[place] as usize;
+        let left = &mut self.members[start..self.ends[place] as usize];
+        let mut count = 0;
+        for i in 0..left.len() {
+            if is_alike(left[i].1 as usize) {
+                left.swap(count, i);
+                count += 1;
+            }
+        }
+        (self.alike[place], self.groups[place]) = ((start + count) as u32, self.group);
     }
 
     /// Calls `visit` with the points near `p` that were taken out.

@@ -58,7 +58,7 @@ impl<const D: usize> Patches<'_, '_, D> {
                 continue;
             }
             let first = &candidates[seed];
-            grid.take(first.point, |i| i == seed);
+            grid.begin(first.point, seed);
             is_owned[seed] = true;
             let mut is_slope = false;
             grid.taken(first.point, |i| {
@@ -73,14 +73,15 @@ impl<const D: usize> Patches<'_, '_, D> {
             while next < members.len() {
                 let here = candidates[members[next]].point;
                 next += 1;
-                grid.take(here, |i| {
-                    let is_alike = candidates[i].normal.dot(first.normal) > ALIKE;
-                    if is_alike {
-                        is_owned[i] = true;
-                        members.push(i);
-                    }
-                    is_alike
-                });
+                let known = members.len();
+                grid.take(
+                    here,
+                    |i| candidates[i].normal.dot(first.normal) > ALIKE,
+                    &mut members,
+                );
+                for &member in &members[known..] {
+                    is_owned[member] = true;
+                }
             }
             self.span(seed, &members, group, &mut contacts);
             group += 1;
