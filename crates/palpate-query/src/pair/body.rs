@@ -15,6 +15,9 @@ use crate::placed::{Placed, check_pose};
 /// Roundings of places and of distances to boxes, relative to the largest coordinate.
 const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
+/// A coordinate that a side of a box depends on less than this is not bounded by it.
+const LEAST_TURN: f64 = 1e-2;
+
 /// Roundings of a rotated side of a box.
 const TURN_ROUNDINGS: f64 = 4.0;
 
@@ -69,6 +72,34 @@ impl<'a, const D: usize> Body<'a, D> {
                 placed.grown(self.geometry(reach(&placed)))
             }
         })
+    }
+
+    /// A box that holds all points of `aabb` within `grown` of the shape's own box, which may
+    /// be turned; `None` if nothing is known, or there is none.
+    ///
+    /// Along a side of the own box, the other coordinates of a point of `aabb` leave each only
+    /// so far to go.
+    pub(crate) fn tightened(&self, aabb: &Aabb<D>, grown: f64) -> Option<Aabb<D>> {
+        let (pose, own) = (self.body_from_frame.as_ref()?, self.aabb?);
+        let rounding = self.geometry(reach(aabb));
+        let own = own.grown(grown + rounding);
+        let mut tight = *aabb;
+        for (i, row) in pose.rotation.matrix().iter().enumerate() {
+            let [low, high] = [own.min[i], own.max[i]].map(|end| end - pose.translation[i]);
+            for k in (0..D).filter(|&k| row[k].abs() > LEAST_TURN) {
+                let (mut least, mut most) = (low, high);
+                for j in (0..D).filter(|&j| j != k) {
+                    let (one, other) = (row[j] * tight.min[j], row[j] * tight.max[j]);
+                    least -= larger(one, other);
+                    most += larger(-one, -other);
+                }
+                let (one, other) = (least / row[k], most / row[k]);
+                let (from, to) = if row[k] < 0.0 { (other, one) } else { (one, other) };
+                tight.min[k] = larger(tight.min[k], from - rounding);
+                tight.max[k] = -larger(-tight.max[k], -to - rounding);
+            }
+        }
+        (0..D).all(|k| tight.min[k] <= tight.max[k]).then_some(tight)
     }
 
     /// What `g` may be off by within `reach` of the frame's origin [m].
@@ -205,5 +236,42 @@ impl<'a, const D: usize> Body<'a, D> {
         } else {
             (f64::NEG_INFINITY, away)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Rotation;
+    use palpate_field::kernel::Cuboid;
+
+    use super::*;
+
+    #[test]
+    fn a_tightened_box_leaves_out_only_what_is_outside_of_a_turned_one() {
+        let bar = Shape::from_kernel(Cuboid::new(Vector([2.0, 0.2, 0.3])).unwrap());
+        let aabb = Aabb { min: Vector([-0.5; 3]), max: Vector([0.5, 0.4, 0.6]) };
+        let places = |n: u32| (0..=n).map(move |i| f64::from(i) / f64::from(n));
+        let mut smallest = f64::INFINITY;
+        for turn in places(40) {
+            let axis = Vector([1.0, turn - 0.3, 0.5 - turn]);
+            let rotation = Rotation::from_axis_angle(axis, 7.0 * turn).unwrap();
+            let pose = Pose::new(rotation, Vector([0.3 - turn, 0.2, turn * turn]));
+            let body = Body::new(&bar, pose);
+            let grown = 0.02 * turn;
+            let tight = body.tightened(&aabb, grown);
+            let own = bar.promise().bounds.unwrap().aabb.grown(grown);
+            for x in places(12) {
+                for (y, z) in places(12).flat_map(|y| places(12).map(move |z| (y, z))) {
+                    let share = Vector([x, y, z]);
+                    let sides = aabb.max - aabb.min;
+                    let p = aabb.min + Vector(std::array::from_fn(|k| share[k] * sides[k]));
+                    let is_in_both = own.contains(body.local(p));
+                    assert!(!is_in_both || tight.is_some_and(|tight| tight.contains(p)));
+                }
+            }
+            let volume = |aabb: Aabb<3>| (aabb.max - aabb.min).0.iter().product::<f64>();
+            smallest = smallest.min(tight.map_or(1.0, |tight| volume(tight) / volume(aabb)));
+        }
+        assert!(smallest < 0.25, "{smallest}");
     }
 }

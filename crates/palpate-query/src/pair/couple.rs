@@ -211,6 +211,12 @@ impl<'a, const D: usize> Couple<'a, D> {
         grown.reduce(|a, b| common(&a, &b)).unwrap_or(nowhere)
     }
 
+    /// The part of a box of the frame in which the second body's own box, grown by `least`,
+    /// leaves room for such points.
+    pub(crate) fn tightened(&self, root: &Aabb<D>, least: f64) -> Aabb<D> {
+        self.bodies[1].tightened(root, least).unwrap_or(*root)
+    }
+
     /// How far the boxes of both bodies are apart along a side of either, if they are [m].
     pub(crate) fn gap_of_boxes(&self) -> Option<f64> {
         let inside_out = |both: Aabb<D>| {

@@ -20,6 +20,9 @@ use crate::larger::larger;
 /// remainders are larger than radii.
 const SMALL: f64 = 0.25;
 
+/// A search for a sign descends so often from a box that may lead to another valley.
+const TRIES: u32 = 2;
+
 /// A model that says nothing.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
@@ -84,6 +87,8 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(super) couple: Couple<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
+    /// Descents from boxes that are no better than the best, which may still be made.
+    tries: u32,
     pub(super) upper: f64,
     pub(crate) best: Point<D>,
     /// Nothing in the boxes that were dropped is less.
@@ -105,6 +110,7 @@ impl<'a, const D: usize> Search<'a, D> {
             couple,
             goal,
             budget: limits.budget,
+            tries: TRIES,
             upper: f64::INFINITY,
             best: Vector::ZERO,
             dropped: f64::INFINITY,
@@ -216,7 +222,7 @@ impl<'a, const D: usize> Search<'a, D> {
         let least = self.goal.most(self.upper);
         self.dropped = least + slack;
         let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
-        self.couple.root(grown)
+        self.couple.tightened(&self.couple.root(grown), grown)
     }
 
     /// Looks at a block of boxes: pending ones, or the parts of those of which least is
@@ -244,18 +250,23 @@ impl<'a, const D: usize> Search<'a, D> {
         }
         round.count = kept;
         self.couple.values(1, &round.parts[..kept], memory, &mut round.values[1]);
-        let mut least = (f64::INFINITY, self.best);
+        let mut least = (f64::INFINITY, 0);
         for (i, part) in round.parts[..kept].iter_mut().enumerate() {
             let at = (i, round.values[1][i]);
             let floor = self.couple.floor(1, at, round.radii[i], memory);
             part.lower = larger(part.lower, floor - self.slack);
             let value = larger(round.values[0][i], round.values[1][i]);
             if value < least.0 {
-                least = (value, part.centre);
+                least = (value, i);
             }
         }
-        if least.0 < self.upper - self.goal.tolerance {
-            self.descend(least.1, None);
+        let (value, centre, radius) =
+            (least.0, round.parts[least.1].centre, round.radii[least.1]);
+        if value < self.upper - self.goal.tolerance {
+            self.descend(centre, None);
+        } else if self.is_worth_a_try((value, centre), radius) {
+            self.tries -= 1;
+            self.descend(centre, None);
         }
         if !self.goal.is_hit(self.upper + self.slack) {
             self.model(workspace, largest);
@@ -269,6 +280,13 @@ impl<'a, const D: usize> Search<'a, D> {
                 self.drop_cell(part, cells);
             }
         }
+    }
+
+    /// Whether a descent from a box may find bodies to overlap, although its centre is no
+    /// better than the best: it is elsewhere, and may hold such a point.
+    fn is_worth_a_try(&self, (value, centre): (f64, Point<D>), radius: f64) -> bool {
+        let is_elsewhere = (centre - self.best).norm() > radius;
+        self.goal.is_sign() && self.tries > 0 && value < radius && is_elsewhere
     }
 
     /// Takes a block of boxes, with their radii: pending ones, then parts of others.
