@@ -16,6 +16,10 @@
 //! is nearly a half-space, and the loss is about r²/2s: of second order, without
 //! curvature, exactness or a gradient that is right (a wrong one only says less).
 //!
+//! The first samples are over the centre and then over the lowest point, most often a vertex:
+//! if the others lie above the plane through it along the surface, a ball about a point high
+//! over it that just reaches it holds them all, and nothing is lost.
+//!
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
 
@@ -341,9 +345,6 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
 
     /// From the lowest point that is known: towards each vertex as far as its value and slope
     /// and the vertex' value, as a parabola, make it least, and points over it.
-    ///
-    /// Most often that is a vertex, and the others are higher than the plane along the
-    /// surface through it: a ball that touches it from above then leaves nothing out.
     #[inline]
     fn look_from_lowest(
         &mut self,
@@ -358,10 +359,11 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
             None => {
                 let way = cell.element.vertices[i] - lowest;
-                let descent = -gradient.dot(way);
+                let descent = larger(0.0, -gradient.dot(way));
                 let bend = descent + vertices[i] - value;
-                let share = if descent > 0.0 { 0.5 * descent / bend } else { 0.0 };
-                lowest + way * share
+                let share = 0.5 * descent / bend;
+                // Beyond both ends, or no number, where values do not fit to the slope.
+                if share > 0.0 && share < 1.0 { lowest + way * share } else { lowest }
             }
             Some(k) => {
                 lowest + direction * (OVER_LOWEST[k.min(OVER_LOWEST.len() - 1)] * self.radius)

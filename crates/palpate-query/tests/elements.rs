@@ -6,7 +6,7 @@
 use arbitrary::Unstructured;
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid};
-use palpate_field::{Point, SHORT, Shape, ShapeError, Vector};
+use palpate_field::{Aabb, Point, SHORT, Shape, ShapeError, Vector};
 use palpate_query::{
     Certified, Element, Limits, QueryError, Stop, Workspace, minimum, touches,
 };
@@ -47,6 +47,12 @@ fn wrong<const N: usize, const D: usize>(
         if value + rounding(p) < answer.lower {
             return Some(format!("{value} at {p:?} is below {answer:?} of {element:?}"));
         }
+    }
+    // Its box is easy to tell, and what is off the element is soon off its box.
+    let reach = element.vertices().iter().fold(0.0_f64, |reach, v| reach.max(v.norm()));
+    let aabb = Aabb::around(element.vertices().iter().copied());
+    if !aabb.is_some_and(|aabb| aabb.grown(64.0 * f64::EPSILON * reach).contains(answer.best)) {
+        return Some(format!("{answer:?} is not on {element:?}"));
     }
     let again = shape.distance(answer.best);
     if again > answer.upper || again < answer.lower - rounding(answer.best) {
