@@ -8,11 +8,11 @@
 
 use std::error::Error;
 use std::hint::black_box;
-use std::time::Instant;
 
 use palpate::field::{Point, Pose, Rotation, Shape, Vector, kernel::RoundedCuboid};
 use palpate::haptics::{Bodies, Body, Material, Shell, Surface, Tool, ToolOptions, ToolState};
 
+use super::times::Times;
 use super::{DEPTH, LANDING, PASSES, TICKS, orbit};
 use crate::fields::Rows;
 
@@ -38,19 +38,17 @@ pub(super) fn ticks(
     for (tick, place) in path.iter().enumerate() {
         states.push(state(&shell, shape, (tick, *place))?);
     }
-    let mut fastest = vec![u64::MAX; TICKS];
+    let mut times = Times::new();
     let (mut evaluations, mut contacts) = (0_u64, 0_u64);
     let (mut touching, mut degraded) = (0_u64, 0_u64);
     for pass in 0..PASSES {
         let mut bodies = bodies(shape)?;
         let mut tool = Tool::new(shell.clone(), options())?;
         for (tick, state) in states.iter().enumerate() {
-            let start = Instant::now();
-            let touch = black_box(tool.step(&mut bodies, black_box(state)));
-            let nanoseconds = start.elapsed().as_nanos() as u64;
-            let Some(tick) = tick.checked_sub(LANDING) else { continue };
-            fastest[tick] = fastest[tick].min(nanoseconds);
-            if pass == 0 {
+            let tick = tick.checked_sub(LANDING);
+            let touch =
+                times.time(tick, || black_box(tool.step(&mut bodies, black_box(state))));
+            if pass == 0 && tick.is_some() {
                 evaluations += u64::from(touch.evaluations);
                 contacts += touch.contacts.len() as u64;
                 touching += u64::from(touch.contact);
@@ -58,11 +56,7 @@ pub(super) fn ticks(
             }
         }
     }
-    fastest.sort_unstable();
-    let at = |part: f64| fastest[((TICKS - 1) as f64 * part) as usize] as f64;
-    rows.insert(format!("{key}.p50_ns"), at(0.5));
-    rows.insert(format!("{key}.p99_ns"), at(0.99));
-    rows.insert(format!("{key}.max_ns"), at(1.0));
+    times.insert(key, rows);
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
     rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
     rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);
