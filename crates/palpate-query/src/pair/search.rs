@@ -20,9 +20,6 @@ use crate::larger::larger;
 /// remainders are larger than radii.
 const SMALL: f64 = 0.25;
 
-/// A search for a sign descends so often from a box that may lead to another valley.
-const TRIES: u32 = 2;
-
 /// A model that says nothing.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
@@ -87,8 +84,8 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(super) couple: Couple<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
-    /// Descents from boxes that are no better than the best, which may still be made.
-    tries: u32,
+    /// Whether a descent was made from a box that is no better than the best.
+    has_tried: bool,
     pub(super) upper: f64,
     pub(crate) best: Point<D>,
     /// Nothing in the boxes that were dropped is less.
@@ -110,7 +107,7 @@ impl<'a, const D: usize> Search<'a, D> {
             couple,
             goal,
             budget: limits.budget,
-            tries: TRIES,
+            has_tried: false,
             upper: f64::INFINITY,
             best: Vector::ZERO,
             dropped: f64::INFINITY,
@@ -265,7 +262,7 @@ impl<'a, const D: usize> Search<'a, D> {
         if value < self.upper - self.goal.tolerance {
             self.descend(centre, None);
         } else if self.is_worth_a_try((value, centre), radius) {
-            self.tries -= 1;
+            self.has_tried = true;
             self.descend(centre, None);
         }
         if !self.goal.is_hit(self.upper + self.slack) {
@@ -286,7 +283,7 @@ impl<'a, const D: usize> Search<'a, D> {
     /// better than the best: it is elsewhere, and may hold such a point.
     fn is_worth_a_try(&self, (value, centre): (f64, Point<D>), radius: f64) -> bool {
         let is_elsewhere = (centre - self.best).norm() > radius;
-        self.goal.is_sign() && self.tries > 0 && value < radius && is_elsewhere
+        self.goal.is_sign() && !self.has_tried && value < radius && is_elsewhere
     }
 
     /// Takes a block of boxes, with their radii: pending ones, then parts of others.
