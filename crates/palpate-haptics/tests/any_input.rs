@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The fuzz target's check, on the same cases every time.
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
-#[allow(unreachable_pub, reason = "shared with the fuzz target")]
+#[expect(unreachable_pub, reason = "shared with the fuzz target")]
 #[path = "../../../fuzz/servo_input.rs"]
 mod servo_input;
 

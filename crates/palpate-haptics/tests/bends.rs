@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! A slide knows how the surface bends, and needs few evaluations.
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Trajectories that are the same to the last bit in every build.
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The servo's step allocates nothing and stays in its budget.
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
 
 mod common;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Whole runs at other scales: lengths and forces scale alike, and nothing else changes.
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
 
 mod common;
 

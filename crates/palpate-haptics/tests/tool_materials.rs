@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! What a tool with a shape feels of materials and of bodies that move, and what it tells.
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

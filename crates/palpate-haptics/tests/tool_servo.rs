@@ -3,7 +3,7 @@
 
 //! A tool with a shape as what a servo renders: the same loop, safety chain and hand-off as for
 //! contact points.
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

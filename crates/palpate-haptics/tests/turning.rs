@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Tools on devices that turn: with the hand, against its torque, within the device's limits.
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests compare exact numbers")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Whole figures: their bytes, their pixels, their words.
-#![allow(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_plot::{
     Chart, Figure, Isolines, Markers, PlotError, Polyline, Quantity, Sampling, Series, Slice,

@@ -37,7 +37,7 @@ use crate::sampler::{Sampler, Samples, unit};
 pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 
 /// Heights over the lowest point, in radii.
-const OVER_LOWEST: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 18.0];
+const OVER_LOWEST: [f64; 5] = [1.0, 2.0, 4.0, 8.0, HIGHEST];
 
 /// A cell's second height, as a share of its first.
 const LOWER: f64 = 0.4;
@@ -46,6 +46,10 @@ const LOWER: f64 = 0.4;
 /// said all there is to say.
 const SHRINK: f64 = 0.5;
 const GROW: f64 = 1.5;
+
+/// No sample is higher over the element, in radii of the whole: what values may be off by
+/// counts on it.
+const HIGHEST: f64 = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
 
 /// Cells are halved no more often: they are then as small as roundings of the whole.
 const MOST_LEVELS: u32 = 48;
@@ -194,10 +198,9 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         let weights = element.centre_weights();
         let centre = element.at(&weights);
         let radius = element.farthest(centre);
-        let highest = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
         // No less than the norm, and without a root.
         let away = centre.0.iter().fold(0.0, |sum, x| sum + x.abs());
-        let reach = larger(terms.reach, away + (1.0 + highest) * radius);
+        let reach = larger(terms.reach, away + (1.0 + HIGHEST) * radius);
         Self {
             sampler: Sampler::new(shape, samples, reach, terms.level),
             goal: terms.goal,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Meshes are asked again without allocating.
-#![allow(clippy::unwrap_used, reason = "these are tests")]
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use palpate_field::kernel::Ball;

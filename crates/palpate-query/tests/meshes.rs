@@ -3,7 +3,7 @@
 
 //! Meshes and outlines on random trees, against samples of all elements and against each
 //! element asked by itself; contacts of bumps, flats and ridges.
-#![allow(clippy::unwrap_used, reason = "these are tests")]
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid};

@@ -5,7 +5,7 @@
 
 mod common;
 
-#[allow(unreachable_pub, reason = "shared with the fuzz target")]
+#[expect(unreachable_pub, reason = "shared with the fuzz target")]
 #[path = "../../../fuzz/scene_text.rs"]
 mod scene_text;
 

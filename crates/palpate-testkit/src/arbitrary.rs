@@ -5,7 +5,7 @@
 //!
 //! They draw from [`Unstructured`], so that property tests and fuzzing share
 //! them, and fail only as it does, when a case runs out of entropy.
-#![allow(clippy::missing_errors_doc, reason = "all errors are those of Unstructured")]
+#![expect(clippy::missing_errors_doc, reason = "all errors are those of Unstructured")]
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};

@@ -320,5 +320,5 @@ impl<const D: usize> Guide<D> {
 }
 
 #[cfg(test)]
-#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests;

@@ -181,8 +181,7 @@ fn add(to: &mut [f64; FREEDOMS], factor: f64, other: &[f64; FREEDOMS]) {
 }
 
 #[cfg(test)]
-#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
-#[allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::cases::cases;

@@ -23,7 +23,7 @@ mod report;
 mod room;
 mod scan;
 mod settle;
-#[allow(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
+#[expect(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
 mod shell;
 mod spread;
 mod state;

@@ -181,7 +181,7 @@ impl Player {
 }
 
 #[cfg(test)]
-#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::cases::cases;

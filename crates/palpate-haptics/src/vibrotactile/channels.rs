@@ -230,7 +230,7 @@ fn raise(amplitudes: &mut [f64], actuator: usize, amplitude: f64) {
 }
 
 #[cfg(test)]
-#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use palpate_field::Vector;
 

@@ -104,7 +104,7 @@ impl Publisher {
 }
 
 #[cfg(test)]
-#[allow(clippy::indexing_slicing, reason = "tests know their lengths")]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
 

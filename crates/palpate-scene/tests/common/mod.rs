@@ -3,7 +3,7 @@
 
 //! Scenes for tests: those in the repository, and random ones.
 #![allow(dead_code, unreachable_pub, reason = "each test file uses its part")]
-#![allow(clippy::unwrap_used, reason = "these are tests")]
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 pub mod random;
 pub mod refusal;
