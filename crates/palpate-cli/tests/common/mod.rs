@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Runs the program, and reads what it says.
-#![allow(dead_code, reason = "each test uses a part")]
+#![allow(dead_code, reason = "several programs share it: each uses a part, one may use all")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

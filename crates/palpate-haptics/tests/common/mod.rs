@@ -3,7 +3,11 @@
 
 //! Shapes and hands that several tests use.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-#![allow(dead_code, unused_imports, reason = "each test uses a part")]
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "several programs share it: each uses a part, one may use all"
+)]
 
 mod cases;
 pub(crate) mod tools;

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Scenes for tests: those in the repository, and random ones.
-#![allow(dead_code, unreachable_pub, reason = "each test file uses its part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "several programs share it: each uses a part, one may use all"
+)]
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 pub mod random;
