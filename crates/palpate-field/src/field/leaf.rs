@@ -7,10 +7,12 @@ use std::sync::Arc;
 
 use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::kernel::Kernel;
-use crate::machine::{Block, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point};
+use crate::machine::{
+    Block, Boxes, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point,
+};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Scalar};
+use crate::scalar::{Float, Scalar, TurnedBoxes};
 use crate::shape::Shape;
 use crate::vector::{Vector, array};
 
@@ -149,6 +151,16 @@ impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for BoxesToBod
     }
 }
 
+/// Moves boxes that are all turned alike into the body's frame.
+struct TurnedToBody<'a, const D: usize>(&'a Placement<D>, TurnedBoxes<D>);
+
+impl<S: Lane, const D: usize> Job<Vector<S, D>, (), Vector<S, D>> for TurnedToBody<'_, D> {
+    #[inline(always)]
+    fn lane(&self, p: Vector<S, D>, (): ()) -> Vector<S, D> {
+        Vector(S::turned_to_body(p.0, self.0, &self.1))
+    }
+}
+
 impl<T: Float, K: Kernel<D>, const D: usize> EvaluatePoint<T, D> for Leaf<K, D> {
     fn distance(&self, x: T, y: T, z: T) -> T {
         let p = Vector::of_coordinates(x, y, z);
@@ -192,10 +204,14 @@ impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, 
             }
             Some(placement) => {
                 let mut q = Block::<S, D, W>::scratch();
-                if p.are_boxes() {
-                    run(&BoxesToBody(placement), p, &(), count, &mut q);
-                } else {
-                    run(&ToBody(placement), p, &(), count, &mut q);
+                match p.boxes() {
+                    Boxes::No => run(&ToBody(placement), p, &(), count, &mut q),
+                    Boxes::Straight => run(&BoxesToBody(placement), p, &(), count, &mut q),
+                    Boxes::Turned(rows) => {
+                        let body = placement.world_from_body.rotation.matrix();
+                        let job = TurnedToBody(placement, TurnedBoxes::new(rows, body));
+                        run(&job, p, &(), count, &mut q);
+                    }
                 }
                 run(&Values(&self.kernel), &q, &(), count, out);
             }

@@ -9,7 +9,7 @@ use std::mem::MaybeUninit;
 use crate::field::Placement;
 use crate::kernel::Kernel;
 use crate::pose::Pose;
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{Float, Model, Scalar, TurnedBoxes};
 use crate::vector::Vector;
 
 /// Room for `W` numbers, aligned to a cache line.
@@ -83,6 +83,16 @@ pub trait Lane: Scalar + Send + Sync + 'static {
     /// A box in a body's frame.
     #[inline(always)]
     fn box_to_body<const D: usize>(p: [Self; D], placement: &Placement<D>) -> [Self; D] {
+        placement.to_body(Vector(p)).0
+    }
+
+    /// A box of those that are all turned alike, in a body's frame.
+    #[inline(always)]
+    fn turned_to_body<const D: usize>(
+        p: [Self; D],
+        placement: &Placement<D>,
+        _: &TurnedBoxes<D>,
+    ) -> [Self; D] {
         placement.to_body(Vector(p)).0
     }
 }
@@ -202,5 +212,14 @@ impl Lane for Model {
     fn box_to_body<const D: usize>(p: [Self; D], placement: &Placement<D>) -> [Self; D] {
         let Pose { rotation, translation } = &placement.world_from_body;
         Self::cell_to_body(p, &translation.0, rotation.matrix())
+    }
+    #[inline(always)]
+    fn turned_to_body<const D: usize>(
+        p: [Self; D],
+        placement: &Placement<D>,
+        turned: &TurnedBoxes<D>,
+    ) -> [Self; D] {
+        let Pose { rotation, translation } = &placement.world_from_body;
+        Self::turned_to_body(p, &translation.0, rotation.matrix(), turned)
     }
 }

@@ -19,6 +19,7 @@ mod extent;
 mod instruction_set;
 mod lanes;
 
+pub(crate) use block::Boxes;
 pub use block::{BLOCK, Block, Column, Gradients, SHORT};
 pub use instruction_set::InstructionSet;
 pub(crate) use instruction_set::{Job, PointJob, run, run_point};

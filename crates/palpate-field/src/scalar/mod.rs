@@ -27,6 +27,7 @@ pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use float::Float;
 pub use model::Model;
+pub(crate) use model::TurnedBoxes;
 
 use crate::vector::array;
 

@@ -3,9 +3,12 @@
 
 //! Numbers that bound a formula over a whole cell.
 
+mod boxes;
 mod norms;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+pub(crate) use boxes::TurnedBoxes;
 
 use super::{Blend, Scalar};
 use crate::vector::{array, unrolled};
@@ -73,37 +76,6 @@ impl Model {
             let mut gradient = [0.0; 3];
             gradient[i] = half[i];
             Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
-        })
-    }
-
-    /// `true` of coordinate `i` of a [`cell`](Self::cell).
-    #[inline(always)]
-    pub(crate) fn is_side(&self, i: usize) -> bool {
-        let along_others = (0..3).filter(|k| *k != i).map(|k| self.gradient[k]);
-        along_others.chain([self.lower, self.upper]).all(|part| part == 0.0)
-    }
-
-    /// `Rᵀ(p − t)` of the coordinates of a [`cell`](Self::cell), as
-    /// [`weighted_sum`](Scalar::weighted_sum) has it of any. Given are the rows of `R`.
-    #[inline(always)]
-    pub(crate) fn cell_to_body<const D: usize>(
-        cell: [Self; D],
-        translation: &[f64; D],
-        rows: &[[f64; D]; D],
-    ) -> [Self; D] {
-        let centre = array!(k < D => cell[k].value - translation[k]);
-        array!(i < D => {
-            let gradient = array!(k < 3 => {
-                if k < D { rows[k][i] * cell[k].gradient[k] } else { 0.0 }
-            });
-            let (mut value, mut size) = (NONE, NONE);
-            unrolled!(k < D => {
-                value += rows[k][i] * centre[k];
-                size += f64::abs(rows[k][i]) * f64::abs(centre[k]);
-            });
-            unrolled!(k < 3 => size += f64::abs(gradient[k]));
-            let error = (D as f64 + 4.0) * UNIT * size;
-            Self { value, gradient, lower: error, upper: error }
         })
     }
 

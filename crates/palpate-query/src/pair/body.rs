@@ -5,7 +5,7 @@
 //! than the distance.
 
 use palpate_field::scalar::Model;
-use palpate_field::{Aabb, BoundingBall, Point, Pose, Shape, Vector};
+use palpate_field::{Aabb, BoundingBall, Point, Pose, Rotation, Shape, Vector};
 
 use super::cell::reach;
 use crate::error::QueryError;
@@ -17,9 +17,6 @@ const GEOMETRY_ROUNDINGS: f64 = 16.0;
 
 /// A coordinate that a side of a box depends on less than this is not bounded by it.
 const LEAST_TURN: f64 = 1e-2;
-
-/// Roundings of a rotated side of a box.
-const TURN_ROUNDINGS: f64 = 4.0;
 
 /// `g = max(f/L, distance to the box)`: a lower bound of the distance to the shape, with
 /// Lipschitz constant 1. It is at most u within u of the box alone, which is what bounds
@@ -132,24 +129,9 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
-    /// The coordinates of a box of the frame about a point in the shape's coordinates.
-    #[inline]
-    pub(crate) fn cell(&self, local: Point<D>, half: Vector<f64, D>) -> Vector<Model, D> {
-        let mut cell = Vector(Model::cell(local.0, half.0));
-        if let Some(pose) = &self.body_from_frame {
-            let rows = pose.rotation.matrix();
-            for i in 0..D {
-                let mut size = 0.0;
-                for k in 0..D {
-                    let side = rows[i][k] * half[k];
-                    cell[i].gradient[k] = side;
-                    size += side.abs();
-                }
-                let rounding = TURN_ROUNDINGS * f64::EPSILON * size;
-                (cell[i].lower, cell[i].upper) = (rounding, rounding);
-            }
-        }
-        cell
+    /// How boxes of the frame are turned in the shape's coordinates.
+    pub(crate) fn turn(&self) -> Option<&Rotation<D>> {
+        self.body_from_frame.as_ref().map(|pose| &pose.rotation)
     }
 
     /// `true` if the field is as steep as promised everywhere.
@@ -241,7 +223,6 @@ impl<'a, const D: usize> Body<'a, D> {
 
 #[cfg(test)]
 mod tests {
-    use palpate_field::Rotation;
     use palpate_field::kernel::Cuboid;
 
     use super::*;

@@ -191,9 +191,9 @@ impl<'a, const D: usize> Couple<'a, D> {
         self.evaluations += open.len() as u32;
         let (locals, models) = (&memory.locals[body], &mut memory.models[body]);
         let body = &self.bodies[body];
-        memory.boxes.fill(open.len(), |lane| {
+        memory.boxes.fill_boxes(open.len(), body.turn(), |lane| {
             let i = open[lane];
-            body.cell(locals[i], cells[i].half)
+            (locals[i], cells[i].half)
         });
         body.shape.block_distances(&memory.boxes, open.len(), models);
     }
