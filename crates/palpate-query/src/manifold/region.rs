@@ -113,7 +113,7 @@ fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack:
     let is_inside = a.value + along[0] + a.upper < half_margin
         && b.value + along[1] + b.upper < half_margin;
     if (a.value - b.value).abs() > between + 2.0 * slack
-        || least_of_larger::<D>(a, b, f64::INFINITY) > half_margin + slack
+        || least_of_larger::<D>(a, b, f64::INFINITY).0 > half_margin + slack
     {
         Look::Nothing
     } else if is_flat && is_inside {

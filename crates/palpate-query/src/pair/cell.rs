@@ -63,6 +63,34 @@ impl<const D: usize> Cell<D> {
         }
     }
 
+    /// Leaves out ends of the box in which one of the models is nowhere less than `enough`.
+    #[inline]
+    pub(crate) fn contract(&mut self, models: &[Model; 3], enough: f64) {
+        let (mut low, mut high) = ([-1.0_f64; D], [1.0_f64; D]);
+        for model in models {
+            let gradient = &model.gradient[..D];
+            let slope = gradient.iter().fold(0.0, |sum, side| sum + side.abs());
+            let size = model.value.abs() + slope;
+            let room =
+                enough - model.value + model.lower * (1.0 + ROUNDINGS) + 2.0 * ROUNDINGS * size;
+            for k in 0..D {
+                let side = gradient[k].abs();
+                let end = (room + (slope - side)) / side;
+                let end = if end < 1.0 { end } else { 1.0 };
+                if gradient[k] > 0.0 {
+                    high[k] = high[k].min(end);
+                } else {
+                    low[k] = low[k].max(-end);
+                }
+            }
+        }
+        for k in 0..D {
+            let half = self.half[k];
+            self.centre[k] += half * (0.5 * (low[k] + high[k]));
+            self.half[k] = half * larger(0.5 * (high[k] - low[k]), 0.0) * (1.0 + ROUNDINGS);
+        }
+    }
+
     /// Whether each side is to be halved: the long ones of those along which the fields
     /// vary, or of all where the box is thin already.
     #[inline]
@@ -144,19 +172,39 @@ pub(crate) fn least<const D: usize>(model: &Model) -> f64 {
 /// least value of their means, which is at the end of a range or where a component of
 /// the mean's slope changes its sign. No more than `enough` is looked for.
 #[inline]
-pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64) -> f64 {
-    let mut best = larger(least::<D>(a), least::<D>(b));
+pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64) -> (f64, f64) {
+    let mut best = (least::<D>(a), 1.0);
+    let of_b = least::<D>(b);
+    if of_b > best.0 {
+        best = (of_b, 0.0);
+    }
     for k in 0..D {
-        if best >= enough {
+        if best.0 >= enough {
             break;
         }
         let (of_a, of_b) = (a.gradient[k], b.gradient[k]);
         // Of like signs the mean's has the same.
         if of_a * of_b < 0.0 {
-            best = larger(best, least_of_mean::<D>(a, b, of_b / (of_b - of_a)));
+            let share = of_b / (of_b - of_a);
+            let lower = least_of_mean::<D>(a, b, share);
+            if lower > best.0 {
+                best = (lower, share);
+            }
         }
     }
     best
+}
+
+/// `share` of a and the rest of b.
+#[inline]
+pub(crate) fn mean(a: &Model, b: &Model, share: f64) -> Model {
+    let rest = 1.0 - share;
+    Model {
+        value: share * a.value + rest * b.value,
+        gradient: std::array::from_fn(|k| share * a.gradient[k] + rest * b.gradient[k]),
+        lower: share * a.lower + rest * b.lower,
+        upper: share * a.upper + rest * b.upper,
+    }
 }
 
 /// The least value of `share` of a and the rest of b over a box.

@@ -7,7 +7,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, least, least_of_larger, reach};
+use super::cell::{Cell, least, least_of_larger, mean, reach};
 use super::couple::{Couple, Memory};
 use super::descent::descend;
 use super::frontier::Frontier;
@@ -344,9 +344,16 @@ impl<'a, const D: usize> Search<'a, D> {
         for (lane, &i) in open.iter().enumerate() {
             let (a, b) = (models[lane], self.couple.model(1, memory, lane));
             let enough = threshold + self.slack;
-            let lower = least_of_larger::<D>(&a, &b, enough) - self.slack;
-            parts[i].lower = larger(parts[i].lower, lower);
-            parts[i].learn(&[a, b]);
+            let (lower, share) = least_of_larger::<D>(&a, &b, enough);
+            let part = &mut parts[i];
+            part.lower = larger(part.lower, lower - self.slack);
+            if part.lower < threshold {
+                part.learn(&[a, b]);
+                if !self.keeps_all {
+                    part.contract(&[a, b, mean(&a, &b, share)], enough);
+                    self.dropped = self.dropped.min(threshold);
+                }
+            }
         }
     }
 
