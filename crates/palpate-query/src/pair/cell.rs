@@ -71,8 +71,9 @@ impl<const D: usize> Cell<D> {
             let gradient = &model.gradient[..D];
             let slope = gradient.iter().fold(0.0, |sum, side| sum + side.abs());
             let size = model.value.abs() + slope;
-            let room =
-                enough - model.value + model.lower * (1.0 + ROUNDINGS) + 2.0 * ROUNDINGS * size;
+            let room = enough - model.value
+                + model.lower * (1.0 + ROUNDINGS)
+                + 2.0 * ROUNDINGS * (size + enough.abs());
             for k in 0..D {
                 let side = gradient[k].abs();
                 let end = (room + (slope - side)) / side;
@@ -87,7 +88,8 @@ impl<const D: usize> Cell<D> {
         for k in 0..D {
             let half = self.half[k];
             self.centre[k] += half * (0.5 * (low[k] + high[k]));
-            self.half[k] = half * larger(0.5 * (high[k] - low[k]), 0.0) * (1.0 + ROUNDINGS);
+            self.half[k] = half * larger(0.5 * (high[k] - low[k]), 0.0) * (1.0 + ROUNDINGS)
+                + 2.0 * f64::EPSILON * self.centre[k].abs();
         }
     }
 
