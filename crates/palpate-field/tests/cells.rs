@@ -89,7 +89,7 @@ where
             *x = draw::within(u, -1.0, 1.0)?;
         }
         let cell = Cell { centre, half: Vector::constant(half) };
-        Ok(laws::model_encloses(shape, &[cell], &samples))
+        Ok(laws::model_encloses(shape, None, &[cell], &samples))
     });
 }
 

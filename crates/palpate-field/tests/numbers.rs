@@ -86,7 +86,10 @@ fn models<const D: usize>(
     _: &Tree<D>,
     shape: &Shape<D>,
     p: Point<D>,
-) -> Outcome {
+) -> Outcome
+where
+    Space: Turn<D>,
+{
     let size = draw::size(shape);
     let mut cells = Vec::new();
     for _ in 0..4 {
@@ -124,7 +127,8 @@ fn models<const D: usize>(
         }
         samples.push(sample);
     }
-    Ok(laws::model_encloses(shape, &cells, &samples))
+    let turn = if u.arbitrary()? { Some(draw::pose::<D>(u)?.rotation) } else { None };
+    Ok(laws::model_encloses(shape, turn.as_ref(), &cells, &samples))
 }
 
 fn tight<const D: usize>(

@@ -63,7 +63,7 @@ impl<const D: usize> Cell<D> {
         }
     }
 
-    /// Leaves out ends of the box in which one of the models is nowhere less than `enough`.
+    /// Leaves out ends of the box beyond which one of the models is nowhere less than `enough`.
     #[inline]
     pub(crate) fn contract(&mut self, models: &[Model; 3], enough: f64) {
         let (mut low, mut high) = ([-1.0_f64; D], [1.0_f64; D]);
@@ -222,4 +222,63 @@ fn least_of_mean<const D: usize>(a: &Model, b: &Model, share: f64) -> f64 {
     }
     let remainder = share * a.lower + rest * b.lower;
     value - slope - remainder * (1.0 + ROUNDINGS) - ROUNDINGS * size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of a fixed sequence in [−1, 1], evenly spread.
+    fn spread(i: u32) -> f64 {
+        2.0 * (f64::from(i) * 0.618_033_988_749_894_9).fract() - 1.0
+    }
+
+    #[test]
+    fn a_contracted_box_leaves_out_only_what_a_model_rules_out() {
+        for case in 0..400 {
+            let number = |i: u32| spread(31 * case + i);
+            let model = |first: u32| Model {
+                value: 0.4 * number(first),
+                gradient: [number(first + 1), number(first + 2), number(first + 3)],
+                lower: 0.1 * number(first + 4).abs(),
+                upper: 0.0,
+            };
+            let (a, b) = (model(0), model(5));
+            let models = [a, b, mean(&a, &b, number(10).abs())];
+            let enough = 0.3 * number(11);
+            let whole = Cell::<3> {
+                centre: Vector([number(12), number(13), number(14)]),
+                half: Vector([0.5, 0.2, 0.1]),
+                ..Cell::NOTHING
+            };
+            let mut part = whole;
+            part.contract(&models, enough);
+            for sample in 0..100 {
+                let u: [f64; 3] = std::array::from_fn(|k| spread(97 * sample + k as u32));
+                let least_at = |m: &Model| {
+                    m.value - m.lower + (0..3).map(|k| m.gradient[k] * u[k]).sum::<f64>()
+                };
+                let is_left = (0..3).all(|k| {
+                    let p = whole.centre[k] + whole.half[k] * u[k];
+                    (p - part.centre[k]).abs() <= part.half[k]
+                });
+                assert!(is_left || models.iter().any(|m| least_at(m) >= enough));
+            }
+        }
+    }
+
+    #[test]
+    fn a_contracted_box_ends_where_a_model_alone_is_enough() {
+        // Less than 0.5 where 0.2 + u₀ − 0.1 < 0.5, and where −2u₁ < 0.5.
+        let rising = Model { value: 0.2, gradient: [1.0, 0.0, 0.0], lower: 0.1, upper: 0.0 };
+        let falling = Model { value: 0.0, gradient: [0.0, -2.0, 0.0], lower: 0.0, upper: 0.0 };
+        let half = Vector([4.0, 4.0]);
+        let mut part = Cell::<2> { half, ..Cell::NOTHING };
+        part.contract(&[rising, falling, rising], 0.5);
+        let ends = [part.centre - part.half, part.centre + part.half];
+        let expected = [Vector([-4.0, -1.0]), Vector([1.6, 4.0])];
+        for (end, expected) in ends.into_iter().zip(expected) {
+            assert!((end - expected).norm() < 1e-13, "{end:?}, not {expected:?}");
+        }
+    }
 }

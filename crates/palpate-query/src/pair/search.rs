@@ -94,6 +94,8 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(super) slack: f64,
     /// Whether boxes that need no more looking at are kept with the others.
     pub(super) keeps_all: bool,
+    /// How far above what matters bounds are still made better by models [m].
+    pub(super) reserve: f64,
 }
 
 impl<'a, const D: usize> Search<'a, D> {
@@ -113,6 +115,7 @@ impl<'a, const D: usize> Search<'a, D> {
             dropped: f64::INFINITY,
             slack: 0.0,
             keeps_all: false,
+            reserve: 0.0,
         })
     }
 
@@ -311,11 +314,12 @@ impl<'a, const D: usize> Search<'a, D> {
     /// first body alone before the second is asked.
     fn model(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
         let threshold = self.threshold();
+        let wanted = threshold + self.reserve;
         let PairWorkspace { cells, pending, open, memory, round, .. } = workspace;
         let Round { parts, radii, models, count, .. } = round;
         let parts = &mut parts[..*count];
         open.clear();
-        let is_open = |&i: &usize| parts[i].lower < threshold && radii[i] <= largest;
+        let is_open = |&i: &usize| parts[i].lower < wanted && radii[i] <= largest;
         open.extend((0..parts.len()).filter(is_open));
         self.couple.keep_known(parts, open, memory);
         if !self.keeps_all && cells.lowest() < threshold {
@@ -333,7 +337,7 @@ impl<'a, const D: usize> Search<'a, D> {
             lane += 1;
             // Boxes are off by a rounding where they meet.
             parts[i].lower = larger(parts[i].lower, least::<D>(&model) - self.slack);
-            let is_open = parts[i].lower < threshold;
+            let is_open = parts[i].lower < wanted;
             if is_open {
                 models[kept] = model;
                 kept += 1;
@@ -343,14 +347,14 @@ impl<'a, const D: usize> Search<'a, D> {
         self.couple.models(1, parts, open, memory);
         for (lane, &i) in open.iter().enumerate() {
             let (a, b) = (models[lane], self.couple.model(1, memory, lane));
-            let enough = threshold + self.slack;
-            let (lower, share) = least_of_larger::<D>(&a, &b, enough);
+            let (lower, share) = least_of_larger::<D>(&a, &b, wanted + self.slack);
             let part = &mut parts[i];
             part.lower = larger(part.lower, lower - self.slack);
             if part.lower < threshold {
                 part.learn(&[a, b]);
                 if !self.keeps_all {
-                    part.contract(&[a, b, mean(&a, &b, share)], enough);
+                    let models = [a, b, mean(&a, &b, share)];
+                    part.contract(&models, threshold + self.slack);
                     self.dropped = self.dropped.min(threshold);
                 }
             }

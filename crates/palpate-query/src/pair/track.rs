@@ -24,6 +24,9 @@ const MARGIN: f64 = 0.05;
 /// A proof that has grown by this many times, and some, is begun anew.
 const GROWTH: usize = 2;
 
+/// Bounds are made better by models where so many motions like the last would undo them.
+const RESERVE: f64 = 6.0;
+
 /// Two shapes and what the last search proved of them, from which the next one starts.
 ///
 /// That is a cover of all places that matter by boxes, each with a lower bound. A motion
@@ -161,6 +164,7 @@ impl<const D: usize> Cover<D> {
         let slack = search.couple.slack(reach(&self.root));
         let moved = self.displacement(&search.couple.second_from_frame) + slack;
         self.cells.lower_all(moved);
+        search.reserve = RESERVE * moved;
         std::mem::swap(&mut self.cells, &mut workspace.cells);
         search.resume(&self.root, workspace);
         true

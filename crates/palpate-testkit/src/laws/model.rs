@@ -4,7 +4,7 @@
 //! Models enclose the field over their cell.
 
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
+use palpate_field::{BLOCK, Block, Column, Point, Rotation, Shape, Vector};
 
 use super::rounding;
 
@@ -18,10 +18,11 @@ pub struct Cell<const D: usize> {
 }
 
 impl<const D: usize> Cell<D> {
-    /// The point at parameters `u` in `[−1, 1]`.
+    /// The point at parameters `u` in `[−1, 1]`, of the cell that is turned about its centre.
     #[must_use]
-    pub fn at(&self, u: [f64; D]) -> Point<D> {
-        Vector(std::array::from_fn(|i| self.centre[i] + self.half[i] * u[i]))
+    pub fn at(&self, u: [f64; D], turn: Option<&Rotation<D>>) -> Point<D> {
+        let away = Vector(std::array::from_fn(|i| self.half[i] * u[i]));
+        self.centre + turn.map_or(away, |turn| turn.rotate(away))
     }
 }
 
@@ -32,18 +33,19 @@ const CONVEX_ULP: f64 = 32.0;
 /// Room for the roundings that a model allows for and the promise does not.
 const WIDTH_ROUNDINGS: f64 = 8.0;
 
-/// The models of up to [`BLOCK`] cells enclose the field at the parameters
-/// `samples`.
+/// The models of up to [`BLOCK`] cells, perhaps all turned alike, enclose the field at the
+/// parameters `samples`.
 ///
 /// # Errors
 ///
 /// Says which cell and sample, and by how much.
 pub fn model_encloses<const D: usize>(
     shape: &Shape<D>,
+    turn: Option<&Rotation<D>>,
     cells: &[Cell<D>],
     samples: &[[f64; D]],
 ) -> Result<(), String> {
-    for (cell, model) in cells.iter().zip(models(shape, cells)) {
+    for (cell, model) in cells.iter().zip(models(shape, turn, cells)) {
         let reach = cell.centre.norm() + cell.half.norm();
         let numbers = [model.value, model.lower, model.upper];
         if !numbers.iter().chain(&model.gradient).all(|x| x.is_finite())
@@ -53,7 +55,7 @@ pub fn model_encloses<const D: usize>(
             return Err(format!("{model:?} over {cell:?}"));
         }
         for u in samples {
-            let p = cell.at(*u);
+            let p = cell.at(*u, turn);
             let f = shape.distance(p);
             let plane: f64 =
                 model.value + (0..D).map(|k| model.gradient[k] * u[k]).sum::<f64>();
@@ -64,8 +66,8 @@ pub fn model_encloses<const D: usize>(
             if !(low <= f && f <= high) {
                 let apart = if f < low { low - f } else { f - high };
                 return Err(format!(
-                    "{f:e} at {u:?} is {apart:e} outside [{low:e}, {high:e}] over {cell:?}: \
-                     {model:?}"
+                    "{f:e} at {u:?} is {apart:e} outside [{low:e}, {high:e}] over {cell:?}, \
+                     turned by {turn:?}: {model:?}"
                 ));
             }
             if !(model.minimum() <= f + slack && f - slack <= model.maximum()) {
@@ -92,7 +94,7 @@ pub fn convex_models_are_tight<const D: usize>(
     }
     // The largest number in the formula besides the coordinates.
     let size = promise.rounding.constant / promise.rounding.per_metre;
-    for (cell, model) in cells.iter().zip(models(shape, cells)) {
+    for (cell, model) in cells.iter().zip(models(shape, None, cells)) {
         let largest = cell.centre.norm() + cell.half.norm() + size;
         let ulp = model.lower / (f64::EPSILON * largest);
         if ulp > CONVEX_ULP {
@@ -122,7 +124,7 @@ pub fn model_says_as_much_as_the_steepness<const D: usize>(
     let reach = cell.centre.norm() + cell.half.norm();
     let slack = WIDTH_ROUNDINGS * (promise.rounding.within(reach) + f64::EPSILON * reach);
     let most = promise.lipschitz * cell.half.norm() + slack;
-    for model in models(shape, &[*cell]) {
+    for model in models(shape, None, &[*cell]) {
         let below = model.value - model.minimum();
         let width = model.maximum() - model.minimum();
         let wide = if promise.convex { below > most } else { width > 2.0 * most };
@@ -136,12 +138,14 @@ pub fn model_says_as_much_as_the_steepness<const D: usize>(
     Ok(())
 }
 
-fn models<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>]) -> Vec<Model> {
+fn models<const D: usize>(
+    shape: &Shape<D>,
+    turn: Option<&Rotation<D>>,
+    cells: &[Cell<D>],
+) -> Vec<Model> {
     let mut block = Block::<Model, D, BLOCK>::zero();
     let mut models = Column::<Model, BLOCK>::zero();
-    for (i, cell) in cells.iter().enumerate() {
-        block.set(i, Vector(Model::cell(cell.centre.0, cell.half.0)));
-    }
+    block.fill_boxes(cells.len(), turn, |i| (cells[i].centre, cells[i].half));
     shape.block_distances(&block, cells.len(), &mut models);
     (0..cells.len()).map(|i| models.get(i)).collect()
 }
