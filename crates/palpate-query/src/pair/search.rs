@@ -20,6 +20,10 @@ use crate::larger::larger;
 /// remainders are larger than radii.
 const SMALL: f64 = 0.25;
 
+/// Boxes are cut by this share of the tolerance above what matters: just there, bounds would
+/// be as far apart as the tolerance, and by a rounding more.
+const SPARE: f64 = 1.0 / 64.0;
+
 /// A model that says nothing.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
@@ -354,8 +358,9 @@ impl<'a, const D: usize> Search<'a, D> {
                 part.learn(&[a, b]);
                 if !self.keeps_all {
                     let models = [a, b, mean(&a, &b, share)];
-                    part.contract(&models, threshold + self.slack);
-                    self.dropped = self.dropped.min(threshold);
+                    let cut = threshold + SPARE * self.goal.tolerance;
+                    part.contract(&models, cut + self.slack);
+                    self.dropped = self.dropped.min(cut);
                 }
             }
         }
