@@ -213,6 +213,7 @@ impl Lane for Model {
         let Pose { rotation, translation } = &placement.world_from_body;
         Self::cell_to_body(p, &translation.0, rotation.matrix())
     }
+
     #[inline(always)]
     fn turned_to_body<const D: usize>(
         p: [Self; D],

@@ -77,7 +77,8 @@ impl<const D: usize> Cell<D> {
             for k in 0..D {
                 let side = gradient[k].abs();
                 let end = (room + (slope - side)) / side;
-                let end = if end < 1.0 { end } else { 1.0 };
+                // Written so that NaN leaves all.
+                let end = if end < 1.0 { end.max(-1.0) } else { 1.0 };
                 if gradient[k] > 0.0 {
                     high[k] = high[k].min(end);
                 } else {
@@ -172,7 +173,8 @@ pub(crate) fn least<const D: usize>(model: &Model) -> f64 {
 
 /// A lower bound of the larger of two fields over a box, from their models: the largest
 /// least value of their means, which is at the end of a range or where a component of
-/// the mean's slope changes its sign. No more than `enough` is looked for.
+/// the mean's slope changes its sign. No more than `enough` is looked for. Also returns the
+/// share that the first has in that mean.
 #[inline]
 pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64) -> (f64, f64) {
     let mut best = (least::<D>(a), 1.0);
@@ -188,7 +190,7 @@ pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64)
         // Of like signs the mean's has the same.
         if of_a * of_b < 0.0 {
             let share = of_b / (of_b - of_a);
-            let lower = least_of_mean::<D>(a, b, share);
+            let lower = least::<D>(&mean(a, b, share));
             if lower > best.0 {
                 best = (lower, share);
             }
@@ -197,31 +199,24 @@ pub(crate) fn least_of_larger<const D: usize>(a: &Model, b: &Model, enough: f64)
     best
 }
 
-/// `share` of a and the rest of b.
+/// `share` of a and the rest of b, with the roundings of their sum among its remainders.
 #[inline]
 pub(crate) fn mean(a: &Model, b: &Model, share: f64) -> Model {
-    let rest = 1.0 - share;
+    let (rest, mut size) = (1.0 - share, 0.0);
+    let mut sum = |a: f64, b: f64| {
+        let (a, b) = (share * a, rest * b);
+        size += a.abs() + b.abs();
+        a + b
+    };
+    let value = sum(a.value, b.value);
+    let gradient = std::array::from_fn(|k| sum(a.gradient[k], b.gradient[k]));
+    let rounding = ROUNDINGS * size;
     Model {
-        value: share * a.value + rest * b.value,
-        gradient: std::array::from_fn(|k| share * a.gradient[k] + rest * b.gradient[k]),
-        lower: share * a.lower + rest * b.lower,
-        upper: share * a.upper + rest * b.upper,
+        value,
+        gradient,
+        lower: share * a.lower + rest * b.lower + rounding,
+        upper: share * a.upper + rest * b.upper + rounding,
     }
-}
-
-/// The least value of `share` of a and the rest of b over a box.
-#[inline]
-fn least_of_mean<const D: usize>(a: &Model, b: &Model, share: f64) -> f64 {
-    let rest = 1.0 - share;
-    let value = share * a.value + rest * b.value;
-    let (mut slope, mut size) = (0.0, (share * a.value).abs() + (rest * b.value).abs());
-    for k in 0..D {
-        let (of_a, of_b) = (share * a.gradient[k], rest * b.gradient[k]);
-        slope += (of_a + of_b).abs();
-        size += of_a.abs() + of_b.abs();
-    }
-    let remainder = share * a.lower + rest * b.lower;
-    value - slope - remainder * (1.0 + ROUNDINGS) - ROUNDINGS * size
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use super::{Model, NONE, UNIT};
 use crate::vector::{array, unrolled};
 
 /// Units by which a turned coordinate of a box may be off, as a share of the sum of its half
-/// sides: three for each entry of the product of two rotations, seven for each half side
-/// that is found again, one for their product and twelve for the remainders of the sides
-/// that were given.
-const TURNED_UNITS: f64 = 32.0;
+/// sides: three for each entry of the product of two rotations, eight for each half side that
+/// is found again, one for their product, and two for the remainders of the sides that were
+/// given; that twice.
+const TURNED_UNITS: f64 = 28.0;
 
 /// What moves boxes that are all turned alike by a rotation `M` into a body that is turned
 /// by `R`.
@@ -93,12 +93,12 @@ impl Model {
     ) -> [Self; D] {
         let centre = array!(k < D => cell[k].value - translation[k]);
         let half: [f64; 3] = array!(k < 3 => {
-                   let mut side = NONE;
-                   if k < D {
-        unrolled!(i < D => side += sides[i][k] * cell[i].gradient[k]);
-        }
-                   side
-               });
+            let mut side = NONE;
+            if k < D {
+                unrolled!(i < D => side += sides[i][k] * cell[i].gradient[k]);
+            }
+            side
+        });
         let mut size = NONE;
         unrolled!(k < 3 => size += f64::abs(half[k]));
         array!(i < D => {
