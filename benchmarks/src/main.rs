@@ -18,7 +18,7 @@ mod yardstick;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use mimalloc::MiMalloc;
 use palpate::field::InstructionSet;
 
@@ -69,16 +69,28 @@ enum Suite {
         /// One part of the suite alone.
         #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(collide::parts()))]
         only: Option<String>,
+        #[command(flatten)]
+        runs: Runs,
         /// Print one JSON object of keys and numbers.
         #[arg(long)]
         json: bool,
     },
     /// Ticks of the servo.
     Haptics {
+        #[command(flatten)]
+        runs: Runs,
         /// Print one JSON object of keys and numbers.
         #[arg(long)]
         json: bool,
     },
+}
+
+#[derive(Clone, Copy, Debug, Args)]
+struct Runs {
+    /// How often the suite runs. Of each time the least counts: on a machine with busy
+    /// neighbours more runs find quieter minutes.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
+    runs: u32,
 }
 
 fn main() -> ExitCode {
@@ -89,10 +101,12 @@ fn main() -> ExitCode {
     }
     let (measured, bars, is_part, json) = match suite {
         Suite::Fields { json } => (fields::measure(), bars::FIELDS, false, json),
-        Suite::Collide { json, only } => {
-            (collide::measure(only.as_deref()), bars::COLLIDE, only.is_some(), json)
+        Suite::Collide { json, only, runs: Runs { runs } } => {
+            (collide::measure(only.as_deref(), runs), bars::COLLIDE, only.is_some(), json)
         }
-        Suite::Haptics { json } => (haptics::measure(), bars::HAPTICS, false, json),
+        Suite::Haptics { json, runs: Runs { runs } } => {
+            (haptics::measure(runs), bars::HAPTICS, false, json)
+        }
     };
     match measured {
         Ok(rows) => {

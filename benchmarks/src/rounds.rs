@@ -17,15 +17,13 @@ const ROUNDS: usize = 21;
 /// What a subject is repeated for in a round at least [ns].
 const LONG_ENOUGH: f64 = 2e6;
 
-/// Runs of a suite of which rows are kept by [`fastest_of_runs`].
-const RUNS: usize = 4;
-
 /// The rows of several runs of a suite: of times the least, of others the last.
 pub(crate) fn fastest_of_runs(
+    runs: u32,
     mut suite: impl FnMut() -> Result<Rows, Box<dyn Error>>,
 ) -> Result<Rows, Box<dyn Error>> {
     let mut rows = suite()?;
-    for _ in 1..RUNS {
+    for _ in 1..runs {
         for (key, number) in suite()? {
             let least = if is_time(&key) { rows.get(&key).copied() } else { None };
             rows.insert(key, least.map_or(number, |least| least.min(number)));

@@ -41,8 +41,8 @@ pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
 }
 
 /// All rows of the suite, or those of one part, of the fastest of several runs.
-pub(crate) fn measure(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {
-    fastest_of_runs(|| run(only))
+pub(crate) fn measure(only: Option<&str>, runs: u32) -> Result<Rows, Box<dyn Error>> {
+    fastest_of_runs(runs, || run(only))
 }
 
 fn run(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {

@@ -46,8 +46,8 @@ const PROBE: f64 = 0.002;
 const DEPTH: f64 = 0.003;
 
 /// All rows of the suite, of the fastest of several runs.
-pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
-    fastest_of_runs(run)
+pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
+    fastest_of_runs(runs, run)
 }
 
 fn run() -> Result<Rows, Box<dyn Error>> {
