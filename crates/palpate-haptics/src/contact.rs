@@ -110,19 +110,10 @@ impl<const D: usize> Ground<D> {
     }
 }
 
-/// Where a tick at a surface ended.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rest<const D: usize> {
-    /// The evaluated point at which the proxy rests, on or above the offset surface.
-    pub(crate) sample: Sample<D>,
-    /// The unit normal of the surface last seen.
-    pub(crate) normal: Vector<f64, D>,
-    /// `true` if the surface keeps the proxy from the device.
-    pub(crate) contact: bool,
-}
-
-/// Slides from `start`, on or above the offset surface, to the point closest to `device`, which
-/// moved by `motion` [m] in this tick.
+/// Slides from `here`, on or above the offset surface, to the point closest to `device`, which
+/// moved by `motion` [m] in this tick. Then `here` is where the proxy rests, an evaluated point
+/// on or above the offset surface, and `normal` the unit normal of the surface last seen; `true`
+/// if that surface keeps the proxy from the device.
 ///
 /// Each point of the way is within the reach of an evaluated one, so the way crosses nothing. If
 /// the budget ends before the search does, the proxy rests at the closest point found that is on
@@ -132,39 +123,37 @@ pub(crate) struct Rest<const D: usize> {
 /// evaluations.
 pub(crate) fn slide<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    start: Sample<D>,
-    normal: Vector<f64, D>,
+    (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
     (device, motion): (Point<D>, f64),
     Ground { planes, bend }: &mut Ground<D>,
-) -> Rest<D> {
+) -> bool {
     planes.clear();
     let mut slide = Slide {
         bend,
-        here: start,
-        best: start,
+        best: *here,
+        last_foot: here.point,
+        last_normal: *normal,
+        least: squared(here.point - device),
+        here,
         normal,
         device,
         planes,
         failed_lifts: 0,
-        least: squared(start.point - device),
         trust: f64::max(FIRST_TRUST * motion, LEAST_TRUST * sampler.skin()),
         motion,
         is_first: true,
-        last_foot: start.point,
-        last_normal: normal,
     };
-    if start.tangent.is_none() {
-        if slide.go(sampler, start.point) == Turn::Spent {
-            return slide.rest(sampler);
+    if slide.here.tangent.is_none() {
+        if slide.go(sampler, slide.here.point) == Turn::Spent {
+            return slide.rest_at_best(sampler);
         }
-        slide.best = slide.here;
+        slide.best = *slide.here;
     }
     loop {
         match slide.turn(sampler) {
             Turn::Moved => slide.trust *= 2.0,
             Turn::Resting => {
-                let contact = squared(slide.here.point - device) > sampler.tolerance().powi(2);
-                return Rest { sample: slide.here, normal: slide.normal, contact };
+                return squared(slide.here.point - device) > sampler.tolerance().powi(2);
             }
             // Between facing walls no plane leaves room: less of a step does not get there.
             Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
@@ -175,11 +164,11 @@ pub(crate) fn slide<const D: usize>(
                 (*slide.bend, slide.is_first) = (Bend::FLAT, true);
                 slide.planes.clear();
                 slide.failed_lifts = MOST_FAILED_LIFTS;
-                slide.here = slide.best;
+                *slide.here = slide.best;
             }
             Turn::Cornered | Turn::Spent => {
                 slide.keep_best(sampler);
-                return slide.rest(sampler);
+                return slide.rest_at_best(sampler);
             }
         }
     }
@@ -191,13 +180,13 @@ fn squared<const D: usize>(way: Vector<f64, D>) -> f64 {
 
 struct Slide<'a, const D: usize> {
     bend: &'a mut Bend<D>,
-    here: Sample<D>,
+    here: &'a mut Sample<D>,
     /// The point closest to the device that is on or above the surface, of those that were
     /// left again.
     best: Sample<D>,
     /// Its squared distance to the device [m²].
     least: f64,
-    normal: Vector<f64, D>,
+    normal: &'a mut Vector<f64, D>,
     device: Point<D>,
     planes: &'a mut Planes<D>,
     /// How often the way up was not free: there is a ceiling, or a wall not yet known.
@@ -228,31 +217,35 @@ impl<const D: usize> Slide<'_, D> {
     /// Looks around, and goes on from there.
     #[inline(always)]
     fn turn(&mut self, sampler: &mut Sampler<'_, D>) -> Turn {
-        let (here, device) = (self.here, self.device);
-        let (normal, gap) = sampler.tangent(&here, self.normal);
+        let (here, device) = (self.here.point, self.device);
+        let (normal, gap) = sampler.tangent(self.here, *self.normal);
         let is_new = self.is_first;
-        self.normal = normal;
-        let foot = here.point - normal * gap;
+        *self.normal = normal;
+        let foot = here - normal * gap;
         self.learn_bend(sampler, (foot, normal));
         let wall = HalfSpace { point: foot, normal };
-        self.planes.learn(here.point, wall, gap);
+        // The only one is written down where it is not the last, too.
+        let is_only = self.planes.is_empty();
+        if !is_only {
+            self.planes.learn(here, wall, gap);
+        }
         // Of one alone not from memory, which waits for what was just written.
-        let is_one = self.planes.is_one();
+        let is_one = is_only || self.planes.is_one();
         let goal =
             if is_one { Some(wall.closest(device)) } else { self.planes.closest(device) };
         let Some(mut goal) = goal else { return Turn::Cornered };
 
-        let is_outside = here.gap >= -sampler.tolerance();
+        let is_outside = self.here.gap >= -sampler.tolerance();
         // The point of the last tick has to be at rest exactly: what is left would never be made
         // up for on a flat wall, which needs one evaluation and no more.
-        let stretch = squared(device - here.point);
+        let stretch = squared(device - here);
         let left = if is_new {
             0.0
         } else {
             (AT_REST * AT_REST * stretch).min((LEFT_TO_GO * self.motion).powi(2))
         };
         let at_rest = sampler.tolerance().powi(2) + left;
-        let on_plane = squared(goal - here.point);
+        let on_plane = squared(goal - here);
         let is_to_go = |gain: f64| gain * gain * on_plane > at_rest;
         if !is_outside
             || is_to_go(2.0)
@@ -260,39 +253,45 @@ impl<const D: usize> Slide<'_, D> {
         {
             goal = self.over_the_bend((foot, normal), goal, sampler.tolerance());
         }
-        if is_outside && squared(goal - here.point) <= at_rest {
+        let is_at_rest = is_outside && squared(goal - here) <= at_rest;
+        if is_only {
+            if is_at_rest {
+                return Turn::Resting;
+            }
+            self.planes.add(wall);
+        } else if is_at_rest {
             let Some(sunk) = self.planes.forget_sunk(at_rest.sqrt()) else {
                 return Turn::Resting;
             };
             // The walls that they were of are not far, or gone.
             self.trust = self.trust.min(NEAR_SUNK * sunk);
-            goal = self.planes.closest(device).unwrap_or(here.point);
+            goal = self.planes.closest(device).unwrap_or(here);
         }
-        let way = goal - here.point;
-        let reach = sampler.reach(&here).min(self.trust);
+        let way = goal - here;
+        let reach = sampler.reach(self.here).min(self.trust);
         if squared(way) <= reach * reach {
             return self.go(sampler, goal);
         }
         if !is_outside {
             // Straight on, the way to a far goal would stay below the surface.
-            let Some(outside) = self.planes.closest(here.point) else { return Turn::Cornered };
-            let way = outside - here.point;
+            let Some(outside) = self.planes.closest(here) else { return Turn::Cornered };
+            let way = outside - here;
             let part = (reach / way.norm()).min(1.0);
-            return self.go(sampler, here.point + way * part);
+            return self.go(sampler, here + way * part);
         }
         let length = way.norm();
-        let is_far = length > WORTH_LIFTING * sampler.reach(&here)
+        let is_far = length > WORTH_LIFTING * sampler.reach(self.here)
             && length < WORTH_FOLLOWING * self.motion;
         if is_far && self.failed_lifts < MOST_FAILED_LIFTS {
             let up = self.planes.up().unwrap_or(normal);
-            if let Some(above) = lift(sampler, &here, up, LIFT * length) {
+            if let Some(above) = lift(sampler, self.here, up, LIFT * length) {
                 self.keep_best(sampler);
-                self.here = above;
+                *self.here = above;
                 return Turn::Moved;
             }
             self.failed_lifts += 1;
         }
-        self.go(sampler, here.point + way * (reach / length))
+        self.go(sampler, here + way * (reach / length))
     }
 
     /// Goes to a point and asks what is there.
@@ -300,7 +299,7 @@ impl<const D: usize> Slide<'_, D> {
     fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Turn {
         let Some(sample) = sampler.gradient(point) else { return Turn::Spent };
         self.keep_best(sampler);
-        self.here = sample;
+        *self.here = sample;
         Turn::Moved
     }
 
@@ -309,7 +308,7 @@ impl<const D: usize> Slide<'_, D> {
     fn keep_best(&mut self, sampler: &Sampler<'_, D>) {
         let distance = squared(self.here.point - self.device);
         if distance < self.least && self.here.gap >= -sampler.tolerance() {
-            (self.best, self.least) = (self.here, distance);
+            (self.best, self.least) = (*self.here, distance);
         }
     }
 
@@ -373,11 +372,11 @@ impl<const D: usize> Slide<'_, D> {
         }
     }
 
-    /// The best point found, and whether the device is below the surface.
-    fn rest(&self, sampler: &mut Sampler<'_, D>) -> Rest<D> {
-        let (normal, _) = sampler.tangent(&self.best, self.normal);
-        let contact = sampler.is_below(self.device).unwrap_or(false);
-        Rest { sample: self.best, normal, contact }
+    /// Goes back to the best point found; whether the device is below the surface.
+    fn rest_at_best(&mut self, sampler: &mut Sampler<'_, D>) -> bool {
+        *self.here = self.best;
+        *self.normal = sampler.tangent(self.here, *self.normal).0;
+        sampler.is_below(self.device).unwrap_or(false)
     }
 }
 

@@ -16,7 +16,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::contact::{Ground, Rest, slide};
+use crate::contact::{Ground, slide};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 
@@ -40,58 +40,58 @@ pub(crate) enum Hold {
     Slip,
 }
 
-/// Slides from `start`, where the proxy was held, as far as `friction` lets it, to the point
-/// closest to `device`, which moved by `motion` [m] in this tick.
+/// [Slides](slide) from `here`, where the proxy was held, as far as `friction` lets it, to the
+/// point closest to `device`, which moved by `motion` [m] in this tick. Whether the surface keeps
+/// it from the device, and how.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
 pub(crate) fn drag<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (start, normal): (Sample<D>, Vector<f64, D>),
+    (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
     (device, motion): (Point<D>, f64),
     (friction, hold): (Friction, Hold),
     ground: &mut Ground<D>,
-) -> (Rest<D>, Hold) {
-    let free = |sampler: &mut Sampler<'_, D>, ground: &mut Ground<D>| {
-        (slide(sampler, start, normal, (device, motion), ground), Hold::None)
-    };
-    if start.tangent.is_none() || friction.fixed <= 0.0 {
-        return free(sampler, ground);
+) -> (bool, Hold) {
+    if here.tangent.is_none() || friction.fixed <= 0.0 {
+        return (slide(sampler, (here, normal), (device, motion), ground), Hold::None);
     }
-    let (normal, gap) = sampler.tangent(&start, normal);
+    let start = *here;
+    let (first_normal, gap) = sampler.tangent(&start, *normal);
     let stretch = start.point - device;
-    let height = stretch.dot(normal);
+    let height = stretch.dot(first_normal);
     let depth = height - gap;
+    *normal = first_normal;
     if depth <= 0.0 || gap > sampler.near() {
-        return free(sampler, ground);
+        return (slide(sampler, (here, normal), (device, motion), ground), Hold::None);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
-    let stuck = || Rest { sample: start, normal, contact: true };
     let Some(goal) =
-        held_back(device, stretch - normal * height, depth, (most, friction.slipping))
+        held_back(device, stretch - first_normal * height, depth, (most, friction.slipping))
     else {
-        return (stuck(), Hold::Stick);
+        return (true, Hold::Stick);
     };
-    let rest = slide(sampler, start, normal, (goal, motion), ground);
-    let pull = rest.sample.point - goal;
-    let along = pull - rest.normal * pull.dot(rest.normal);
-    if !rest.contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
-        return (rest, Hold::Slip);
+    let contact = slide(sampler, (here, normal), (goal, motion), ground);
+    let pull = here.point - goal;
+    let along = pull - *normal * pull.dot(*normal);
+    if !contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
+        return (contact, Hold::Slip);
     }
     // A crease. It holds a proxy that was in it; one that was beside it, on one wall, slid in.
-    let Some(across) = along.normalized() else { return (rest, Hold::Slip) };
-    let way = start.point - rest.sample.point;
-    let beside = way.dot(rest.normal).max(way.dot(across));
+    let Some(across) = along.normalized() else { return (contact, Hold::Slip) };
+    let way = start.point - here.point;
+    let beside = way.dot(*normal).max(way.dot(across));
     if beside > sampler.tolerance().max(BESIDE * way.norm()) {
-        return (rest, Hold::Slip);
+        return (contact, Hold::Slip);
     }
     // All its walls together press with the part of the stretch across it.
-    let pressed = rest.normal * stretch.dot(rest.normal) + across * stretch.dot(across);
+    let pressed = *normal * stretch.dot(*normal) + across * stretch.dot(across);
     match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
-        None => (stuck(), Hold::Stick),
-        Some(goal) => {
-            (slide(sampler, rest.sample, rest.normal, (goal, motion), ground), Hold::Slip)
+        None => {
+            (*here, *normal) = (start, first_normal);
+            (true, Hold::Stick)
         }
+        Some(goal) => (slide(sampler, (here, normal), (goal, motion), ground), Hold::Slip),
     }
 }
 

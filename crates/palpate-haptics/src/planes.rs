@@ -54,6 +54,11 @@ impl<const D: usize> Planes<D> {
         self.count == 1
     }
 
+    /// Whether there is none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
     /// Forgets the planes of one wall: those from whose foot to `foot` the normal turned to
     /// `normal` as `is_turn` says it does along the wall.
     pub(crate) fn forget_wall(
@@ -109,17 +114,22 @@ impl<const D: usize> Planes<D> {
             }
             stays
         });
-        match self.walls.get_mut(self.count) {
-            Some(place) => {
-                // Field by field: a copy of a whole waits for its parts to be written.
-                place.half_space.point = foot;
-                place.half_space.normal = normal;
-                place.foot = foot;
-                place.sunk = 0.0;
-                self.count += 1;
-            }
-            None => self.replace_loosest(Wall { half_space, foot, sunk: 0.0 }),
+        if !self.add(half_space) {
+            self.replace_loosest(Wall { half_space, foot, sunk: 0.0 });
         }
+    }
+
+    /// Adds a plane to those that are known, as they are; `false` if there is no room.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, HalfSpace { point: foot, normal }: HalfSpace<D>) -> bool {
+        let Some(place) = self.walls.get_mut(self.count) else { return false };
+        // Field by field: a copy of a whole waits for its parts to be written.
+        place.half_space.point = foot;
+        place.half_space.normal = normal;
+        place.foot = foot;
+        place.sunk = 0.0;
+        self.count += 1;
+        true
     }
 
     /// Puts `wall` in the place of the plane farthest below its foot.

@@ -17,7 +17,7 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Ground, Rest, slide};
+use crate::contact::{Ground, slide};
 use crate::error::{HapticsError, not_negative};
 use crate::friction::{Hold, drag};
 use crate::nearby::{Nearby, Pierced};
@@ -274,17 +274,10 @@ impl<const D: usize> Proxy<D> {
             self.at = start;
             placed |= is_moved;
         }
-        let Some(start) = self.at else {
-            (self.contact, self.hold) = (false, Hold::None);
-            return self.following(device, false, sampler.evaluations());
-        };
         let goal = sampler.within_region(device);
-        let (rest, hold) = self.pursue(&mut sampler, start, (goal, moved));
-        self.at = Some(rest.sample);
-        self.normal = rest.normal;
-        self.contact = rest.contact;
-        self.hold = if rest.contact { hold } else { Hold::None };
-        self.following(rest.sample.point, placed, sampler.evaluations())
+        self.pursue(&mut sampler, (goal, moved));
+        let proxy = self.at.as_ref().map_or(device, |at| at.point);
+        self.following(proxy, placed, sampler.evaluations())
     }
 
     fn following(&self, proxy: Point<D>, placed: bool, evaluations: u32) -> Following<D> {
@@ -385,21 +378,18 @@ impl<const D: usize> Proxy<D> {
         (None, false)
     }
 
-    /// Flies straight to the device where that is free, and slides from where it is not.
-    fn pursue(
-        &mut self,
-        sampler: &mut Sampler<'_, D>,
-        start: Sample<D>,
-        (device, moved): (Point<D>, f64),
-    ) -> (Rest<D>, Hold) {
-        let normal = self.normal;
-        let at_rest = |sample| (Rest { sample, normal, contact: false }, Hold::None);
-        let mut here = start;
-        let mut was_held = self.contact;
+    /// Flies straight to the device where that is free, and slides from where it is not. A proxy
+    /// that has no place touches nothing.
+    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, (device, moved): (Point<D>, f64)) {
+        let Self { at, normal, contact, hold, ground, pierced, .. } = self;
+        let was_held = std::mem::take(contact);
+        let held = std::mem::take(hold);
+        let Some(here) = at else { return };
+        let mut is_flying = false;
         loop {
             let way = device - here.point;
             let squared = way.dot(way);
-            let free = sampler.free_radius(&here);
+            let free = sampler.free_radius(here);
             let is_free = free > 0.0 && free * free > squared;
             let next = if is_free {
                 device
@@ -407,43 +397,40 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let friction = self.friction(sampler, &here, device).filter(|_| was_held);
-                return match friction {
-                    Some(friction) => drag(
-                        sampler,
-                        (here, normal),
-                        (device, moved),
-                        friction,
-                        &mut self.ground,
-                    ),
-                    None => (
-                        slide(sampler, here, normal, (device, moved), &mut self.ground),
-                        Hold::None,
-                    ),
-                };
+                let place = (here, normal);
+                let friction = friction(sampler, place.0, (squared.sqrt(), pierced));
+                match friction.filter(|_| was_held && !is_flying) {
+                    Some(friction) => {
+                        let how = (friction, held);
+                        (*contact, *hold) = drag(sampler, place, (device, moved), how, ground);
+                    }
+                    None => *contact = slide(sampler, place, (device, moved), ground),
+                }
+                if !*contact {
+                    *hold = Hold::None;
+                }
+                return;
             };
-            was_held = false;
+            is_flying = true;
             match sampler.distance(next) {
-                Some(sample) if sample.gap >= -sampler.tolerance() => here = sample,
-                _ => return at_rest(here),
+                Some(sample) if sample.gap >= -sampler.tolerance() => *here = sample,
+                _ => return,
             }
             if is_free {
-                return at_rest(here);
+                return;
             }
         }
     }
+}
 
-    /// The friction of the surface that held the proxy, and how it held it.
-    fn friction(
-        &self,
-        sampler: &Sampler<'_, D>,
-        at: &Sample<D>,
-        device: Point<D>,
-    ) -> Option<(Friction, Hold)> {
-        let strata = &sampler.nearby().body(at.body)?.surface().strata;
-        let depth = (at.point - device).norm();
-        Some((strata.at(self.level(at.body), depth).friction, self.hold))
-    }
+/// The friction of the surface at a sample that the device is `depth` from [m].
+fn friction<const D: usize>(
+    sampler: &Sampler<'_, D>,
+    at: &Sample<D>,
+    (depth, pierced): (f64, &Pierced),
+) -> Option<Friction> {
+    let strata = &sampler.nearby().body(at.body)?.surface().strata;
+    Some(strata.at(pierced.level(at.body), depth).friction)
 }
 
 /// Where a body meets a proxy on its way in this tick, and takes it to; none if it does not
