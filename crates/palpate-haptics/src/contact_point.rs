@@ -178,6 +178,7 @@ impl<const D: usize> ContactPoint<D> {
     /// force should rise anew.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[inline(always)]
     pub(crate) fn give(
         &mut self,
         setting: &Setting<D>,

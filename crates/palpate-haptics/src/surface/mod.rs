@@ -159,7 +159,7 @@ impl<const D: usize> Surface<D> {
     /// `level` is how many layers the hand went through.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn force(
         &self,
         level: usize,
