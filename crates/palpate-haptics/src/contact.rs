@@ -119,6 +119,9 @@ impl<const D: usize> Ground<D> {
 /// the budget ends before the search does, the proxy rests at the closest point found that is on
 /// or above the surface: later than it could, never inside.
 ///
+/// It works in the place where the proxy keeps its sample: a copy of a whole would wait until its
+/// parts, just found, are written.
+///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
 pub(crate) fn slide<const D: usize>(

@@ -382,10 +382,8 @@ impl<const D: usize> Proxy<D> {
     /// that has no place touches nothing.
     fn pursue(&mut self, sampler: &mut Sampler<'_, D>, (device, moved): (Point<D>, f64)) {
         let Self { at, normal, contact, hold, ground, pierced, .. } = self;
-        let was_held = std::mem::take(contact);
-        let held = std::mem::take(hold);
+        let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
-        let mut is_flying = false;
         loop {
             let way = device - here.point;
             let squared = way.dot(way);
@@ -399,10 +397,10 @@ impl<const D: usize> Proxy<D> {
             } else {
                 let place = (here, normal);
                 let friction = friction(sampler, place.0, (squared.sqrt(), pierced));
-                match friction.filter(|_| was_held && !is_flying) {
+                match friction.filter(|_| was_held) {
                     Some(friction) => {
-                        let how = (friction, held);
-                        (*contact, *hold) = drag(sampler, place, (device, moved), how, ground);
+                        let held = (friction, how);
+                        (*contact, *hold) = drag(sampler, place, (device, moved), held, ground);
                     }
                     None => *contact = slide(sampler, place, (device, moved), ground),
                 }
@@ -411,7 +409,7 @@ impl<const D: usize> Proxy<D> {
                 }
                 return;
             };
-            is_flying = true;
+            was_held = false;
             match sampler.distance(next) {
                 Some(sample) if sample.gap >= -sampler.tolerance() => *here = sample,
                 _ => return,
