@@ -36,7 +36,7 @@ Examples:
   palpate feel
   palpate feel scenes/cup.json --duration 5 --trace touch.csv --plot touch.png
   palpate feel scenes/cup.json --path hand.csv --rate 2000
-  palpate feel --contacts 10 --fast --json")]
+  palpate feel --points 10 --fast --json")]
     Feel(FeelOptions),
     /// Distance, gradient and nearest surface point, at one point or many.
     #[command(after_help = "\

@@ -23,10 +23,12 @@ pub(crate) struct Named {
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
-    let (name, scene) = match path {
-        None => ("the built-in gallery".to_owned(), Scene::from_json(GALLERY)),
-        Some(path) => (path.display().to_string(), Scene::from_file(path)),
+    let (name, text) = match path {
+        None => ("the built-in gallery".to_owned(), Ok(GALLERY.to_owned())),
+        Some(path) => (path.display().to_string(), std::fs::read_to_string(path)),
     };
+    let text = text.map_err(|error| Failure::input(format!("{name}: {error}")))?;
+    let scene = Scene::from_json(&text);
     let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool, scene.guides)));
     match built {
         Ok((world, tool, guides)) => Ok(Named { name, world, tool, guides }),

@@ -35,6 +35,16 @@ fn eval_refuses_what_is_no_point() {
     }
 }
 
+/// A file that is not there was once named twice in a line.
+#[test]
+fn a_scene_that_is_not_there_is_named_once() {
+    for command in ["check", "contact", "plot", "feel"] {
+        let output = palpate(&[command, "no/such/scene.json"]);
+        assert_eq!(status(&output), 2, "{command}");
+        assert_eq!(errors(&output).matches("no/such/scene.json").count(), 1, "{command}");
+    }
+}
+
 /// Many points give the bytes of one point each, for any number of threads.
 #[test]
 fn eval_streams_the_same_bytes_for_any_number_of_threads() {
