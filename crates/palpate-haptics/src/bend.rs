@@ -62,35 +62,46 @@ impl<const D: usize> Bend<D> {
     /// The way to the point closest to a device at `depth` [m] below the surface, for which it
     /// would be `along` on the tangent plane, itself not included; none if the closest point is
     /// not near.
-    ///
-    /// The device is `κ d` times closer to the centre of a bend of curvature `κ` than the
-    /// surface, so `(1 − d S) w = along`. Solved by conjugate gradients, which are exact after
-    /// as many steps as the surface has dimensions. They end where the matrix is not positive:
-    /// past a centre there is no closest point.
     #[inline]
     pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
-        let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
-        let mut left = rest.dot(rest);
-        let solved = SOLVED * SOLVED * left;
-        for _ in 1..D {
-            let seen = step - self.turn(step) * depth;
-            let steepness = step.dot(seen);
-            // What is nothing needs no step.
-            if steepness <= 0.0 || steepness.is_nan() {
-                return None;
-            }
-            let length = left / steepness;
-            way += step * length;
-            rest -= seen * length;
-            let before = left;
-            left = rest.dot(rest);
-            if left <= solved {
-                break;
-            }
-            step = rest + step * (left / before);
-        }
-        Some(way)
+        way_over(|way| self.turn(way), along, (depth, SOLVED))
     }
+}
+
+/// The way over a surface that a point `depth` [m] below it sees as `along`; `turn` is how the
+/// surface's unit normal turns along a way. None if the point is past a centre of the bend.
+///
+/// The point is `κ d` times closer to the centre of a bend of curvature `κ` than the surface, so
+/// `(1 − d S) w = along`. Solved by conjugate gradients, which are exact after as many steps as
+/// the surface has dimensions, up to a part `solved` of `along`. They end where the matrix is not
+/// positive: past a centre there is no closest point.
+#[inline]
+pub(crate) fn way_over<const D: usize>(
+    mut turn: impl FnMut(Vector<f64, D>) -> Vector<f64, D>,
+    along: Vector<f64, D>,
+    (depth, solved): (f64, f64),
+) -> Option<Vector<f64, D>> {
+    let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
+    let mut left = rest.dot(rest);
+    let solved = solved * solved * left;
+    for _ in 1..D {
+        let seen = step - turn(step) * depth;
+        let steepness = step.dot(seen);
+        // What is nothing needs no step.
+        if steepness <= 0.0 || steepness.is_nan() {
+            return None;
+        }
+        let length = left / steepness;
+        way += step * length;
+        rest -= seen * length;
+        let before = left;
+        left = rest.dot(rest);
+        if left <= solved {
+            break;
+        }
+        step = rest + step * (left / before);
+    }
+    Some(way)
 }
 
 #[cfg(test)]

@@ -291,7 +291,7 @@ impl<const D: usize> ContactPoint<D> {
     fn force(
         &mut self,
         tick: &mut Tick<'_, D>,
-        touch: &Touch<D>,
+        touch: &mut Touch<D>,
         body: &Body<D>,
     ) -> Vector<f64, D> {
         let stretch = touch.proxy - touch.device;
@@ -299,7 +299,16 @@ impl<const D: usize> ContactPoint<D> {
         let in_body = body.in_body(touch.proxy);
         let (pull, velocity) =
             (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
-        let force = body.vector_in_world(surface.force(level, pull, velocity, in_body));
+        let normal = body.vector_in_body(touch.normal);
+        let turn = |way: Vector<f64, D>, far: f64| {
+            let Some(direction) = way.normalized() else { return Vector::ZERO };
+            touch.evaluations += 1;
+            let (_, gradient) = body.shape().distance_gradient(in_body + direction * far);
+            let there = gradient.normalized().unwrap_or(normal);
+            (there - normal) * (way.norm() / far)
+        };
+        let force = surface.force(level, pull, velocity, (in_body, turn));
+        let force = body.vector_in_world(force);
         if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
             let held = surface.strata.force(level, stretch.norm());
             if held > pop.force && self.proxy.pierce(touch.body) {

@@ -446,8 +446,9 @@ impl<const D: usize> Servo<D> {
     /// zero, and its proxy waits where it was.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does;
-    /// evaluates the field at most [`Probe::budget`] times a point, and once more for each
-    /// magnet in reach; for a tool, [`ToolOptions::budget`](crate::ToolOptions::budget) times.
+    /// evaluates the field at most [`Probe::budget`] times a point, once more for each magnet in
+    /// reach, and once for each dimension of a textured surface; for a tool,
+    /// [`ToolOptions::budget`](crate::ToolOptions::budget) times.
     pub fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
         if let Some(hung) = &mut self.tool {
             self.contacts.events.clear();

@@ -97,15 +97,6 @@ fn gains_nothing<const D: usize>(
     (radius, width): (f64, f64),
     loops: u64,
 ) {
-    gains_at_most(MOST, name, bodies, ((radius, width), loops));
-}
-
-fn gains_at_most<const D: usize>(
-    most: f64,
-    name: &str,
-    bodies: &Bodies<D>,
-    ((radius, width), loops): ((f64, f64), u64),
-) {
     cases(2 * loops, |u| {
         let mut servo = servo(bodies.clone(), radius);
         // Down the field to the surface.
@@ -115,7 +106,7 @@ fn gains_at_most<const D: usize>(
             centre -= gradient * (0.3 * (distance - radius));
         }
         let gained = work(&mut servo, closed(centre, width, turns(u)?));
-        assert!(gained <= most, "{name} gives {gained:e} J");
+        assert!(gained <= MOST, "{name} gives {gained:e} J");
         Ok(())
     });
 }
@@ -228,12 +219,21 @@ fn a_grooved_wall_gives_back_what_it_took() {
     gains_nothing("a line", &bodies, (0.002, 0.006), 4);
 }
 
+/// Up to 4e-5 J were gained a loop while the slope of the wave was taken as the hand's: below a
+/// surface of curvature κ the proxy goes 1 / (1 − κd) times as far, at the depth d.
 #[test]
-fn a_grooved_ball_gives_next_to_nothing() {
-    // The slope of the wave is taken where the proxy is. On a surface of curvature κ the proxy
-    // goes 1 / (1 − κd) times as far as the hand at the depth d, which the force leaves out.
-    let bodies = body(&ball::<3>(0.05), surface(&grooved(Some(vec![1.0, 0.0, 0.0]))));
-    gains_at_most(1e-4, "a grooved ball", &bodies, ((0.002, 0.006), 4));
+fn grooves_on_what_is_bent_give_back_what_they_took() {
+    let along = || Some(vec![1.0, 0.0, 0.0]);
+    for (name, shape) in [("a ball", ball(0.05)), ("a ring", torus(0.04, 0.012))] {
+        for direction in [along(), None] {
+            let bodies = body(&shape, surface(&grooved(direction)));
+            gains_nothing(name, &bodies, (0.002, 0.006), 2);
+        }
+    }
+    let hollow = cuboid([0.3; 3]).difference([ball(0.1)]).unwrap();
+    gains_nothing("a hollow", &body(&hollow, surface(&grooved(along()))), (0.002, 0.006), 2);
+    let disc = body(&ball(0.05), surface::<2>(&grooved(Some(vec![1.0, 0.2]))));
+    gains_nothing("a disc", &disc, (0.002, 0.006), 4);
 }
 
 fn magnetic() -> Material {

@@ -13,13 +13,26 @@ mod strata;
 use palpate_field::{Point, Shape, Vector};
 use palpate_scene::{Material, TextureKind};
 
+use crate::bend::way_over;
 use crate::error::{HapticsError, not_negative, positive};
 use crate::impedance::Impedance;
+use crate::limit::limited;
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};
 pub(crate) use ripples::Ripples;
 pub(crate) use strata::{Friction, Strata};
+
+/// How far along a surface its bend below a texture is asked for, as a part of the wavelength:
+/// what differs from the bend at the place, and roundings, stay far below a nanojoule.
+const FAR: f64 = 1e-6;
+
+/// The part of a texture's slope up to which it is solved for on a bent surface.
+const SOLVED: f64 = 1e-8;
+
+/// The most that a hand near the centre of a bend sees a slope steeper than it is: there it would
+/// grow without bound.
+const STEEPER: f64 = 8.0;
 
 /// A material made ready for the servo.
 ///
@@ -39,7 +52,8 @@ pub(crate) use strata::{Friction, Strata};
 ///   `‖s‖ + w(p) − a`, with the height `w` of the wave of amplitude `a` at the proxy: pushed
 ///   harder over a crest, and to the side down its slope (Minsky, "Computational haptics",
 ///   1995, chapter 4). The crests are at the surface and the troughs below it, so the force
-///   sets in gently wherever the hand comes in, and over a closed path a flat wall gives no
+///   sets in gently wherever the hand comes in. Below a bent surface the proxy goes farther than
+///   the hand, or less far: the slope is that which the hand sees, so a closed path gives no
 ///   energy. One of kind *displacement* is part of the body's shape, not of its force.
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
@@ -156,7 +170,9 @@ impl<const D: usize> Surface<D> {
     /// of the device point relative to the body [m/s], and the place of the proxy in the body,
     /// in the body's coordinates.
     ///
-    /// `level` is how many layers the hand went through.
+    /// `level` is how many layers the hand went through. `turn` is how the surface's unit normal
+    /// turns along a way from the proxy, as it does in the first so many metres of it: asked of
+    /// textures alone, at most once for each dimension of the surface.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(always)]
@@ -165,7 +181,10 @@ impl<const D: usize> Surface<D> {
         level: usize,
         stretch: Vector<f64, D>,
         velocity: Vector<f64, D>,
-        proxy_in_body: Point<D>,
+        (proxy_in_body, mut turn): (
+            Point<D>,
+            impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
+        ),
     ) -> Vector<f64, D> {
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
@@ -181,7 +200,11 @@ impl<const D: usize> Surface<D> {
             // enters, and take nothing back where it leaves through a trough.
             push = (depth + height - ripples.height()).max(0.0);
             // Along the surface alone: across it the wave does not change the depth.
-            slope = gradient - normal * gradient.dot(normal);
+            let along = gradient - normal * gradient.dot(normal);
+            // Below a bent surface the proxy goes farther than the hand, or less far.
+            let far = FAR * ripples.wavelength();
+            let seen = way_over(|way| turn(way, far), along, (depth, SOLVED));
+            slope = limited(seen.unwrap_or(along), STEEPER * along.norm());
         }
         let spring = self.strata.force(level, push);
         let approach = (-velocity.dot(normal)).max(0.0);

@@ -19,6 +19,7 @@ const ROUNDINGS: f64 = 16.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ripples<const D: usize> {
     amplitude: f64,
+    wavelength: f64,
     /// Radians a metre along each wave vector.
     waves: Waves<D>,
 }
@@ -37,7 +38,7 @@ impl<const D: usize> Ripples<D> {
         let wavelength = positive("texture.wavelength", texture.wavelength, "m")?;
         let number = 2.0 * std::f64::consts::PI / wavelength;
         let Some(direction) = &texture.direction else {
-            return Ok(Self { amplitude, waves: Waves::Product(number) });
+            return Ok(Self { amplitude, wavelength, waves: Waves::Product(number) });
         };
         let components: Result<[f64; D], _> = direction.as_slice().try_into();
         let unit = components.ok().and_then(|components| Vector(components).normalized());
@@ -47,12 +48,17 @@ impl<const D: usize> Ripples<D> {
             value: direction.len() as f64,
             unit: "numbers",
         })?;
-        Ok(Self { amplitude, waves: Waves::Plane((unit * number).0) })
+        Ok(Self { amplitude, wavelength, waves: Waves::Plane((unit * number).0) })
     }
 
     /// How far the wave rises [m].
     pub(crate) fn height(&self) -> f64 {
         self.amplitude
+    }
+
+    /// How far its crests are apart [m].
+    pub(crate) fn wavelength(&self) -> f64 {
+        self.wavelength
     }
 
     /// The height of the wave [m] and its gradient.
