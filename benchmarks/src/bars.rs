@@ -10,21 +10,7 @@ pub(crate) type Bar = (&'static str, f64);
 
 /// What tells how fast the machine is: the row of a peer, and what it is on the machine
 /// that bars in nanoseconds are meant for (AMD EPYC, Zen 4).
-pub(crate) type Yardstick = (&'static str, f64);
-
-/// For what waits for each answer before it asks again.
-pub(crate) const POINTS: Yardstick = ("S3.distance.point.fidget_jit.ns", 78.0);
-
-/// For what asks for many points at once. Busy neighbours and narrow vector units show here
-/// more than in points, one at a time.
-pub(crate) const SLICES: Yardstick = ("S3.distance.1024.fidget_jit.ns", 6.0);
-
-/// What a row in nanoseconds is held against: ticks, single points and what is built wait,
-/// searches ask for blocks.
-fn yardstick(key: &str) -> Yardstick {
-    let waits = key.starts_with("tick.") || key.contains(".point.") || key.contains(".build.");
-    if waits { POINTS } else { SLICES }
-}
+pub(crate) const YARDSTICK: (&str, f64) = ("S3.distance.point.fidget_jit.ns", 78.0);
 
 /// Those of fields.
 pub(crate) const FIELDS: &[Bar] = &[
@@ -128,7 +114,7 @@ pub(crate) fn is_time(key: &str) -> bool {
 /// a suite the bars of other parts are left out.
 ///
 /// A bar in nanoseconds that is missed is held against the machine too: `reached here` is
-/// what is within the bar times how much longer than on the bars' machine its yardstick
+/// what is within the bar times how much longer than on the bars' machine the yardstick
 /// takes.
 pub(crate) fn print(rows: &Rows, bars: &[Bar], is_part: bool, as_json: bool) {
     if as_json {
@@ -140,24 +126,16 @@ pub(crate) fn print(rows: &Rows, bars: &[Bar], is_part: bool, as_json: bool) {
     for (key, number) in rows {
         println!("{key:<60} {number:>12.4}");
     }
-    let slower = |(key, there): Yardstick| {
-        let here = rows.get(key).copied().unwrap_or(there);
-        (here, (here / there).max(1.0))
-    };
-    println!();
-    for (stick, what) in [(POINTS, "single points"), (SLICES, "blocks")] {
-        let ((key, there), (here, slower)) = (stick, slower(stick));
-        println!("{key} is {here:.1} here, {there:.1} where bars in nanoseconds are from:");
-        println!("`reached here` allows what asks for {what} {slower:.2} times as long.");
-    }
-    println!();
+    let (yardstick, there) = YARDSTICK;
+    let here = rows.get(yardstick).copied().unwrap_or(there);
+    let slower = (here / there).max(1.0);
+    println!("\n{yardstick} is {here:.0} here, {there:.0} where bars in nanoseconds are from.");
+    println!("`reached here` allows {slower:.2} times as long.\n");
     let in_the_plane = IN_THE_PLANE.iter().filter(|(key, _)| rows.contains_key(*key));
     let in_the_plane = in_the_plane.map(|(key, other)| (*key, rows.get(*other).copied(), 1.0));
     let bars = bars.iter().filter(|(key, _)| !is_part || rows.contains_key(*key));
-    let bars = bars.map(|(key, bar)| {
-        let allowed = if is_time(key) { slower(yardstick(key)).1 } else { 1.0 };
-        (*key, Some(*bar), allowed)
-    });
+    let bars =
+        bars.map(|(key, bar)| (*key, Some(*bar), if is_time(key) { slower } else { 1.0 }));
     let (mut reached, mut here, mut all) = (0, 0, 0);
     for (key, bar, allowed) in bars.chain(in_the_plane) {
         let number = rows.get(key).copied().unwrap_or(f64::NAN);
