@@ -10,12 +10,11 @@ use palpate::scene::{Scene, World};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
-use crate::input::promise_in_words;
+use crate::input::{promise_in_words, text};
 use crate::outcome::{Failure, Outcome};
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
-    let text = std::fs::read_to_string(&options.scene)
-        .map_err(|error| Failure::file(&options.scene, error))?;
+    let text = text(&options.scene)?;
     let mut out = std::io::stdout().lock();
     let name = options.scene.display();
     match Scene::from_json(&text).and_then(|scene| scene.build()) {

@@ -24,16 +24,20 @@ pub(crate) struct Named {
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
     let (name, text) = match path {
-        None => ("the built-in gallery".to_owned(), Ok(GALLERY.to_owned())),
-        Some(path) => (path.display().to_string(), std::fs::read_to_string(path)),
+        None => ("the built-in gallery".to_owned(), GALLERY.to_owned()),
+        Some(path) => (path.display().to_string(), text(path)?),
     };
-    let text = text.map_err(|error| Failure::input(format!("{name}: {error}")))?;
     let scene = Scene::from_json(&text);
     let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool, scene.guides)));
     match built {
         Ok((world, tool, guides)) => Ok(Named { name, world, tool, guides }),
         Err(error) => Err(Failure::input(format!("{name}: {error}"))),
     }
+}
+
+/// What is written in a file.
+pub(crate) fn text(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| Failure::file(path, error))
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.

@@ -227,7 +227,7 @@ fn grooves_on_what_is_bent_give_back_what_they_took() {
     for (name, shape) in [("a ball", ball(0.05)), ("a ring", torus(0.04, 0.012))] {
         for direction in [along(), None] {
             let bodies = body(&shape, surface(&grooved(direction)));
-            gains_nothing(name, &bodies, (0.002, 0.006), 2);
+            gains_nothing(name, &bodies, (0.002, 0.006), 4);
         }
     }
     let hollow = cuboid([0.3; 3]).difference([ball(0.1)]).unwrap();

@@ -2,25 +2,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Scenes for tests: those in the repository, and random ones.
-#![allow(
-    dead_code,
-    unreachable_pub,
-    reason = "several programs share it: each uses a part, one may use all"
-)]
+#![allow(dead_code, reason = "several programs share it: each uses a part, one may use all")]
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
-pub mod random;
-pub mod refusal;
+pub(crate) mod random;
+pub(crate) mod refusal;
 
 use std::path::{Path, PathBuf};
 
 /// The folder of the repository.
-pub fn repository() -> PathBuf {
+pub(crate) fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// The names and texts of the JSON files in a folder of the repository.
-pub fn files(folder: &str) -> Vec<(String, String)> {
+pub(crate) fn files(folder: &str) -> Vec<(String, String)> {
     let folder = repository().join(folder);
     let mut files: Vec<_> = std::fs::read_dir(&folder)
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))

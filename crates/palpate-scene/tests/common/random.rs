@@ -14,7 +14,7 @@ use palpate_scene::{
 };
 
 /// A primitive of the catalogue with the keys of its parameters in files.
-pub struct Known {
+pub(crate) struct Known {
     pub name: &'static str,
     pub parameters: &'static [Parameter],
     pub arguments: Vec<Argument>,
@@ -22,7 +22,7 @@ pub struct Known {
 
 /// All primitives of `D` dimensions with arguments that build, lengths between
 /// 0.1 m and 0.9 m.
-pub fn known<const D: usize>(catalogue: &'static [Entry<D>]) -> Vec<Known> {
+pub(crate) fn known<const D: usize>(catalogue: &'static [Entry<D>]) -> Vec<Known> {
     let fit = |entry: &'static Entry<D>| {
         (0..10_000_usize).find_map(|attempt| {
             let arguments = arguments::<D>(entry.parameters, attempt);
@@ -80,7 +80,7 @@ fn arguments<const D: usize>(parameters: &[Parameter], attempt: usize) -> Vec<Ar
 
 impl Known {
     /// The node as files have it: angles in degrees, under keys that say so.
-    pub fn node(&self) -> Node {
+    pub(crate) fn node(&self) -> Node {
         let pairs = self.parameters.iter().zip(&self.arguments);
         Node::primitive(
             self.name,
@@ -96,7 +96,7 @@ impl Known {
 }
 
 /// What random scenes are made from.
-pub struct Generator {
+pub(crate) struct Generator {
     planar: Vec<Known>,
     spatial: Vec<Known>,
 }
@@ -104,12 +104,12 @@ pub struct Generator {
 type Random<'a, 'b> = &'a mut Unstructured<'b>;
 
 impl Generator {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { planar: known(Entry::<2>::ALL), spatial: known(Entry::<3>::ALL) }
     }
 
     /// A scene: most build, some do not.
-    pub fn scene(&self, u: Random) -> Result<Scene> {
+    pub(crate) fn scene(&self, u: Random) -> Result<Scene> {
         let dimension = if u.arbitrary()? { Dimension::Two } else { Dimension::Three };
         let d = dimension.count();
         let mut scene = Scene::new(dimension);

@@ -7,13 +7,13 @@ use palpate_scene::{Scene, schema};
 
 /// What the schema thinks of a bad file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Schema {
+pub(crate) enum Schema {
     Refuses,
     /// It cannot say what is wrong.
     Accepts,
 }
 /// Checks that each text is refused with its message and judged by the schema.
-pub fn check_all(cases: &[(&str, &str, Schema)], text_of: impl Fn(&str) -> String) {
+pub(crate) fn check_all(cases: &[(&str, &str, Schema)], text_of: impl Fn(&str) -> String) {
     let validator = jsonschema::validator_for(&schema()).expect("a schema");
     for (part, expected, verdict) in cases {
         let text = text_of(part);
