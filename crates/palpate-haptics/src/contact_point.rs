@@ -77,6 +77,9 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) proxy: Proxy<D>,
     /// The part of the force that is given, in [0, 1].
     rise: f64,
+    /// The force that was wanted of other bodies in the tick before [N]; infinite if they are the
+    /// same.
+    of_others: f64,
     ringing: Ringing,
     pub(crate) guides: Vec<Guide<D>>,
     /// Its way to the device; none of a servo that is not protected.
@@ -146,7 +149,8 @@ impl Before {
 impl<const D: usize> ContactPoint<D> {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
-        Self { proxy, rise: 1.0, ringing: Ringing::SILENT, guides, port: None }
+        let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
+        Self { proxy, rise, of_others, ringing, guides, port: None }
     }
 
     /// A double to try a tick with, without guides: copying those would allocate.
@@ -154,7 +158,17 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
-        Self { proxy, rise: self.rise, ringing: self.ringing, guides: Vec::new(), port }
+        let Self { rise, of_others, ringing, .. } = *self;
+        Self { proxy, rise, of_others, ringing, guides: Vec::new(), port }
+    }
+
+    /// Forgets what is known of the bodies: the next tick touches other ones. Of these, `wanted`
+    /// was the last force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn forget_bodies(&mut self, wanted: Vector<f64, D>) {
+        self.proxy.forget_bodies();
+        self.of_others = wanted.norm();
     }
 
     /// One tick, from the state of the device to the force to write to it [N], in its
@@ -187,17 +201,18 @@ impl<const D: usize> ContactPoint<D> {
         (free, placed): (Vector<f64, D>, bool),
     ) -> Vector<f64, D> {
         let Setting { options, map, rise_step, is_late } = setting;
+        let has_start = placed || self.of_others < f64::INFINITY;
+        let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
             let PointState { position, velocity } = at_device;
             let (free_force, is_late) = (map.force_to_device(free), *is_late);
-            let state =
-                PortState { position, velocity, free_force, is_late, wants_ramp: placed };
+            let state = PortState { position, velocity, free_force, is_late, start };
             let force = port.write(wanted, &state);
             touch.force = map.force_to_world(force);
             force
         } else {
-            let rise = self.rise(placed, touch.contact, *rise_step);
+            let rise = self.rise(start, touch.contact, *rise_step);
             touch.force = limited(touch.wanted + free, options.max_force) * rise;
             map.force_to_device(touch.force)
         }
@@ -248,6 +263,15 @@ impl<const D: usize> ContactPoint<D> {
         (free, following.placed)
     }
 
+    /// The part of the force from which it rises: nothing after a placement; on new bodies, as
+    /// much as was wanted of the others.
+    #[cold]
+    #[inline(never)]
+    fn start(&mut self, placed: bool, wanted: Vector<f64, D>) -> f64 {
+        let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
+        if placed { 0.0 } else { part_of(others, wanted.norm()) }
+    }
+
     /// Nothing is touched any more.
     fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: Before) {
         self.ringing = Ringing::SILENT;
@@ -256,10 +280,10 @@ impl<const D: usize> ContactPoint<D> {
         }
     }
 
-    /// The part of the force that is given, which rises after a placement.
-    fn rise(&mut self, placed: bool, contact: bool, step: f64) -> f64 {
-        self.rise = match (placed, contact) {
-            (true, _) => 0.0,
+    /// The part of the force that is given, which rises from its `start`.
+    fn rise(&mut self, start: f64, contact: bool, step: f64) -> f64 {
+        self.rise = match (start < 1.0, contact) {
+            (true, _) => self.rise * start,
             (false, true) => (self.rise + step).min(1.0),
             (false, false) => 1.0,
         };
@@ -339,4 +363,11 @@ impl<const D: usize> ContactPoint<D> {
         }
         force
     }
+}
+
+/// The part of a force that is as large as the one `before`; all of one that is no larger.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn part_of(before: f64, now: f64) -> f64 {
+    if now > before { before / now } else { 1.0 }
 }

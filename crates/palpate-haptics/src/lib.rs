@@ -83,6 +83,7 @@ mod protection;
 mod proxy;
 mod recorded;
 mod recorder;
+mod rendering;
 mod report;
 mod rotation;
 mod run;
@@ -131,8 +132,8 @@ pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use thread::{EndedThread, ServoThread, ThreadOptions};
 pub use tool::{
-    HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolReport, ToolState,
-    ToolTouch,
+    Coupling, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolReport,
+    ToolState, ToolTouch,
 };
 pub use tour::Tour;
 pub use velocity::VelocityEstimator;

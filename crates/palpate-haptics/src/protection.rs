@@ -11,12 +11,13 @@ use crate::device::{DeviceProfile, PointState, TurnState, TurningProfile};
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
 use crate::recorder::Energy;
+use crate::rendering::Rendering;
 use crate::rotation::turn_between;
 use crate::safety::{
     Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
     SafetyReport, WrenchChain,
 };
-use crate::tool::Tool;
+use crate::tool::Coupling;
 use crate::velocity::VelocityEstimator;
 use crate::workspace::WorkspaceMap;
 
@@ -99,31 +100,47 @@ impl<const D: usize> Protection<D> {
         Ok((bodies, all))
     }
 
+    /// Likewise all that a servo renders, its bodies alone or with a tool.
+    pub(crate) fn rendering(
+        &self,
+        bodies: Bodies<D>,
+        wanted: Option<Coupling>,
+        rate: f64,
+    ) -> Result<Rendering<D>, HapticsError> {
+        if let Some(coupling) = wanted {
+            return self.accept_tool(bodies, coupling, rate);
+        }
+        let (bodies, accepted) = self.accept(bodies, rate)?;
+        Ok(Rendering { bodies, coupling: None, accepted })
+    }
+
     /// Likewise the bodies and a tool, together: what the worst layer through the coupling needs
     /// makes all of them softer. Of a device that gives a torque, followed by what became of
     /// the coupling's angular stiffness and damping.
-    pub(crate) fn accept_tool(
+    fn accept_tool(
         &self,
         mut bodies: Bodies<D>,
-        tool: &mut Tool<D>,
+        mut coupling: Coupling,
         rate: f64,
-    ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
+    ) -> Result<Rendering<D>, HapticsError> {
         let mut worst: Option<Accepted> = None;
-        for impedance in bodies.bodies().iter().flat_map(|body| body.surface().impedances()) {
-            let accepted = self.accepted(tool.impedance_on(impedance?)?, rate)?;
+        for layer in layers(&bodies)? {
+            let accepted = self.accepted(coupling.on(layer)?, rate)?;
             if worst.as_ref().is_none_or(|worst| accepted.factor < worst.factor) {
                 worst = Some(accepted);
             }
         }
         if let Some(worst) = worst.as_ref().filter(|worst| worst.factor < 1.0) {
             bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(worst.factor));
-            tool.soften(worst.factor);
+            coupling = coupling.softened(worst.factor);
         }
-        let mut all: Vec<_> = worst.into_iter().collect();
+        let mut accepted: Vec<_> = worst.into_iter().collect();
         if let Some(turning) = self.torques() {
-            all.push(self.accept_turning(&bodies, tool, (turning, rate))?);
+            let turning =
+                self.accept_turning(&layers(&bodies)?, &mut coupling, (turning, rate));
+            accepted.push(turning?);
         }
-        Ok((bodies, all))
+        Ok(Rendering { bodies, coupling: Some(coupling), accepted })
     }
 
     /// What the device can do about its axes, if it gives a torque.
@@ -136,34 +153,32 @@ impl<const D: usize> Protection<D> {
     /// that leaves of the device's damping bears the bodies' dampers, on arms as long as it can.
     fn accept_turning(
         &self,
-        bodies: &Bodies<D>,
-        tool: &mut Tool<D>,
+        layers: &[Impedance],
+        coupling: &mut Coupling,
         (turning, rate): (&TurningProfile, f64),
     ) -> Result<Accepted, HapticsError> {
         let (mut part, mut damping) = (0.0_f64, 0.0_f64);
-        for impedance in bodies.bodies().iter().flat_map(|body| body.surface().impedances()) {
-            let impedance = impedance?;
-            part = part.max((impedance.stiffness() / tool.options().stiffness).min(1.0));
-            damping = damping.max(impedance.damping());
+        for layer in layers {
+            part = part.max((layer.stiffness() / coupling.stiffness).min(1.0));
+            damping = damping.max(layer.damping());
         }
         let limits = Limits::about(turning);
         // Torques of the world are so many times those at the device.
         let scale = 1.0 / self.map.scale();
         let of =
             |impedance, acceptance| Accepted::of((impedance, scale), &limits, acceptance, rate);
-        let with_bodies = tool.turning_on(part, damping)?;
         if self.acceptance == Acceptance::Strict {
-            return of(with_bodies, Acceptance::Strict);
+            return of(coupling.turning_on(part, damping)?, Acceptance::Strict);
         }
-        let accepted = of(tool.turning_on(part, 0.0)?, self.acceptance)?;
-        tool.soften_turning(accepted.factor);
+        let accepted = of(coupling.turning_on(part, 0.0)?, self.acceptance)?;
+        *coupling = coupling.softened_about_axes(accepted.factor);
         if self.acceptance == Acceptance::Scaled {
             let taken = 0.5 * accepted.device_stiffness / rate + accepted.device_damping;
             let left = (turning.least_damping - taken)
                 .min(turning.max_damping - accepted.device_damping)
                 .max(0.0);
-            let needed = scale * (with_bodies.damping() - tool.options().angular_damping);
-            tool.shorten_arms(if needed > left { (left / needed).sqrt() } else { 1.0 });
+            let needed = scale * coupling.damping_on_arms(damping);
+            coupling.arms = if needed > left { (left / needed).sqrt() } else { 1.0 };
         }
         Ok(accepted)
     }
@@ -174,17 +189,14 @@ impl<const D: usize> Protection<D> {
         Accepted::of((impedance, scale), &limits, self.acceptance, rate)
     }
 
-    /// The port of one contact point, to bodies at most as stiff as those accepted.
+    /// The port of one contact point.
     pub(crate) fn port(
         &self,
-        accepted: &[Accepted],
+        rendering: &Rendering<D>,
         rate: f64,
     ) -> Result<Port<D>, HapticsError> {
-        let stiffest = accepted
-            .iter()
-            .map(|accepted| accepted.impedance)
-            .max_by(|a, b| a.stiffness().total_cmp(&b.stiffness()));
-        let options = self.safety_options(stiffest.unwrap_or_default());
+        let along = rendering.along().map(|accepted| accepted.impedance);
+        let options = self.safety_options(along.unwrap_or_default());
         Ok(Port {
             chain: SafetyChain::new(&self.profile, rate, options)?,
             estimator: VelocityEstimator::new(rate, self.profile.encoder_step)?,
@@ -192,15 +204,14 @@ impl<const D: usize> Protection<D> {
         })
     }
 
-    /// What is between a tool and a device that turns, from what was
-    /// [accepted](Self::accept_tool); none of a device that does not.
+    /// What is between a tool and a device that turns; none of a device that does not.
     pub(crate) fn turning(
         &self,
-        accepted: &[Accepted],
+        rendering: &Rendering<D>,
         rate: f64,
     ) -> Result<Option<TurningPort<D>>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
-        let chain = if let [along, about] = accepted {
+        let chain = if let Some((along, about)) = rendering.wrench() {
             let limits = (&Limits::along(&self.profile), &Limits::about(turning));
             let options = self.safety_options(along.impedance);
             let accepted = (along.clone(), about.clone());
@@ -227,6 +238,11 @@ impl<const D: usize> Protection<D> {
             ..SafetyOptions::new(impedance)
         }
     }
+}
+
+/// The layers of all bodies.
+fn layers<const D: usize>(bodies: &Bodies<D>) -> Result<Vec<Impedance>, HapticsError> {
+    bodies.bodies().iter().flat_map(|body| body.surface().impedances()).collect()
 }
 
 /// What is between one contact point and the device.
@@ -259,6 +275,13 @@ impl<const D: usize> Port<D> {
         state: &PortState<D>,
     ) -> Vector<f64, D> {
         self.chain.step(wanted, state)
+    }
+
+    /// Renders what was accepted anew.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, accepted: &Accepted) {
+        self.chain.renew(accepted);
     }
 
     /// Lowers the largest force [N].

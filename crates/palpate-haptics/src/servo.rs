@@ -20,8 +20,9 @@ use crate::nearby::Nearby;
 use crate::protection::{Port, Protection, TurningPort};
 use crate::proxy::Probe;
 use crate::recorder::Energy;
+use crate::rendering::Rendering;
 use crate::safety::{Accepted, SafetyReport};
-use crate::tool::{HeldTool, Hung, Tool};
+use crate::tool::{Coupling, HeldTool, Hung, Tool};
 use crate::workspace::WorkspaceMap;
 
 /// What a servo renders with, and how fast.
@@ -208,29 +209,32 @@ impl<const D: usize> Servo<D> {
             return Ok(Vec::new());
         }
         let rate = self.setting.options.rate;
-        let (bodies, accepted) = match &mut self.tool {
-            None => protection.accept(self.bodies.clone(), rate)?,
-            Some(hung) => protection.accept_tool(self.bodies.clone(), &mut hung.tool, rate)?,
-        };
+        let wanted = self.wanted_coupling();
+        let mut rendering = protection.rendering(self.bodies.clone(), wanted, rate)?;
         let profile = DeviceProfile {
             max_force: self.setting.options.max_force,
             ..protection.profile.clone()
         };
         let limited = Protection { profile, ..protection.clone() };
         if let Some(hung) = &mut self.tool {
-            hung.port = limited.turning(&accepted, rate)?;
+            hung.port = limited.turning(&rendering, rate)?;
         }
-        let port = limited.port(&accepted, rate)?;
+        let port = limited.port(&rendering, rate)?;
         self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
-        self.bodies = bodies;
         self.protection = Some(Box::new(protection.clone()));
-        Ok(accepted)
+        self.adopt(&mut rendering);
+        Ok(rendering.accepted)
     }
 
     /// What stands between the servo and its device, if it is protected.
     #[must_use]
     pub fn protection(&self) -> Option<&Protection<D>> {
         self.protection.as_deref()
+    }
+
+    /// How the tool was to hang on the hand before any protection; none of contact points.
+    pub(crate) fn wanted_coupling(&self) -> Option<Coupling> {
+        self.tool.as_ref().map(|hung| hung.wanted)
     }
 
     /// The tool with a shape that is rendered to; none of contact points.
@@ -400,20 +404,34 @@ impl<const D: usize> Servo<D> {
     /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
     /// where freeing is allowed.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently. A
+    /// A contact point that the new bodies cover is placed anew, and its force rises gently; so
+    /// does one that pushes harder on them than on those before, from where it was. A
     /// [protected](Self::protect) servo renders them as they are: make them ready for its device
     /// first, by [`Protection::accept`]. A [`Control`](crate::Control) does.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn replace_bodies(&mut self, bodies: Bodies<D>) -> Bodies<D> {
-        for point in &mut self.contacts.points {
-            point.proxy.forget_bodies();
+        let mut rendering = Rendering::plain(bodies);
+        self.adopt(&mut rendering);
+        rendering.bodies
+    }
+
+    /// Renders `rendering` from the next tick on, and leaves there the bodies rendered so far.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    pub(crate) fn adopt(&mut self, rendering: &mut Rendering<D>) {
+        swap(&mut self.bodies, &mut rendering.bodies);
+        let Contacts { points, touches, .. } = &mut self.contacts;
+        for (point, touch) in points.iter_mut().zip(touches) {
+            point.forget_bodies(touch.wanted);
+        }
+        if let Some(accepted) = rendering.along() {
+            self.ports().for_each(|port| port.renew(accepted));
         }
         if let Some(hung) = &mut self.tool {
-            hung.tool.forget_bodies();
+            hung.adopt(rendering);
         }
-        std::mem::replace(&mut self.bodies, bodies)
     }
 
     /// Lowers the largest force on a contact point to `max_force` [N]; never raises it. If the

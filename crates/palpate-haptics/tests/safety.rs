@@ -291,13 +291,13 @@ fn a_long_rub_does_not_pay_for_an_oscillation() {
 fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
     let device =
         DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
-    let pushed_out = |wants_ramp: bool| {
+    let pushed_out = |is_placed: bool| {
         let mut chain = chain::<2>(&device, at_once(500.0));
         let mut plant = Plant { mass: 0.05, damping: 0.5, x: -0.002, v: 0.0 };
         for tick in 0..100 {
             let velocity = Vector([0.0, plant.v]);
-            let wants_ramp = wants_ramp && tick == 0;
-            let state = PortState { velocity, wants_ramp, ..at([0.0, plant.x]) };
+            let start = if is_placed && tick == 0 { 0.0 } else { 1.0 };
+            let state = PortState { velocity, start, ..at([0.0, plant.x]) };
             let wanted = Vector([0.0, 500.0 * (-plant.x).max(0.0)]);
             plant.hold(chain.step(wanted, &state).0[1], PERIOD);
         }
@@ -389,7 +389,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
             let mut state = at((vector::<3>(u)? * 0.01).0);
             state.velocity = vector(u)?;
             state.is_late = u.ratio(1, 3)?;
-            state.wants_ramp = u.ratio(1, 50)?;
+            state.start = if u.ratio(1, 50)? { *u.choose(&wild)? } else { 1.0 };
             if u.ratio(1, 10)? {
                 let (axis, value) = (u.int_in_range(0..=2)?, *u.choose(&wild)?);
                 match u.int_in_range(0..=2)? {

@@ -102,7 +102,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     // b / (K T / 2) = 0.2 / 0.25
     assert!((accepted[0].factor - 0.8).abs() < 1e-12 && accepted.len() == 1);
     let tool = servo.tool().unwrap();
-    assert!((tool.options().stiffness - 400.0).abs() < 1e-9);
+    assert!((tool.coupling().stiffness - 400.0).abs() < 1e-9);
     for _ in 0..200 {
         servo.step(&[at(0.0, 0.008)]);
     }

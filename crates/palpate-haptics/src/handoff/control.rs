@@ -15,7 +15,9 @@ use crate::error::{HapticsError, not_negative};
 use crate::event::Event;
 use crate::live::Snapshot;
 use crate::protection::Protection;
+use crate::rendering::Rendering;
 use crate::safety::Accepted;
+use crate::tool::Coupling;
 
 /// Changes what a running servo renders, and sees what it does. From [`handoff`](crate::handoff)
 /// or a [`ServoThread`](crate::ServoThread).
@@ -32,20 +34,22 @@ pub struct Control<const D: usize> {
     pub(super) most_bodies: usize,
     /// What a servo that is protected is protected by, and its rate [Hz].
     pub(super) protection: Option<(Protection<D>, f64)>,
+    /// How its tool was to hang on the hand; none of contact points.
+    pub(super) wanted_coupling: Option<Coupling>,
 }
 
 impl<const D: usize> Control<D> {
     /// Renders `bodies` from the next tick on, instead of all before. Poses set before were
     /// those of the old ones.
     ///
-    /// To a [protected](crate::Servo::protect) servo they go as its device can render them:
-    /// returned is what became of the stiffness and damping of each. To another they go as they
-    /// are, and nothing is returned.
+    /// To a [protected](crate::Servo::protect) servo they go as its device can render them, and
+    /// a tool's coupling with them: returned is what `protect` would return. To another they go
+    /// as they are, and nothing is returned.
     ///
     /// # Errors
     ///
     /// [`HapticsError::TooManyBodies`] if there are more than the hand-off has room for; as
-    /// [`Protection::accept`].
+    /// [`Servo::protect`](crate::Servo::protect).
     pub fn replace_bodies(
         &mut self,
         bodies: impl Into<Bodies<D>>,
@@ -55,14 +59,17 @@ impl<const D: usize> Control<D> {
         if count > self.most_bodies {
             return Err(HapticsError::TooManyBodies { bodies: count, most: self.most_bodies });
         }
-        let (bodies, accepted) = match &self.protection {
-            Some((protection, rate)) => protection.accept(bodies, *rate)?,
-            None => (bodies, Vec::new()),
+        let rendering = match &self.protection {
+            Some((protection, rate)) => {
+                protection.rendering(bodies, self.wanted_coupling, *rate)?
+            }
+            None => Rendering::plain(bodies),
         };
+        let accepted = rendering.accepted.clone();
         self.bodies = count;
         self.edit(|edits| {
             edits.poses.clear();
-            edits.bodies = Some(bodies);
+            edits.rendering = Some(rendering);
         });
         Ok(accepted)
     }
@@ -117,7 +124,7 @@ impl<const D: usize> Control<D> {
     /// Drops what the servo no longer renders; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
-            edits.bodies = None;
+            edits.rendering = None;
             edits.poses.clear();
             edits.max_force = f64::INFINITY;
             edits.max_torque = f64::INFINITY;

@@ -18,8 +18,8 @@ pub use servo_end::ServoEnd;
 
 use exchange::{Medium, Native, counter, latest};
 
-use crate::bodies::Bodies;
 use crate::live::{Progress, Snapshot};
+use crate::rendering::Rendering;
 use crate::servo::Servo;
 
 /// What a hand-off has room for; the servo allocates nothing later.
@@ -96,6 +96,7 @@ pub fn handoff<const D: usize>(
         bodies,
         most_bodies,
         protection: servo.protection().map(|protection| (protection.clone(), rate)),
+        wanted_coupling: servo.wanted_coupling(),
     };
     let end = ServoEnd {
         receiver,
@@ -110,8 +111,8 @@ pub fn handoff<const D: usize>(
 
 /// What the servo is to change before a tick, all of it together.
 struct Edits<const D: usize> {
-    /// The new bodies; after that tick, those to be dropped.
-    bodies: Option<Bodies<D>>,
+    /// The new bodies, as they are rendered; after that tick, those to be dropped.
+    rendering: Option<Rendering<D>>,
     /// New poses, by the number of the body.
     poses: Vec<Option<Pose<D>>>,
     /// The largest force on a contact point [N].
@@ -123,7 +124,7 @@ struct Edits<const D: usize> {
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
         let none = f64::INFINITY;
-        Self { bodies: None, poses: Vec::new(), max_force: none, max_torque: none }
+        Self { rendering: None, poses: Vec::new(), max_force: none, max_torque: none }
     }
 }
 

@@ -36,8 +36,8 @@ impl<const D: usize> ServoEnd<D> {
         }
         let Some(mut parcel) = self.receiver.take() else { return };
         let edits = &mut parcel.content;
-        if let Some(bodies) = edits.bodies.take() {
-            edits.bodies = Some(servo.replace_bodies(bodies));
+        if let Some(rendering) = &mut edits.rendering {
+            servo.adopt(rendering);
         }
         for (body, pose) in edits.poses.iter().enumerate() {
             if let Some(pose) = pose {

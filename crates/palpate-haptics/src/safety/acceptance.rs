@@ -204,6 +204,15 @@ impl Accepted {
         let assumed = limits.assumed.clone();
         Ok(Self { impedance, device_stiffness, device_damping, factor, rule, assumed })
     }
+
+    /// Becomes `other`, of the same device: what is assumed is so of both.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, other: &Self) {
+        let Self { impedance, device_stiffness, device_damping, factor, rule, .. } = *other;
+        (self.impedance, self.factor, self.rule) = (impedance, factor, rule);
+        (self.device_stiffness, self.device_damping) = (device_stiffness, device_damping);
+    }
 }
 
 /// Stiffness [N/m] and damping [N·s/m] at the device: forces are those of the world, ways and

@@ -24,7 +24,8 @@ pub(crate) struct Moment {
     /// All that came in are numbers.
     pub(crate) is_sound: bool,
     pub(crate) is_late: bool,
-    pub(crate) wants_ramp: bool,
+    /// As [`PortState::start`](super::PortState::start).
+    pub(crate) start: f64,
 }
 
 /// From an observed force, or torque, to the one that is written: the fastest change, the
@@ -118,7 +119,7 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn release(&mut self) {
         if self.is_stopped {
-            self.ramp.restart();
+            self.ramp.lower(0.0);
         }
         self.is_stopped = false;
     }
@@ -148,9 +149,7 @@ impl<const D: usize> Channel<D> {
 
     /// What ramp, watchdog and emergency stop leave of a force.
     fn faded(&mut self, force: Vector<f64, D>, moment: &Moment) -> Vector<f64, D> {
-        if moment.wants_ramp {
-            self.ramp.restart();
-        }
+        self.ramp.lower(moment.start);
         let effects = &mut self.effects;
         let force = effects.ramp.count(force, part(force, self.ramp.step(true)));
         let left = self.watchdog.step(moment.is_late);

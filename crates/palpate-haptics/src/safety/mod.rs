@@ -51,9 +51,11 @@ pub struct PortState<const D: usize> {
     pub free_force: Vector<f64, D>,
     /// The tick began too late.
     pub is_late: bool,
-    /// The force is to rise from nothing: the point was placed inside a shape, or a shape was
-    /// moved onto it. In one tick; in each of many, it stays down.
-    pub wants_ramp: bool,
+    /// The part of the force that is given in this tick, from which it rises to all of it: 1 as
+    /// a rule; 0 if the point was placed inside a shape, or a shape was moved onto it; less than
+    /// one if a stiffer material took the place of another. In one tick; in each of many, the
+    /// force stays down.
+    pub start: f64,
 }
 
 impl<const D: usize> PortState<D> {
@@ -61,8 +63,8 @@ impl<const D: usize> PortState<D> {
     #[must_use]
     pub fn at_rest() -> Self {
         let still = Vector::ZERO;
-        let (is_late, wants_ramp) = (false, false);
-        Self { position: still, velocity: still, free_force: still, is_late, wants_ramp }
+        let (is_late, start) = (false, 1.0);
+        Self { position: still, velocity: still, free_force: still, is_late, start }
     }
 }
 
@@ -206,6 +208,16 @@ impl<const D: usize> SafetyChain<D> {
         &self.accepted
     }
 
+    /// Renders another material from now on, accepted for the same device.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, accepted: &Accepted) {
+        self.accepted.renew(accepted);
+        let stiffness = accepted.device_stiffness;
+        let options = PassivityOptions { stiffness, ..*self.passivity.options() };
+        self.passivity.renew(options);
+    }
+
     /// The force to write [N] where `wanted` [N] is wanted, at the device, in one tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
@@ -213,10 +225,10 @@ impl<const D: usize> SafetyChain<D> {
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
         // What is not a number reaches no stage that remembers; the guard answers for it.
         let is_sound = finite::is_sound(wanted, state);
-        let PortState { position, velocity, is_late, wants_ramp, .. } = *state;
-        let seen = Seen { position, velocity, wants_ramp };
+        let PortState { position, velocity, is_late, start, .. } = *state;
+        let seen = Seen { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
-        let moment = Moment { is_sound, is_late, wants_ramp };
+        let moment = Moment { is_sound, is_late, start };
         let (force, left) = self.channel.step((observed, state.free_force), &moment);
         self.passivity.written(left);
         force

@@ -62,8 +62,9 @@ impl<const D: usize> Directed for Vector<f64, D> {
 pub(crate) struct Seen<V> {
     pub(crate) position: V,
     pub(crate) velocity: V,
-    /// As [`PortState::wants_ramp`](super::PortState::wants_ramp).
-    pub(crate) wants_ramp: bool,
+    /// The force [starts](super::PortState::start) to rise: that of bodies that came to the hand,
+    /// and brought what they hold.
+    pub(crate) has_start: bool,
 }
 
 /// What the passivity observer saw and the controller did.
@@ -108,8 +109,7 @@ pub struct PassivityReport {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passivity<V> {
     options: PassivityOptions,
-    /// How far a force moves the device's mass in a tick [m/N]: of one that is not known, not
-    /// at all.
+    /// As [`PassivityOptions::yielding`] [m/N].
     yielding: f64,
     /// Taken in, credited and capped [J].
     balance: f64,
@@ -137,6 +137,13 @@ pub(crate) struct PassivityOptions {
     pub(crate) period: f64,
 }
 
+impl PassivityOptions {
+    /// How far a force moves the device's mass in a tick [m/N]; not at all where it is not known.
+    fn yielding(&self) -> f64 {
+        if self.mass > 0.0 { 0.5 * self.period * self.period / self.mass } else { 0.0 }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Last<V> {
     position: V,
@@ -146,15 +153,36 @@ struct Last<V> {
 
 impl<V: Directed> Passivity<V> {
     pub(crate) fn new(options: PassivityOptions) -> Self {
-        let PassivityOptions { mass, period, .. } = options;
         Self {
             options,
-            yielding: if mass > 0.0 { 0.5 * period * period / mass } else { 0.0 },
+            yielding: options.yielding(),
             balance: 0.0,
             leaks: 0.0,
             losses: 0.0,
             last: None,
             report: PassivityReport::default(),
+        }
+    }
+
+    pub(crate) fn options(&self) -> &PassivityOptions {
+        &self.options
+    }
+
+    /// Watches over another rendering from now on; what was taken in before counts.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, options: PassivityOptions) {
+        self.options = options;
+        self.yielding = options.yielding();
+    }
+
+    /// The same in other units of ways and of forces.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn in_units(&mut self, way: impl Fn(V) -> V, force: impl Fn(V) -> V) {
+        if let Some(Last { position, wanted, written }) = &mut self.last {
+            *position = way(*position);
+            (*wanted, *written) = (force(*wanted), force(*written));
         }
     }
 
@@ -177,7 +205,7 @@ impl<V: Directed> Passivity<V> {
         if let Some(last) = self.last {
             self.observe(&last, wanted, way);
         }
-        if state.wants_ramp {
+        if state.has_start {
             self.balance = self.balance.max(self.stored(wanted));
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
@@ -333,7 +361,7 @@ mod tests {
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
         for (position, force) in held {
             let position = Vector([position, 0.0]);
-            let state = Seen { position, velocity: Vector::ZERO, wants_ramp: false };
+            let state = Seen { position, velocity: Vector::ZERO, has_start: false };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));
         }

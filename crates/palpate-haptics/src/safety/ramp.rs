@@ -21,11 +21,12 @@ impl Ramp {
         Self { factor, rise: 1.0 / (rise_time * rate), fall: 1.0 / (fall_time * rate) }
     }
 
-    /// Begins at nothing.
+    /// Goes on from a `part`, in [0, 1], of where it is.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn restart(&mut self) {
-        self.factor = 0.0;
+    pub(crate) fn lower(&mut self, part: f64) {
+        // Written so that NaN is nothing.
+        self.factor *= if part >= 0.0 { part.min(1.0) } else { 0.0 };
     }
 
     /// Goes a tick up or down; the factor.

@@ -96,6 +96,8 @@ pub(crate) struct WrenchState<const D: usize> {
 pub(crate) struct WrenchChain<const D: usize> {
     /// Along axes, and about them.
     accepted: (Accepted, Accepted),
+    /// What the device is sure of, along axes and about them.
+    sides: (Side, Side),
     /// A radian as a length [m].
     unit: f64,
     passivity: Passivity<Both<D>>,
@@ -103,6 +105,42 @@ pub(crate) struct WrenchChain<const D: usize> {
     torque: Channel<3>,
     /// Written so far [N·m].
     largest_torque: f64,
+}
+
+/// What a device is sure of, along its axes or about them, as a spring in any direction sees it.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// The least damping.
+    damping: f64,
+    /// Zero if it is not known.
+    mass: f64,
+    /// The fastest change of a force.
+    max_rate: f64,
+}
+
+impl Side {
+    fn new(limits: &Limits) -> Result<Self, HapticsError> {
+        Ok(Self {
+            damping: limits.least_damping.positive()?,
+            mass: limits.mass.not_negative()?,
+            max_rate: limits.max_force_rate.positive()?,
+        })
+    }
+
+    /// The worse of this along axes and that about them, with a radian as long as `unit` [m].
+    fn with(&self, about: &Self, unit: f64) -> Self {
+        let square = unit * unit;
+        Self {
+            damping: self.damping.min(about.damping / square),
+            mass: self.mass.min(about.mass / square),
+            max_rate: self.max_rate.min(about.max_rate / unit),
+        }
+    }
+}
+
+/// A radian as a length, so that the coupling is as stiff about axes as along them [m].
+fn unit(along: &Accepted, about: &Accepted) -> f64 {
+    (about.device_stiffness / along.device_stiffness).sqrt()
 }
 
 impl<const D: usize> WrenchChain<D> {
@@ -118,30 +156,45 @@ impl<const D: usize> WrenchChain<D> {
         options: &SafetyOptions,
         rate: f64,
     ) -> Result<Self, HapticsError> {
+        let sides = (Side::new(along)?, Side::new(about)?);
+        let unit = unit(&accepted.0, &accepted.1);
         let stiffness = accepted.0.device_stiffness;
-        let unit = (accepted.1.device_stiffness / stiffness).sqrt();
-        let square = unit * unit;
-        let damping =
-            along.least_damping.positive()?.min(about.least_damping.positive()? / square);
-        let rate_of_change =
-            along.max_force_rate.positive()?.min(about.max_force_rate.positive()? / unit);
+        let Side { damping, mass, max_rate } = sides.0.with(&sides.1, unit);
         let passivity = PassivityOptions {
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness,
             damping,
-            mass: along.mass.not_negative()?.min(about.mass.not_negative()? / square),
-            max_rate: rate_of_change,
+            mass,
+            max_rate,
             reserve: not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
         Ok(Self {
             accepted,
+            sides,
             unit,
             passivity: Passivity::new(passivity),
             force: Channel::new(along, options, rate)?,
             torque: Channel::new(about, options, rate)?,
             largest_torque: 0.0,
         })
+    }
+
+    /// Renders what was accepted anew, along axes and about them, for the same device.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, (along, about): (&Accepted, &Accepted)) {
+        self.accepted.0.renew(along);
+        self.accepted.1.renew(about);
+        let unit = unit(along, about);
+        let longer = unit / self.unit;
+        self.passivity.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
+        self.unit = unit;
+        let stiffness = along.device_stiffness;
+        let Side { damping, mass, max_rate } = self.sides.0.with(&self.sides.1, unit);
+        let options = *self.passivity.options();
+        let options = PassivityOptions { stiffness, damping, mass, max_rate, ..options };
+        self.passivity.renew(options);
     }
 
     /// What to write where `wanted` is wanted, at the device, in one tick.
@@ -154,12 +207,12 @@ impl<const D: usize> WrenchChain<D> {
             [wanted, position, velocity].iter().all(Both::is_finite) && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let seen = Seen { position, velocity, wants_ramp: false };
+        let seen = Seen { position, velocity, has_start: false };
         let as_lengths = wanted.turning(1.0 / unit);
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // What is not changed keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
-        let moment = Moment { is_sound, is_late, wants_ramp: false };
+        let moment = Moment { is_sound, is_late, start: 1.0 };
         let (along, force_left) = self.force.step((allowed.along, free_force), &moment);
         let (about, torque_left) = self.torque.step((allowed.about, Vector::ZERO), &moment);
         let left = Both { along: force_left, about: torque_left };

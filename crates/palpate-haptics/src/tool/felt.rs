@@ -8,10 +8,11 @@
 use palpate_field::{Pose, Vector};
 use palpate_query::Contact;
 
-use super::Tool;
 use super::settle::Push;
 use super::state::{ToolState, ToolTouch};
 use super::twist::Twist;
+use super::{Coupling, Tool};
+use crate::contact_point::part_of;
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
@@ -106,6 +107,8 @@ impl<const D: usize> Tool<D> {
 
     /// The force and the torque of a tool that moved by `moved` in this tick.
     fn write_force(&mut self, nearby: &Nearby<'_, D>, device: &ToolState<D>, moved: &Twist<D>) {
+        let has_new_bodies = std::mem::take(&mut self.has_new_bodies);
+        let before = self.effort();
         if !self.touch.contact {
             (self.touch.force, self.touch.torque) = (Vector::ZERO, Vector::ZERO);
             if self.settler.rest.is_outside {
@@ -113,27 +116,40 @@ impl<const D: usize> Tool<D> {
             }
             return;
         }
-        let options = &self.options;
+        let (options, coupling) = (&self.options, &self.coupling);
         let stretch = Twist::between(&device.pose, &self.touch.pose);
         let yielding = self.yielding(nearby, device, &stretch);
         let velocity = device.velocity - self.touch.velocity;
         let spins = device.angular_velocity - moved.angular * options.rate;
         let part = yielding.part;
         let force = Motion {
-            spring: stretch.linear * (options.stiffness * part),
-            damper: velocity * (-options.damping * part),
+            spring: stretch.linear * (coupling.stiffness * part),
+            damper: velocity * (-coupling.damping * part),
         };
         let torque = Motion {
-            spring: stretch.angular * (self.angular_stiffness * part),
-            damper: spins * (-options.angular_damping * part),
+            spring: stretch.angular * (coupling.angular_stiffness * part),
+            damper: spins * (-coupling.angular_damping * part),
         };
         let force = and_damper(not_pulling(force), yielding.force);
         let torque = and_damper(not_pulling(torque), yielding.torque);
-        let rise = self.rise;
-        self.touch.force = damped(&force, options.max_force) * rise;
-        self.touch.torque = damped(&torque, options.max_torque) * rise;
-        self.rise = (rise + 1.0 / (options.rate * options.rise_time)).min(1.0);
+        self.touch.force = damped(&force, options.max_force) * self.rise;
+        self.touch.torque = damped(&torque, options.max_torque) * self.rise;
+        if has_new_bodies {
+            let start = part_of(before, self.effort());
+            self.rise *= start;
+            self.touch.force = self.touch.force * start;
+            self.touch.torque = self.touch.torque * start;
+        }
+        let step = 1.0 / (options.rate * options.rise_time);
+        self.rise = (self.rise + step).min(1.0);
         self.part = part;
+    }
+
+    /// Force and torque on the hand in one number, with angles as lengths [N].
+    fn effort(&self) -> f64 {
+        let (force, torque) = (self.touch.force, self.touch.torque);
+        let torque = torque * (1.0 / self.coupling.unit());
+        (force.dot(force) + torque.dot(torque)).sqrt()
     }
 
     /// How the bodies that push yield to a stretch of the coupling, each as much as it pushes.
@@ -148,7 +164,7 @@ impl<const D: usize> Tool<D> {
         stretch: &Twist<D>,
     ) -> Yielding<D> {
         let (mut part, mut force, mut torque) = (0.0, Vector::ZERO, Vector::ZERO);
-        let stiffness = self.options.stiffness;
+        let Coupling { stiffness, arms, .. } = self.coupling;
         let depth = self.depth(stretch);
         let pushes = &self.settler.rest.pushes;
         let whole: f64 = pushes.iter().map(|push| push.push).sum();
@@ -160,10 +176,10 @@ impl<const D: usize> Tool<D> {
             // Written so that NaN, of no depth, is all of it.
             part += share * if borne < 1.0 { borne } else { 1.0 };
             let layer = strata.at(0, depth);
-            let velocity = self.speed_at(nearby, push, device, self.arms);
+            let velocity = self.speed_at(nearby, push, device, arms);
             let approach = (-velocity.dot(push.normal)).max(0.0);
             let damper = push.normal * (layer.damping * approach) - velocity * layer.viscosity;
-            let arm = in_space(push.centre - self.touch.pose.translation) * self.arms;
+            let arm = in_space(push.centre - self.touch.pose.translation) * arms;
             force += damper * share;
             torque += cross(arm, in_space(damper * share));
         }
@@ -172,8 +188,7 @@ impl<const D: usize> Tool<D> {
 
     /// How far a stretch of the coupling is, with angles as lengths [m].
     fn depth(&self, stretch: &Twist<D>) -> f64 {
-        let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
-        stretch.stacked(unit).iter().map(|x| x * x).sum::<f64>().sqrt()
+        stretch.stacked(self.coupling.unit()).iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
     /// How fast the hand moves the place of a contact, on a part of its arm, as its body sees it
@@ -231,7 +246,7 @@ impl<const D: usize> Tool<D> {
         }
         let pushes = &self.settler.rest.pushes;
         let origin = self.touch.pose.translation;
-        let stiffness = self.options.stiffness * self.part * self.rise;
+        let stiffness = self.coupling.stiffness * self.part * self.rise;
         let mut force = self.touch.force;
         let mut torque = self.touch.torque;
         let whole: f64 = pushes.iter().map(|push| push.push).sum();

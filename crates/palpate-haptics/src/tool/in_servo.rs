@@ -9,14 +9,13 @@
 use palpate_field::{Point, Pose, Vector};
 
 use super::twist::Twist;
-use super::{Tool, ToolState};
+use super::{Coupling, Tool, ToolState};
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, Setting, Touch};
 use crate::device::{PointState, TurnState};
-use crate::error::HapticsError;
-use crate::impedance::Impedance;
 use crate::limit::limited;
 use crate::protection::TurningPort;
+use crate::rendering::Rendering;
 use crate::safety::{Both, WrenchChain, WrenchState};
 use crate::servo::ServoOptions;
 
@@ -77,51 +76,14 @@ impl<const D: usize> Tool<D> {
     pub(crate) fn limit_force(&mut self, max_force: f64) {
         self.options.max_force = self.options.max_force.min(max_force);
     }
-
-    /// What the hand feels through the coupling of a body like that.
-    pub(crate) fn impedance_on(&self, body: Impedance) -> Result<Impedance, HapticsError> {
-        let stiffness = self.options.stiffness.min(body.stiffness());
-        Impedance::new(stiffness, self.options.damping + body.damping())
-    }
-
-    /// What the hand feels about axes, where bodies bear a `part` of the coupling, and have a
-    /// `damping` [N·s/m] on the longest arm on which it acts.
-    pub(crate) fn turning_on(
-        &self,
-        part: f64,
-        damping: f64,
-    ) -> Result<Impedance, HapticsError> {
-        let reach = self.arms * self.shell.reach();
-        let damping = self.options.angular_damping + damping * reach * reach;
-        Impedance::new(self.angular_stiffness * part, damping)
-    }
-
-    /// Makes the coupling `factor` times as stiff and as damped about axes.
-    pub(crate) fn soften_turning(&mut self, factor: f64) {
-        self.angular_stiffness *= factor;
-        self.options.angular_stiffness =
-            self.options.angular_stiffness.map(|stiffness| stiffness * factor);
-        self.options.angular_damping *= factor;
-    }
-
-    /// Lets the bodies' dampers act on a part of their arms: as they see less of how the hand
-    /// turns, and turn it by less, what is left takes energy from it as before.
-    pub(crate) fn shorten_arms(&mut self, part: f64) {
-        self.arms *= part;
-    }
-
-    /// Makes the coupling `factor` times as stiff and as damped.
-    pub(crate) fn soften(&mut self, factor: f64) {
-        self.options.stiffness *= factor;
-        self.options.damping *= factor;
-        self.soften_turning(factor);
-    }
 }
 
 /// A tool that hangs on a contact point of a servo, and how it turns with the device.
 #[derive(Clone, Debug)]
 pub(crate) struct Hung<const D: usize> {
     pub(crate) tool: Tool<D>,
+    /// How the tool was to hang on the hand.
+    pub(crate) wanted: Coupling,
     /// How the device is turned; none of one that does not turn.
     pub(crate) turn: Option<TurnState<D>>,
     /// What is between the tool and a device that turns; none of a servo that is not protected.
@@ -137,7 +99,8 @@ pub(crate) struct Hung<const D: usize> {
 impl<const D: usize> Hung<D> {
     pub(crate) fn new(tool: Tool<D>) -> Self {
         let (max_torque, torque) = (f64::INFINITY, Vector::ZERO);
-        Self { tool, turn: None, port: None, max_torque, torque, given: None }
+        let wanted = tool.coupling;
+        Self { tool, wanted, turn: None, port: None, max_torque, torque, given: None }
     }
 
     /// The tool after the last tick.
@@ -150,6 +113,19 @@ impl<const D: usize> Hung<D> {
     /// The chain of force and torque; none of a device that gives no torque.
     pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain<D>> {
         self.port.as_mut().and_then(|port| port.chain.as_mut())
+    }
+
+    /// Touches other bodies from the next tick on, through the coupling that they need.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn adopt(&mut self, rendering: &Rendering<D>) {
+        self.tool.forget_bodies();
+        if let Some(coupling) = rendering.coupling {
+            self.tool.coupling = coupling;
+        }
+        if let Some((chain, accepted)) = self.chain().zip(rendering.wrench()) {
+            chain.renew(accepted);
+        }
     }
 
     /// Lowers the largest force [N].

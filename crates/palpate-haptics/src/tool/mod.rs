@@ -14,6 +14,7 @@
 mod batch;
 mod carry;
 mod closest;
+mod coupling;
 mod felt;
 mod friction;
 mod from_data;
@@ -33,10 +34,11 @@ mod twist;
 use palpate_field::{Pose, Vector};
 
 use crate::bodies::Bodies;
-use crate::error::{HapticsError, positive};
+use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::Sampler;
+pub use coupling::Coupling;
 use felt::Before;
 pub use in_servo::HeldTool;
 pub(crate) use in_servo::Hung;
@@ -155,8 +157,7 @@ const MOST_EVENTS: usize = 2;
 pub struct Tool<const D: usize> {
     shell: Shell<D>,
     options: ToolOptions,
-    /// The angular stiffness of the coupling [N·m/rad].
-    angular_stiffness: f64,
+    coupling: Coupling,
     scan: Scan<D>,
     settler: Settler<D>,
     /// Where the tool is; none before the first tick.
@@ -165,8 +166,8 @@ pub struct Tool<const D: usize> {
     rise: f64,
     /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
-    /// The part of their arms on which the bodies' dampers act, in [0, 1].
-    arms: f64,
+    /// The bodies are others than in the tick before.
+    has_new_bodies: bool,
     touch: ToolTouch<D>,
     /// How fast the device moves relative to the body that pushes hardest [m/s].
     hand_velocity: Vector<f64, D>,
@@ -185,20 +186,17 @@ impl<const D: usize> Tool<D> {
     ///
     /// [`HapticsError::Number`] if a number of the options breaks its rule.
     pub fn new(shell: Shell<D>, options: ToolOptions) -> Result<Self, HapticsError> {
-        let stiffness = positive("stiffness", options.stiffness, "N/m")?;
-        let natural = 0.5 * stiffness * shell.reach() * shell.reach();
-        let angular_stiffness = options.angular_stiffness.unwrap_or(natural);
-        let angular_stiffness = positive("angular_stiffness", angular_stiffness, "N·m/rad")?;
+        let coupling = Coupling::new(&options, shell.reach())?;
         options.check()?;
         let radii = shell.points().iter().map(|point| point.radius);
         Ok(Self {
-            angular_stiffness,
+            coupling,
             scan: Scan::new(&shell),
             settler: Settler::new(shell.points().len()),
             pose: None,
             rise: 1.0,
             part: 1.0,
-            arms: 1.0,
+            has_new_bodies: false,
             touch: ToolTouch::new(shell.points().len()),
             hand_velocity: Vector::ZERO,
             carrier: None,
@@ -227,10 +225,16 @@ impl<const D: usize> Tool<D> {
         &self.shell
     }
 
-    /// How it hangs on the hand.
+    /// How it was to hang on the hand.
     #[must_use]
     pub fn options(&self) -> &ToolOptions {
         &self.options
+    }
+
+    /// How it hangs on the hand.
+    #[must_use]
+    pub fn coupling(&self) -> &Coupling {
+        &self.coupling
     }
 
     /// The tool after the last tick.
@@ -245,10 +249,17 @@ impl<const D: usize> Tool<D> {
         &self.events
     }
 
-    /// Forgets what is known of the bodies: the next tick touches other ones.
+    /// Forgets what is known of the bodies: the next tick touches other ones. A larger force of
+    /// theirs rises from the one before over [`ToolOptions::rise_time`].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
+        self.lose_bodies();
+        self.has_new_bodies = true;
+    }
+
+    /// What was known of the bodies does not hold any more.
+    fn lose_bodies(&mut self) {
         self.scan.forget();
         self.carrier = None;
     }
@@ -272,7 +283,7 @@ impl<const D: usize> Tool<D> {
         } else {
             if bodies.has_moved {
                 // What moves meanwhile is not where it was when the hand comes back.
-                self.forget_bodies();
+                self.lose_bodies();
             }
             let was = Before::of(&self.touch);
             self.touch.lose();
@@ -338,7 +349,7 @@ impl<const D: usize> Tool<D> {
         let extent = start.translation.norm() + reach + way;
         let place = (nearby, Pierced::default());
         let sampler = Sampler::new(place, self.radius, 0, extent);
-        let unit = (self.angular_stiffness / self.options.stiffness).sqrt();
+        let unit = self.coupling.unit();
         let skin = sampler.skin().max(SKIN * reach);
         let horizon = LIKELY * moved + LIKELY_SKINS * skin;
         let tolerance = sampler.tolerance();

@@ -59,8 +59,8 @@ impl ToolTally {
         let (held, shell, report) = (tool.held(), tool.shell(), &mut self.report);
         report.points = shell.points().len() as u32;
         report.resolution = shell.resolution(shell.points().len());
-        report.stiffness = tool.options().stiffness;
-        report.damping = tool.options().damping;
+        report.stiffness = tool.coupling().stiffness;
+        report.damping = tool.coupling().damping;
         report.largest_torque = report.largest_torque.max(held.torque.norm());
         if let Some(written) = written {
             let largest = report.largest_torque_written.unwrap_or(0.0).max(written.norm());
