@@ -7,9 +7,10 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::pair::PairWorkspace;
 
-/// Workspaces that nobody uses now. What one holds from before changes no answer.
+/// Workspaces that nobody uses now. What one holds from before changes no answer. Each in a
+/// box, as to move one takes as long as a fifth of what is asked with it.
 #[derive(Debug)]
-pub(super) struct Pool<const D: usize>(Mutex<Vec<PairWorkspace<D>>>);
+pub(super) struct Pool<const D: usize>(Mutex<Vec<Box<PairWorkspace<D>>>>);
 
 impl<const D: usize> Pool<D> {
     pub(super) fn new() -> Self {
