@@ -11,10 +11,9 @@ use palpate::field::{Aabb, Point, Vector};
 use palpate::query::local::{ElementMethod, PairMethod};
 use palpate::query::{Limits, Workspace, minimum};
 
-use super::fastest;
 use super::pairs::{Pair, placed, plate_and_torus};
 use super::triangles::{SIZES, near};
-use crate::fields::Rows;
+use super::{TimedRows, fastest};
 use crate::random::Random;
 use crate::scenes::{self, Work};
 
@@ -29,13 +28,13 @@ const TOGETHER: [usize; 3] = [1, 10, STARTS];
 const SMALLEST_STEP: f64 = 1e-5;
 
 /// Adds the rows of local searches.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     scenes::spatial()?.iter().try_for_each(|work| triangles(work, rows))?;
     pairs(rows)
 }
 
 /// Adds the rows of a work: minima over triangles.
-fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn triangles(work: &Work<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let shape = &work.shape;
     for method in ElementMethod::ALL {
         let mut times = Vec::new();
@@ -54,8 +53,8 @@ fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
             }
         }
         let key = format!("local.{method}.{}", work.name);
-        super::summarise(&key, &mut times, rows);
         let count = times.len() as f64;
+        rows.add_times(&key, times);
         rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / count);
         rows.insert(format!("{key}.missed"), f64::from(missed) / count);
     }
@@ -63,7 +62,7 @@ fn triangles(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
 }
 
 /// Adds the rows of two bodies that overlap a little.
-fn pairs(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn pairs(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let [plate, torus] = plate_and_torus()?;
     let pairs = placed([&plate, &torus], -0.001)?;
     for method in PairMethod::ALL {
@@ -90,7 +89,7 @@ fn pairs(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
             }));
         }
         let key = format!("local.{method}.plate_torus.-1mm");
-        super::summarise(&key, &mut times, rows);
+        rows.add_times(&key, times);
         let count = (pairs.len() * STARTS) as f64;
         rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / count);
         for (missed, together) in missed.iter().zip(TOGETHER) {

@@ -10,8 +10,7 @@ use palpate::field::kernel::{Cuboid, Cylinder, Ring, Torus};
 use palpate::field::{Pose, Shape, ShapeError, Vector};
 use palpate::query::{Limits, ManifoldSettings, PairWorkspace, Placed, manifold};
 
-use super::fastest;
-use crate::fields::Rows;
+use super::{TimedRows, fastest};
 
 /// Two bodies, where the second is, and up to which gap they touch [m].
 type Case<const D: usize> = (&'static str, Shape<D>, Shape<D>, [f64; D], f64);
@@ -47,12 +46,12 @@ fn in_the_plane() -> Result<[Case<2>; 3], ShapeError> {
 }
 
 /// Adds the rows of manifolds.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     ask(&in_space()?, rows)?;
     ask(&in_the_plane()?, rows)
 }
 
-fn ask<const D: usize>(cases: &[Case<D>], rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn ask<const D: usize>(cases: &[Case<D>], rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let limits = Limits { tolerance: 1e-3, ..Limits::default() };
     let mut workspace = PairWorkspace::new();
     for (name, a, b, place, margin) in cases {
@@ -65,7 +64,7 @@ fn ask<const D: usize>(cases: &[Case<D>], rows: &mut Rows) -> Result<(), Box<dyn
                 black_box(manifold(a, black_box(there), &settings, &limits, &mut workspace));
         });
         let key = format!("manifold.{name}");
-        super::summarise(&key, &mut [time], rows);
+        rows.add_times(&key, vec![time]);
         let evaluations = f64::from(found.separation.evaluations);
         rows.insert(format!("{key}.evaluations"), evaluations);
         rows.insert(format!("{key}.contacts"), found.contacts.len() as f64);

@@ -11,8 +11,7 @@ use palpate::field::{Point, Pose, Rotation, Shape, Vector};
 use palpate::mesh::{Mesh, Outline, TriangleMesh};
 use palpate::query::{Limits, MeshWorkspace, PlacedMesh, mesh_hits};
 
-use super::fastest;
-use crate::fields::Rows;
+use super::{TimedRows, fastest};
 use crate::random::Random;
 use crate::scenes;
 
@@ -29,7 +28,7 @@ const OVERLAP: [f64; 2] = [0.005, 0.025];
 const TOLERANCE: f64 = 3e-7;
 
 /// Adds the rows of meshes and outlines.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let works = scenes::spatial()?;
     let s3 = works.iter().find(|work| work.name == "S3").ok_or("no S3")?;
     for (name, mesh) in [("888", sphere(37, 13)?), ("100k", sphere(317, 160)?)] {
@@ -51,7 +50,7 @@ fn measure_one<const N: usize, const D: usize>(
     shape: &Shape<D>,
     mesh: &Mesh<N, D>,
     poses: &[Pose<D>],
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     let limits = Limits { tolerance: TOLERANCE, ..Limits::default() };
     let mut workspace = MeshWorkspace::new();
@@ -69,7 +68,7 @@ fn measure_one<const N: usize, const D: usize>(
                 black_box(mesh_hits(shape, black_box(placed), 0.0, &limits, &mut workspace));
         }));
     }
-    super::summarise(key, &mut times, rows);
+    rows.add_times(key, times);
     let count = poses.len() as f64;
     rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / count);
     rows.insert(format!("{key}.undecided"), undecided as f64);

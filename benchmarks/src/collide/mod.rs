@@ -11,6 +11,7 @@ mod peers;
 mod triangles;
 mod worlds;
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Instant;
 
@@ -18,11 +19,10 @@ use palpate::field::{Rotation, ShapeError, Vector};
 
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::rounds::fastest_of_runs;
 use crate::yardstick::Yardstick;
 
 /// What adds rows.
-type Part = fn(&mut Rows) -> Result<(), Box<dyn Error>>;
+type Part = fn(&mut TimedRows) -> Result<(), Box<dyn Error>>;
 
 /// The parts of the suite.
 const PARTS: &[(&str, Part)] = &[
@@ -40,20 +40,63 @@ pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
     PARTS.iter().map(|(name, _)| *name)
 }
 
-/// All rows of the suite, or those of one part, of the fastest of several runs.
+/// All rows of the suite, or those of one part. It runs several times; each question counts as
+/// fast as it was in its fastest run.
 pub(crate) fn measure(only: Option<&str>, runs: u32) -> Result<Rows, Box<dyn Error>> {
-    fastest_of_runs(runs, || run(only))
+    let mut rows = TimedRows::default();
+    let mut yardstick = Yardstick::new()?;
+    for _ in 0..runs {
+        for (name, part) in
+            PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name))
+        {
+            eprintln!("measuring {name} …");
+            part(&mut rows)?;
+            yardstick.measure(&mut rows.rows);
+        }
+    }
+    Ok(rows.finished())
 }
 
-fn run(only: Option<&str>) -> Result<Rows, Box<dyn Error>> {
-    let mut rows = Rows::new();
-    let mut yardstick = Yardstick::new()?;
-    for (name, part) in PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
-        eprintln!("measuring {name} …");
-        part(&mut rows)?;
-        yardstick.measure(&mut rows);
+/// Rows, and the times that some of them are made of.
+#[derive(Default)]
+pub(crate) struct TimedRows {
+    rows: Rows,
+    /// Of each key, the time of each question in its fastest run [ns].
+    times: BTreeMap<String, Vec<f64>>,
+}
+
+impl TimedRows {
+    fn insert(&mut self, key: String, number: f64) {
+        self.rows.insert(key, number);
     }
-    Ok(rows)
+
+    /// Adds a run of all questions of a key: the same work in the same order in every run.
+    fn add_times(&mut self, key: &str, times: Vec<f64>) {
+        match self.times.get_mut(key) {
+            None => drop(self.times.insert(key.into(), times)),
+            Some(fastest) => {
+                for (fastest, time) in fastest.iter_mut().zip(times) {
+                    *fastest = fastest.min(time);
+                }
+            }
+        }
+    }
+
+    /// All rows: of times, the mean, the median and the extremes.
+    fn finished(self) -> Rows {
+        let mut rows = self.rows;
+        for (key, mut times) in self.times {
+            times.sort_by(f64::total_cmp);
+            let Some(last) = times.last() else { continue };
+            rows.insert(format!("{key}.max_ns"), *last);
+            rows.insert(format!("{key}.ns"), times.iter().sum::<f64>() / times.len() as f64);
+            rows.insert(format!("{key}.p50_ns"), times[times.len() / 2]);
+            rows.insert(format!("{key}.p95_ns"), times[times.len() * 95 / 100]);
+        }
+        peers::compare(&mut rows);
+        worlds::name_medians(&mut rows);
+        rows
+    }
 }
 
 /// Marks a dimension.
@@ -110,14 +153,4 @@ fn fastest(mut run: impl FnMut()) -> f64 {
         best = best.min(start.elapsed().as_nanos() as f64 / runs);
     }
     best
-}
-
-/// Adds the mean and the extremes of `times`, which it sorts.
-fn summarise(key: &str, times: &mut [f64], rows: &mut Rows) {
-    times.sort_by(f64::total_cmp);
-    let Some(last) = times.last() else { return };
-    rows.insert(format!("{key}.max_ns"), *last);
-    rows.insert(format!("{key}.ns"), times.iter().sum::<f64>() / times.len() as f64);
-    rows.insert(format!("{key}.p50_ns"), times[times.len() / 2]);
-    rows.insert(format!("{key}.p95_ns"), times[times.len() * 95 / 100]);
 }

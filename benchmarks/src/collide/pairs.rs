@@ -13,8 +13,7 @@ use palpate::query::{
     Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, overlap, separation,
 };
 
-use super::{Space, fastest};
-use crate::fields::Rows;
+use super::{Space, TimedRows, fastest};
 use crate::random::Random;
 use crate::scenes::{self, Work};
 
@@ -42,7 +41,7 @@ type Ask<'a, const D: usize> = fn(
 ) -> Result<Certified<Nearest<D>>, QueryError>;
 
 /// Adds the rows of pairs, in space and in the plane.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let find = |name: &'static str| move || format!("no {name}");
     let spatial = scenes::spatial()?;
     of(spatial.iter().find(|work| work.name == "S3").ok_or_else(find("S3"))?, rows)?;
@@ -65,7 +64,7 @@ pub(super) fn plate_and_torus() -> Result<[Shape<3>; 2], Box<dyn Error>> {
 }
 
 /// The rows of a work against itself.
-fn of<const D: usize>(work: &Work<D>, rows: &mut Rows) -> Result<(), Box<dyn Error>>
+fn of<const D: usize>(work: &Work<D>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>>
 where
     Space: super::Turn<D>,
 {
@@ -86,7 +85,7 @@ fn ask<'a, const D: usize>(
     ask: Ask<'a, D>,
     tolerance: f64,
     pairs: &[Pair<'a, D>],
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     let limits = Limits { tolerance, ..Limits::default() };
     let mut workspace = PairWorkspace::new();
@@ -102,7 +101,7 @@ fn ask<'a, const D: usize>(
             let _ = black_box(ask(*a, black_box(*b), &limits, &mut workspace));
         }));
     }
-    super::summarise(key, &mut times, rows);
+    rows.add_times(key, times);
     rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / pairs.len() as f64);
     rows.insert(format!("{key}.undecided"), f64::from(undecided));
     Ok(())
@@ -113,7 +112,7 @@ fn follow<const D: usize>(
     key: &str,
     tolerance: f64,
     pairs: &[Pair<'_, D>],
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>>
 where
     Space: super::Turn<D>,
@@ -154,7 +153,7 @@ where
         times.append(&mut fastest);
     }
     let asked = (times.len() * super::REPEATS) as f64;
-    super::summarise(key, &mut times, rows);
+    rows.add_times(key, times);
     rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / asked);
     rows.insert(format!("{key}.undecided"), f64::from(undecided));
     Ok(())

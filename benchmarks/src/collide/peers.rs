@@ -13,7 +13,7 @@ use parry3d_f64::math::Pose;
 use parry3d_f64::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d_f64::shape::{Ball as ParryBall, TriMesh};
 
-use super::{fastest, pairs};
+use super::{TimedRows, fastest, pairs};
 use crate::fields::Rows;
 
 /// The radii of the torus and of the ball [m].
@@ -27,7 +27,7 @@ const DEPTH: f64 = 0.005;
 const CORNERS: [u32; 2] = [75, 40];
 
 /// Adds the rows of the ball on the torus, ours and parry's.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let torus = Shape::from_kernel(Torus::new(TORUS[0], TORUS[1])?);
     let (of_ball, mesh) = (Shape::from_kernel(Ball::new(BALL)?), mesh()?);
     let poses = pairs::placed([&torus, &of_ball], -DEPTH)?;
@@ -63,11 +63,18 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     if missed > 0 {
         return Err(format!("{missed} contacts of a ball and a torus were not found").into());
     }
-    super::summarise("ball.torus", &mut ours, rows);
-    super::summarise("parry.ball_torus.manifold", &mut theirs, rows);
-    let ratio = ours[ours.len() / 2] / theirs[theirs.len() / 2];
-    rows.insert("parry.ball_torus.manifold.ours_over_parry".into(), ratio);
+    rows.add_times("ball.torus", ours);
+    rows.add_times("parry.ball_torus.manifold", theirs);
     Ok(())
+}
+
+/// Adds the ratio of the medians, where both are measured.
+pub(super) fn compare(rows: &mut Rows) {
+    let median = |key: &str| rows.get(&format!("{key}.p50_ns")).copied();
+    if let Some((ours, theirs)) = median("ball.torus").zip(median("parry.ball_torus.manifold"))
+    {
+        rows.insert("parry.ball_torus.manifold.ours_over_parry".into(), ours / theirs);
+    }
 }
 
 /// The torus about the y axis as triangles, seen from outside counter-clockwise.

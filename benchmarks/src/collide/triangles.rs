@@ -10,8 +10,7 @@ use std::hint::black_box;
 use palpate::field::{Point, Shape, Vector};
 use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
 
-use super::fastest;
-use crate::fields::Rows;
+use super::{TimedRows, fastest};
 use crate::random::Random;
 use crate::scenes::{self, Work};
 
@@ -29,7 +28,7 @@ type Ask<const N: usize, const D: usize> =
     fn(&Shape<D>, &Element<N, D>, &Limits, &mut Workspace<N, D>) -> Certified<Point<D>>;
 
 /// Adds the rows of triangles in space and of segments in the plane.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     scenes::spatial()?.iter().try_for_each(|work| of::<3, 3>("triangle", work, rows))?;
     scenes::planar()?.iter().try_for_each(|work| of::<2, 2>("segment", work, rows))
 }
@@ -38,7 +37,7 @@ pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
 fn of<const N: usize, const D: usize>(
     name: &str,
     work: &Work<D>,
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     // A touch is looked for up to 1e-4 of the size; a minimum to 1 % of it.
     let questions: [(&str, Ask<N, D>, f64); 2] =
@@ -62,8 +61,9 @@ fn of<const N: usize, const D: usize>(
             }
         }
         let key = format!("{name}.{question}.{}", work.name);
-        super::summarise(&key, &mut times, rows);
-        rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / times.len() as f64);
+        let count = times.len() as f64;
+        rows.add_times(&key, times);
+        rows.insert(format!("{key}.evaluations"), f64::from(evaluations) / count);
         rows.insert(format!("{key}.undecided"), f64::from(undecided));
     }
     Ok(())

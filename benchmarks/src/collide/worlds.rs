@@ -12,7 +12,7 @@ use palpate::query::{
     BodyId, Limits, PairWorkspace, Placed, QueryError, Verdict, World, WorldSettings, overlap,
 };
 
-use super::{Space, Turn};
+use super::{Space, TimedRows, Turn};
 use crate::fields::Rows;
 use crate::random::Random;
 
@@ -29,14 +29,27 @@ const MOVING: usize = 20;
 /// Steps that are timed.
 const STEPS: usize = 40;
 
+/// Keys.
+const SPATIAL: &str = "world.1000_bodies";
+const PLANAR: &str = "world.1000_planar_bodies";
+
 /// Adds the rows of worlds, on one thread.
-pub(super) fn measure(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let asked = one_thread.install(|| {
-        steps("world.1000_bodies", &in_space()?, 10, rows)?;
-        steps("world.1000_planar_bodies", &in_the_plane()?, ROWS, rows)
+        steps(SPATIAL, &in_space()?, 10, rows)?;
+        steps(PLANAR, &in_the_plane()?, ROWS, rows)
     });
     asked.map_err(|error| -> Box<dyn Error> { error })
+}
+
+/// Names the median of steps as that of the world, where it is measured.
+pub(super) fn name_medians(rows: &mut Rows) {
+    for key in [SPATIAL, PLANAR] {
+        if let Some(median) = rows.get(&format!("{key}.step.p50_ns")).copied() {
+            rows.insert(format!("{key}.step_ns"), median);
+        }
+    }
 }
 
 /// Rows along x, `side` of them in each other direction.
@@ -44,7 +57,7 @@ fn steps<const D: usize>(
     key: &str,
     shapes: &[Shape<D>],
     side: usize,
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error + Send + Sync>>
 where
     Space: Turn<D>,
@@ -89,9 +102,7 @@ where
         pairs = verdicts().filter(|verdict| *verdict == Verdict::Touching).count();
         undecided += verdicts().filter(|verdict| *verdict == Verdict::Undecided).count();
     }
-    super::summarise(&format!("{key}.step"), &mut times, rows);
-    // The median, so that a step during which another program ran does not count.
-    rows.insert(format!("{key}.step_ns"), times[times.len() / 2]);
+    rows.add_times(&format!("{key}.step"), times);
     rows.insert(format!("{key}.pairs"), pairs as f64);
     rows.insert(format!("{key}.undecided"), undecided as f64);
     Ok(())
