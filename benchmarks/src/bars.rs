@@ -106,7 +106,7 @@ const IN_THE_PLANE: &[(&str, &str)] = &[
 ];
 
 /// Whether a row is in nanoseconds.
-pub(crate) fn is_time(key: &str) -> bool {
+fn is_time(key: &str) -> bool {
     key.ends_with(".ns") || key.ends_with("_ns")
 }
 

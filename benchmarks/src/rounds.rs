@@ -4,33 +4,14 @@
 //! Interleaved rounds: every subject once a round, so that what disturbs the
 //! machine disturbs all alike.
 
-use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
-
-use crate::bars::is_time;
-use crate::fields::Rows;
 
 /// Rounds; the median of them is reported.
 const ROUNDS: usize = 21;
 
 /// What a subject is repeated for in a round at least [ns].
 const LONG_ENOUGH: f64 = 2e6;
-
-/// The rows of several runs of a suite: of times the least, of others the last.
-pub(crate) fn fastest_of_runs(
-    runs: u32,
-    mut suite: impl FnMut() -> Result<Rows, Box<dyn Error>>,
-) -> Result<Rows, Box<dyn Error>> {
-    let mut rows = suite()?;
-    for _ in 1..runs {
-        for (key, number) in suite()? {
-            let least = if is_time(&key) { rows.get(&key).copied() } else { None };
-            rows.insert(key, least.map_or(number, |least| least.min(number)));
-        }
-    }
-    Ok(rows)
-}
 
 /// Something to measure.
 pub(crate) struct Subject<'a> {

@@ -5,8 +5,8 @@
 //!
 //! Hands go round a scene at 0.1 m/s, nearly straight on, pressed 3 mm below
 //! where a probe of 2 mm rests, with friction. A tick is all contact points from their states
-//! to their forces. Each is timed alone, in five passes over the same path; what counts of a
-//! tick is the fastest pass, since all do the same work. What reading the clock takes is timed
+//! to their forces. Each is timed alone, in five passes a run over the same path; what counts of
+//! a tick is the fastest pass, since all do the same work. What reading the clock takes is timed
 //! likewise, between ticks, and taken off.
 
 mod orbit;
@@ -22,10 +22,9 @@ use palpate::haptics::{
 };
 
 use crate::fields::Rows;
-use crate::rounds::fastest_of_runs;
 use crate::scenes;
 use crate::yardstick::Yardstick;
-use times::Times;
+use times::TimedRows;
 
 /// Ticks of a path: 20 s at 1 kHz.
 const TICKS: usize = 20_000;
@@ -45,44 +44,43 @@ const PROBE: f64 = 0.002;
 /// How deep hands press [m].
 const DEPTH: f64 = 0.003;
 
-/// All rows of the suite, of the fastest of several runs.
+/// All rows of the suite. It runs several times; each tick counts as fast as it was in its
+/// fastest pass of all runs.
 pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
-    fastest_of_runs(runs, run)
-}
-
-fn run() -> Result<Rows, Box<dyn Error>> {
-    let mut rows = Rows::new();
+    let mut rows = TimedRows::default();
     let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
     let s3 = scenes::s3()?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
     let mut yardstick = Yardstick::new()?;
-    for (key, shape, points) in [
-        ("tick.sphere", &sphere, 1),
-        ("tick.S3", &s3, 1),
-        ("tick.union_1000", &thousand, 1),
-        ("tick.ten_fingers_S3", &s3, 10),
-        ("tick.24_points_union_1000", &thousand, 24),
-    ] {
-        ticks(key, shape, points, &mut rows)?;
-        yardstick.measure(&mut rows);
+    for _ in 0..runs {
+        for (key, shape, points) in [
+            ("tick.sphere", &sphere, 1),
+            ("tick.S3", &s3, 1),
+            ("tick.union_1000", &thousand, 1),
+            ("tick.ten_fingers_S3", &s3, 10),
+            ("tick.24_points_union_1000", &thousand, 24),
+        ] {
+            ticks(key, shape, points, &mut rows)?;
+            yardstick.measure(&mut rows.rows);
+        }
+        tool::ticks("tick.tool_1000_points_S3", &s3, &mut rows)?;
     }
-    tool::ticks("tick.tool_1000_points_S3", &s3, &mut rows)?;
-    Ok(rows)
+    Ok(rows.finished())
 }
 
 /// Adds what a tick costs with so many contact points.
 fn ticks(
-    key: &str,
+    key: &'static str,
     shape: &Shape<3>,
     points: usize,
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     let paths: Vec<Vec<Point<3>>> =
         (0..points).map(|hand| orbit::around(shape, hand)).collect();
     let states: Vec<Vec<PointState<3>>> = (0..LANDING + TICKS)
         .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
         .collect();
-    let mut times = Times::new();
+    let times = rows.times_of(key);
     let (mut evaluations, mut contacts, mut most) = (0_u64, 0_u64, 0);
     // Where a device that was just read leaves its states.
     let mut read = vec![PointState::at_rest(Vector::ZERO); points];
@@ -102,7 +100,7 @@ fn ticks(
         }
     }
     let visits = (TICKS * points) as f64;
-    times.insert(key, rows);
+    let rows = &mut rows.rows;
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / visits);
     rows.insert(format!("{key}.most_evaluations"), f64::from(most));
     rows.insert(format!("{key}.contact"), contacts as f64 / visits);

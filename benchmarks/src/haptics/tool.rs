@@ -12,9 +12,8 @@ use std::hint::black_box;
 use palpate::field::{Point, Pose, Rotation, Shape, Vector, kernel::RoundedCuboid};
 use palpate::haptics::{Bodies, Body, Material, Shell, Surface, Tool, ToolOptions, ToolState};
 
-use super::times::Times;
+use super::times::TimedRows;
 use super::{DEPTH, LANDING, PASSES, TICKS, orbit};
-use crate::fields::Rows;
 
 /// Points of the tool.
 const POINTS: usize = 1000;
@@ -27,9 +26,9 @@ const TURNS: [f64; 3] = [2.3e-4, 3.1e-4, 1.7e-4];
 
 /// Adds what a tick of a tool costs that touches `shape`.
 pub(super) fn ticks(
-    key: &str,
+    key: &'static str,
     shape: &Shape<3>,
-    rows: &mut Rows,
+    rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
     let block = RoundedCuboid::new(Vector([0.04, 0.024, 0.03]), 0.004)?;
     let shell = Shell::from_field(&Shape::from_kernel(block), POINTS, BALLS)?;
@@ -38,7 +37,7 @@ pub(super) fn ticks(
     for (tick, place) in path.iter().enumerate() {
         states.push(state(&shell, shape, (tick, *place))?);
     }
-    let mut times = Times::new();
+    let times = rows.times_of(key);
     let (mut evaluations, mut contacts) = (0_u64, 0_u64);
     let (mut touching, mut degraded) = (0_u64, 0_u64);
     for pass in 0..PASSES {
@@ -56,7 +55,7 @@ pub(super) fn ticks(
             }
         }
     }
-    times.insert(key, rows);
+    let rows = &mut rows.rows;
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
     rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
     rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);

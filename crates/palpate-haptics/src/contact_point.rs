@@ -11,7 +11,7 @@ use crate::bodies::Body;
 use crate::device::PointState;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
-use crate::limit::limited;
+use crate::limit::{limited, part_of};
 use crate::nearby::Nearby;
 use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
@@ -363,11 +363,4 @@ impl<const D: usize> ContactPoint<D> {
         }
         force
     }
-}
-
-/// The part of a force that is as large as the one `before`; all of one that is no larger.
-///
-/// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn part_of(before: f64, now: f64) -> f64 {
-    if now > before { before / now } else { 1.0 }
 }

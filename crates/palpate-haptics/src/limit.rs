@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A force is no larger than a device may give.
+//! A force is no larger than a device may give, or than the one before.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -40,6 +40,13 @@ pub(crate) fn shortened<const D: usize>(
 fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, D> {
     // The norm of a huge but finite force overflows; its direction does not.
     force.normalized().map_or(Vector::ZERO, |direction| direction * length)
+}
+
+/// The part of a force that is as large as the one `before`; all of one that is no larger.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn part_of(before: f64, now: f64) -> f64 {
+    if now > before { before / now } else { 1.0 }
 }
 
 #[cfg(test)]

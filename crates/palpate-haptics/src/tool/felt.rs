@@ -12,9 +12,9 @@ use super::settle::Push;
 use super::state::{ToolState, ToolTouch};
 use super::twist::Twist;
 use super::{Coupling, Tool};
-use crate::contact_point::part_of;
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
+use crate::limit::part_of;
 use crate::nearby::Nearby;
 use crate::rotation::{cross, in_place, in_space};
 

@@ -12,10 +12,10 @@ use crate::goal::Goal;
 const STEPS: u32 = 40;
 
 /// A gain that is less than this share of the value is slow.
-const SLOW: f64 = 0.2;
+const SLOW: f64 = 0.1;
 
 /// What steps are multiplied by after one that leads down, and after one that does not.
-pub(crate) const GROW: f64 = 2.5;
+pub(crate) const GROW: f64 = 1.5;
 pub(crate) const SHRINK: f64 = 0.25;
 
 /// The way whose opposite leads to where the larger of two tangent planes,
