@@ -86,18 +86,36 @@ pub struct Reaction<const D: usize> {
 impl<const D: usize> Reaction<D> {
     pub(crate) const NONE: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
 
-    /// Adds a force at a place `arm` from the body's origin, if it is finite.
+    /// Adds a force at a place `arm` from the body's origin, if the sum is finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
-        if !force.is_finite() {
-            return;
-        }
-        self.force += force;
         let in_space = |v: Vector<f64, D>| -> [f64; 3] {
             std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0))
         };
         let ([ax, ay, az], [fx, fy, fz]) = (in_space(arm), in_space(force));
-        self.torque += Vector([ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx]);
+        let torque = Vector([ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx]);
+        let sum = Self { force: self.force + force, torque: self.torque + torque };
+        if sum.force.is_finite() && sum.torque.is_finite() {
+            *self = sum;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sum of forces that were finite each was not. Found by fuzzing.
+    #[test]
+    fn a_reaction_is_finite_whatever_is_added() {
+        let mut reaction = Reaction::NONE;
+        for (force, arm) in [(0.9, 0.0), (0.9, 0.0), (-0.1, 50.0), (f64::INFINITY, 0.0)] {
+            reaction.add(Vector([0.0, force * f64::MAX, 0.0]), Vector([arm, 0.0, 0.0]));
+        }
+        assert_eq!(reaction.force, Vector([0.0, 0.9 * f64::MAX, 0.0]));
+        assert_eq!(reaction.torque, Vector::ZERO);
+        reaction.add(Vector([2.0, 0.0, 0.0]), Vector([0.0, 3.0, 0.0]));
+        assert_eq!(reaction.torque, Vector([0.0, 0.0, -6.0]));
     }
 }

@@ -7,7 +7,8 @@
 
 use palpate_field::Vector;
 
-/// Shortens `force` to `max_force` [N], keeping its direction; zero if it is not finite.
+/// Shortens `force` to `max_force` [N], keeping its direction; zero if it is not finite, whatever
+/// the limit.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -30,9 +31,10 @@ pub(crate) fn shortened<const D: usize>(
     force: Vector<f64, D>,
     max_force: f64,
 ) -> Option<Vector<f64, D>> {
-    // Written so that NaN is shortened.
-    let passes = force.norm() <= max_force;
-    (!passes).then(|| of_length(force, max_force))
+    // No force is infinite, even where no limit is. Written so that NaN is shortened.
+    let most = max_force.min(f64::MAX);
+    let passes = force.norm() <= most;
+    (!passes).then(|| of_length(force, most))
 }
 
 /// A vector of this length along `force`; zero if that is not finite.
@@ -64,5 +66,9 @@ mod tests {
     fn a_force_that_is_not_finite_is_none() {
         assert_eq!(limited(Vector([f64::NAN, 1.0]), 2.0), Vector::ZERO);
         assert_eq!(limited(Vector([f64::INFINITY, 1.0]), 2.0), Vector::ZERO);
+        // Without a limit it once passed as it was. Found by fuzzing.
+        assert_eq!(limited(Vector([f64::INFINITY, 1.0]), f64::INFINITY), Vector::ZERO);
+        let huge = Vector([f64::MAX, -f64::MAX]);
+        assert!(limited(huge, f64::INFINITY).is_finite());
     }
 }

@@ -3,74 +3,31 @@
 
 //! Separations: closed forms, and bounds against samples on random trees.
 
-use palpate_field::field::{EvaluateBlock, Field};
+#[expect(unreachable_pub, reason = "shared with the fuzz target")]
+#[path = "../../../fuzz/pair_answers.rs"]
+mod pair_answers;
+
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
-use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Rotation, Shape, ShapeError, Vector};
+use palpate_field::{Rotation, Shape, ShapeError, Vector};
 use palpate_query::{Limits, PairWorkspace, QueryError, Stop, overlap, separation};
-use palpate_testkit::arbitrary::{self as draw, Turn};
+use palpate_testkit::arbitrary::Turn;
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
 use palpate_testkit::tree::Solid;
 
-/// Points at which a bound is tried, all over and close to the best.
-const SAMPLES: usize = 400;
-
 fn on_trees<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
-    dyn Field<D>: EvaluateBlock<f64, D, BLOCK> + EvaluateBlock<Model, D, BLOCK>,
 {
     let mut workspace = PairWorkspace::new();
     let (mut seed, mut asked, mut spent) = (0, 0, 0);
     cases::check(count, |u| {
         seed += 1;
-        let Some([a, b]) = draw::two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
-        let size = draw::size(&a);
-        let limits = Limits { tolerance: 0.02 * size, budget: 200_000 };
-        let Ok(answer) = separation(&a, &b, &limits, &mut workspace) else {
-            return Ok(Err("bounded bodies are refused".into()));
-        };
-        asked += 1;
-        spent += u64::from(answer.stop == Stop::BudgetSpent);
-        // By the definition, of which the values alone are a part.
-        let scales = [&a, &b].map(|shape| 1.0 / shape.promise().lipschitz.max(1.0));
-        for i in 0..SAMPLES {
-            let spread = [2.0, 0.2, 1e-3][i % 3] * size;
-            let p = answer.best.point + draw::direction::<D>(u)? * (spread * draw::unit(u)?);
-            let value = (a.distance(p) * scales[0]).max(b.distance(p) * scales[1]);
-            let far = [&a, &b].map(|shape| {
-                shape.promise().bounds.map_or(0.0, |bounds| {
-                    let nearest = Vector(std::array::from_fn(|k| {
-                        p[k].clamp(bounds.aabb.min[k], bounds.aabb.max[k])
-                    }));
-                    (p - nearest).norm()
-                })
-            });
-            let rounding = a.promise().rounding.within(p.norm() + size)
-                + b.promise().rounding.within(p.norm() + size);
-            if 2.0 * (value.max(far[0]).max(far[1]) + rounding) < answer.lower {
-                return Ok(Err(format!("{value} at {p:?} is below {answer:?}: {a:?} {b:?}")));
-            }
-        }
-        // The other way round the bounds overlap.
-        let Ok(other) = separation(&b, &a, &limits, &mut workspace) else {
-            return Ok(Err("bounded bodies are refused".into()));
-        };
-        if other.lower > answer.upper || answer.lower > other.upper {
-            return Ok(Err(format!("{answer:?} and {other:?} exclude each other")));
-        }
-        // Neither does the sign alone say otherwise.
-        let Ok(sign) = overlap(&a, &b, &limits, &mut workspace) else {
-            return Ok(Err("bounded bodies are refused".into()));
-        };
-        if sign.lower > answer.upper || answer.lower > sign.upper {
-            return Ok(Err(format!("{answer:?} and {sign:?} exclude each other")));
-        }
-        if sign.stop == Stop::SignKnown && sign.is_hit().is_none() {
-            return Ok(Err(format!("{sign:?} does not know")));
-        }
-        Ok(Ok(()))
+        let outcome = pair_answers::check::<D>(u, 1 + seed % 3, &mut workspace)?;
+        Ok(outcome.map(|stop| {
+            asked += u64::from(stop.is_some());
+            spent += u64::from(stop == Some(Stop::BudgetSpent));
+        }))
     });
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");
     assert!(spent * 20 <= asked, "{spent} of {asked} searches spent their budget");

@@ -33,20 +33,22 @@ impl Ring {
     /// What a tap at `speed` [m/s] starts, at `rate` ticks a second [Hz].
     ///
     /// Above half the rate there is nothing to be heard of a sinusoid but its alias, so it is
-    /// silent.
+    /// silent; so is what is too loud for numbers.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn struck(&self, speed: f64, rate: f64) -> Ringing {
-        if self.frequency >= 0.5 * rate {
+        let loudest = self.amplitude * speed;
+        // Twice that is what both parts of a phasor may add up to.
+        if self.frequency >= 0.5 * rate || !(2.0 * loudest).is_finite() {
             return Ringing::SILENT;
         }
         let angle = 2.0 * std::f64::consts::PI * self.frequency / rate;
         let shrink = libm::exp(-self.decay / rate);
         Ringing {
             force: 0.0,
-            quadrature: self.amplitude * speed,
+            quadrature: loudest,
             turn: (libm::sin(angle) * shrink, libm::cos(angle) * shrink),
-            silence: SILENCE * self.amplitude * speed,
+            silence: SILENCE * loudest,
         }
     }
 }
@@ -102,5 +104,21 @@ mod tests {
         }
         assert_eq!(ringing, Ringing::SILENT);
         assert_eq!(ring.struck(0.5, 150.0), Ringing::SILENT);
+    }
+
+    /// A blow at nearly the largest number, as of a device gone wrong, once rang without end as no
+    /// number, which took all its force from the spring. Found by fuzzing.
+    #[test]
+    fn no_blow_rings_without_end() {
+        let impact =
+            Impact { description: None, amplitude: 2.0, frequency: 100.0, decay: 30.0 };
+        let ring = Ring::new(&impact).unwrap();
+        for speed in [0.2 * f64::MAX, 0.45 * f64::MAX, f64::MAX, f64::INFINITY, f64::NAN] {
+            let mut ringing = ring.struck(speed, 1000.0);
+            for _ in 0..1000 {
+                assert!(ringing.step().is_finite(), "{speed}");
+            }
+            assert_eq!(ringing, Ringing::SILENT, "{speed}");
+        }
     }
 }

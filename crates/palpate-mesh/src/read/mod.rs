@@ -24,6 +24,9 @@ use palpate_field::Point;
 /// The largest file that is read [bytes]: 1 GiB.
 pub const LARGEST_FILE: u64 = 1 << 30;
 
+/// Characters of a parser's complaint that are kept.
+const LONGEST_COMPLAINT: usize = 300;
+
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -61,9 +64,15 @@ impl Format {
         }
     }
 
-    /// The complaint that a file is not what this format asks for.
+    /// The complaint that a file is not what this format asks for. Parsers may quote a line of
+    /// it, and of bytes that start like a text a line may be all.
     fn malformed(self, problem: impl std::fmt::Display) -> ReadProblem {
-        ReadProblem::Malformed { format: self.name(), problem: problem.to_string() }
+        let mut problem = problem.to_string();
+        if let Some((end, _)) = problem.char_indices().nth(LONGEST_COMPLAINT) {
+            problem.truncate(end);
+            problem.push('…');
+        }
+        ReadProblem::Malformed { format: self.name(), problem }
     }
 }
 
