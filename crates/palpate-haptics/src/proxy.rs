@@ -402,7 +402,9 @@ impl<const D: usize> Proxy<D> {
                         let held = (friction, how);
                         (*contact, *hold) = drag(sampler, place, (device, moved), held, ground);
                     }
-                    None => *contact = slide(sampler, place, (device, moved), ground),
+                    None => {
+                        *contact = slide(sampler, place, (device, moved, was_held), ground);
+                    }
                 }
                 if !*contact {
                     *hold = Hold::None;

@@ -9,7 +9,7 @@ mod common;
 use arbitrary::Unstructured;
 use common::{ball, body, cases, cuboid, direction, rotation, unit, vector};
 use palpate_field::{Pose, Shape, Vector};
-use palpate_haptics::{Material, PointState, Probe, Servo, ServoOptions, Surface};
+use palpate_haptics::{Material, PointState, Probe, Servo, ServoOptions, Surface, Touch};
 
 /// Directions that every plate is struck from.
 const DIRECTIONS: u64 = 1000;
@@ -96,4 +96,39 @@ fn what_a_difference_leaves_holds() {
     let shell = cuboid([0.4 + THINNEST, 0.2 + THINNEST, 0.4]).difference([hollow]).unwrap();
     let top = shell.translated(Vector([0.0, -0.1, 0.0])).unwrap();
     strikes(&top, THINNEST);
+}
+
+/// A point pressed through a plate of 0.1 mm, 14 mm beyond it, and then moved along it by 20 mm, by
+/// `step` [m] a tick: what is felt in each.
+fn beyond(friction: f64, budget: u32, step: f64) -> Vec<Touch<3>> {
+    let material = Material {
+        static_friction: friction,
+        dynamic_friction: 0.7 * friction,
+        ..Material::default()
+    };
+    let plate = cuboid([0.4, THINNEST, 0.4]);
+    let probe = Probe::new(0.0).unwrap().with_budget(budget).unwrap();
+    let options = ServoOptions { probe, ..ServoOptions::default() };
+    let bodies = body(&plate, Surface::new(&material).unwrap());
+    let mut servo = Servo::new(bodies, 1, options).unwrap();
+    let mut at = |x: f64, y: f64| servo.step(&[PointState::at_rest(Vector([x, y, 0.0]))])[0];
+    for tick in 0..=200 {
+        at(0.0, 0.006 - 1e-4 * f64::from(tick));
+    }
+    let ticks = (0.02 / step) as u32;
+    (1..=ticks).map(|tick| at(step * f64::from(tick), -0.014)).collect()
+}
+
+/// Behind a thin wall the hand is outside again. A proxy that ran out of budget on its way along
+/// the wall, as where static friction lets go of a point, once let go of the wall for a tick, with
+/// no force at all.
+#[test]
+fn a_late_proxy_is_held_beyond_a_thin_wall() {
+    for (friction, budget, step) in [(0.0, 4, 0.002), (0.8, 64, 0.0002)] {
+        let felt = beyond(friction, budget, step);
+        assert!(felt.iter().any(|touch| touch.evaluations >= budget - 1), "none is late");
+        for touch in felt {
+            assert!(touch.contact && touch.force[1] > 1.0, "{touch:?}");
+        }
+    }
 }
