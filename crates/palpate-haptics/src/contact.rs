@@ -117,9 +117,7 @@ impl<const D: usize> Ground<D> {
 ///
 /// Each point of the way is within the reach of an evaluated one, so the way crosses nothing. If
 /// the budget ends before the search does, the proxy rests at the closest point found that is on
-/// or above the surface: later than it could, never inside. Whether the surface keeps it from the
-/// device is then a guess: it does if the device is inside, or if it held the proxy before and
-/// the device is below the tangent plane.
+/// or above the surface: later than it could, never inside.
 ///
 /// It works in the place where the proxy keeps its sample: a copy of a whole would wait until its
 /// parts, just found, are written.
@@ -129,7 +127,7 @@ impl<const D: usize> Ground<D> {
 pub(crate) fn slide<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
-    (device, motion, was_held): (Point<D>, f64, bool),
+    (device, motion): (Point<D>, f64),
     Ground { planes, bend }: &mut Ground<D>,
 ) -> bool {
     planes.clear();
@@ -150,7 +148,7 @@ pub(crate) fn slide<const D: usize>(
     };
     if slide.here.tangent.is_none() {
         if slide.go(sampler, slide.here.point) == Turn::Spent {
-            return slide.rest_at_best(sampler, was_held);
+            return slide.rest_at_best(sampler);
         }
         slide.best = *slide.here;
     }
@@ -173,7 +171,7 @@ pub(crate) fn slide<const D: usize>(
             }
             Turn::Cornered | Turn::Spent => {
                 slide.keep_best(sampler);
-                return slide.rest_at_best(sampler, was_held);
+                return slide.rest_at_best(sampler);
             }
         }
     }
@@ -377,16 +375,11 @@ impl<const D: usize> Slide<'_, D> {
         }
     }
 
-    /// Goes back to the best point found; whether the surface keeps it from the device, as far
-    /// as is known.
-    fn rest_at_best(&mut self, sampler: &mut Sampler<'_, D>, was_held: bool) -> bool {
+    /// Goes back to the best point found; whether the device is below the surface.
+    fn rest_at_best(&mut self, sampler: &mut Sampler<'_, D>) -> bool {
         *self.here = self.best;
-        let (normal, gap) = sampler.tangent(self.here, *self.normal);
-        *self.normal = normal;
-        // Beyond a thin wall the device is outside again, and the wall holds the proxy still.
-        let height = normal.dot(self.device - self.here.point) + gap;
-        let is_held = was_held && height < -sampler.tolerance();
-        is_held || sampler.is_below(self.device).unwrap_or(false)
+        *self.normal = sampler.tangent(self.here, *self.normal).0;
+        sampler.is_below(self.device).unwrap_or(false)
     }
 }
 

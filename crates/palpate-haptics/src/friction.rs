@@ -54,7 +54,7 @@ pub(crate) fn drag<const D: usize>(
     ground: &mut Ground<D>,
 ) -> (bool, Hold) {
     if here.tangent.is_none() || friction.fixed <= 0.0 {
-        return (slide(sampler, (here, normal), (device, motion, true), ground), Hold::None);
+        return (slide(sampler, (here, normal), (device, motion), ground), Hold::None);
     }
     let start = *here;
     let (first_normal, gap) = sampler.tangent(&start, *normal);
@@ -63,7 +63,7 @@ pub(crate) fn drag<const D: usize>(
     let depth = height - gap;
     *normal = first_normal;
     if depth <= 0.0 || gap > sampler.near() {
-        return (slide(sampler, (here, normal), (device, motion, true), ground), Hold::None);
+        return (slide(sampler, (here, normal), (device, motion), ground), Hold::None);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
     let Some(goal) =
@@ -71,7 +71,7 @@ pub(crate) fn drag<const D: usize>(
     else {
         return (true, Hold::Stick);
     };
-    let contact = slide(sampler, (here, normal), (goal, motion, true), ground);
+    let contact = slide(sampler, (here, normal), (goal, motion), ground);
     let pull = here.point - goal;
     let along = pull - *normal * pull.dot(*normal);
     if !contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
@@ -91,9 +91,7 @@ pub(crate) fn drag<const D: usize>(
             (*here, *normal) = (start, first_normal);
             (true, Hold::Stick)
         }
-        Some(goal) => {
-            (slide(sampler, (here, normal), (goal, motion, true), ground), Hold::Slip)
-        }
+        Some(goal) => (slide(sampler, (here, normal), (goal, motion), ground), Hold::Slip),
     }
 }
 

@@ -395,17 +395,17 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): nothing is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let place = (here, normal);
+                let place = (&mut *here, &mut *normal);
                 let friction = friction(sampler, place.0, (squared.sqrt(), pierced));
                 match friction.filter(|_| was_held) {
                     Some(friction) => {
                         let held = (friction, how);
                         (*contact, *hold) = drag(sampler, place, (device, moved), held, ground);
                     }
-                    None => {
-                        *contact = slide(sampler, place, (device, moved, was_held), ground);
-                    }
+                    None => *contact = slide(sampler, place, (device, moved), ground),
                 }
+                *contact =
+                    *contact || was_held && is_held_still(sampler, (here, normal), device);
                 if !*contact {
                     *hold = Hold::None;
                 }
@@ -421,6 +421,21 @@ impl<const D: usize> Proxy<D> {
             }
         }
     }
+}
+
+/// Whether a surface that held a proxy still does where it may have run out of budget on its way:
+/// the hand is below its tangent plane. Beyond a thin wall a hand is outside the body again.
+///
+/// A proxy that is at the device is no lower than two tolerances.
+#[cold]
+#[inline(never)]
+fn is_held_still<const D: usize>(
+    sampler: &Sampler<'_, D>,
+    (here, normal): (&Sample<D>, &Vector<f64, D>),
+    device: Point<D>,
+) -> bool {
+    let (normal, gap) = sampler.tangent(here, *normal);
+    normal.dot(device - here.point) + gap < -2.0 * sampler.tolerance()
 }
 
 /// The friction of the surface at a sample that the device is `depth` from [m].
