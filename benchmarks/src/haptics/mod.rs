@@ -24,7 +24,7 @@ use palpate::haptics::{
 use crate::fields::Rows;
 use crate::scenes;
 use crate::yardstick::Yardstick;
-use times::TimedRows;
+use times::Times;
 
 /// Ticks of a path: 20 s at 1 kHz.
 const TICKS: usize = 20_000;
@@ -32,8 +32,8 @@ const TICKS: usize = 20_000;
 /// Ticks before the path, in which the hands land.
 const LANDING: usize = 300;
 
-/// Times that a path is gone.
-const PASSES: usize = 5;
+/// Times that a path is gone in a run.
+const PASSES: u32 = 5;
 
 /// The radius of the sphere and of the ball that S3 is scaled to [m].
 const RADIUS: f64 = 0.05;
@@ -44,47 +44,45 @@ const PROBE: f64 = 0.002;
 /// How deep hands press [m].
 const DEPTH: f64 = 0.003;
 
-/// All rows of the suite. It runs several times; each tick counts as fast as it was in its
-/// fastest pass of all runs.
+/// All rows of the suite, of the passes of so many runs.
 pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
-    let mut rows = TimedRows::default();
+    let mut rows = Rows::new();
+    let passes = runs.saturating_mul(PASSES);
     let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
     let s3 = scenes::s3()?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
     let mut yardstick = Yardstick::new()?;
-    for _ in 0..runs {
-        for (key, shape, points) in [
-            ("tick.sphere", &sphere, 1),
-            ("tick.S3", &s3, 1),
-            ("tick.union_1000", &thousand, 1),
-            ("tick.ten_fingers_S3", &s3, 10),
-            ("tick.24_points_union_1000", &thousand, 24),
-        ] {
-            ticks(key, shape, points, &mut rows)?;
-            yardstick.measure(&mut rows.rows);
-        }
-        tool::ticks("tick.tool_1000_points_S3", &s3, &mut rows)?;
+    for (key, shape, points) in [
+        ("tick.sphere", &sphere, 1),
+        ("tick.S3", &s3, 1),
+        ("tick.union_1000", &thousand, 1),
+        ("tick.ten_fingers_S3", &s3, 10),
+        ("tick.24_points_union_1000", &thousand, 24),
+    ] {
+        ticks(key, (shape, points), passes, &mut rows)?;
+        yardstick.measure(&mut rows);
     }
-    Ok(rows.finished())
+    tool::ticks("tick.tool_1000_points_S3", &s3, passes, &mut rows)?;
+    Ok(rows)
 }
 
 /// Adds what a tick costs with so many contact points.
 fn ticks(
-    key: &'static str,
-    shape: &Shape<3>,
-    points: usize,
-    rows: &mut TimedRows,
+    key: &str,
+    (shape, points): (&Shape<3>, usize),
+    passes: u32,
+    rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
     let paths: Vec<Vec<Point<3>>> =
         (0..points).map(|hand| orbit::around(shape, hand)).collect();
     let states: Vec<Vec<PointState<3>>> = (0..LANDING + TICKS)
         .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
         .collect();
-    let times = rows.times_of(key);
+    let mut times = Times::new();
     let (mut evaluations, mut contacts, mut most) = (0_u64, 0_u64, 0);
     // Where a device that was just read leaves its states.
     let mut read = vec![PointState::at_rest(Vector::ZERO); points];
-    for pass in 0..PASSES {
+    for pass in 0..passes {
         let mut servo = servo(shape, points)?;
         for (tick, states) in states.iter().enumerate() {
             read.copy_from_slice(states);
@@ -100,7 +98,7 @@ fn ticks(
         }
     }
     let visits = (TICKS * points) as f64;
-    let rows = &mut rows.rows;
+    times.insert(key, rows);
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / visits);
     rows.insert(format!("{key}.most_evaluations"), f64::from(most));
     rows.insert(format!("{key}.contact"), contacts as f64 / visits);

@@ -3,34 +3,10 @@
 
 //! How long each tick takes, without reading the clock.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::TICKS;
 use crate::fields::Rows;
-
-/// Rows, and the times that some of them are made of.
-#[derive(Default)]
-pub(super) struct TimedRows {
-    pub(super) rows: Rows,
-    times: BTreeMap<&'static str, Times>,
-}
-
-impl TimedRows {
-    /// The times of a key, of all runs so far.
-    pub(super) fn times_of(&mut self, key: &'static str) -> &mut Times {
-        self.times.entry(key).or_insert_with(Times::new)
-    }
-
-    /// All rows.
-    pub(super) fn finished(self) -> Rows {
-        let mut rows = self.rows;
-        for (key, times) in self.times {
-            times.insert(key, &mut rows);
-        }
-        rows
-    }
-}
 
 /// The fastest pass of each tick, and beside it of nothing.
 pub(super) struct Times {
@@ -39,7 +15,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { ticks: vec![u64::MAX; TICKS], nothing: vec![u64::MAX; TICKS] }
     }
 
@@ -58,7 +34,7 @@ impl Times {
     }
 
     /// Adds the rows of `key`: times less the median of what reading the clock takes.
-    fn insert(mut self, key: &str, rows: &mut Rows) {
+    pub(super) fn insert(mut self, key: &str, rows: &mut Rows) {
         self.ticks.sort_unstable();
         self.nothing.sort_unstable();
         let clock = self.nothing[(TICKS - 1) / 2];

@@ -12,8 +12,9 @@ use std::hint::black_box;
 use palpate::field::{Point, Pose, Rotation, Shape, Vector, kernel::RoundedCuboid};
 use palpate::haptics::{Bodies, Body, Material, Shell, Surface, Tool, ToolOptions, ToolState};
 
-use super::times::TimedRows;
-use super::{DEPTH, LANDING, PASSES, TICKS, orbit};
+use super::times::Times;
+use super::{DEPTH, LANDING, TICKS, orbit};
+use crate::fields::Rows;
 
 /// Points of the tool.
 const POINTS: usize = 1000;
@@ -26,9 +27,10 @@ const TURNS: [f64; 3] = [2.3e-4, 3.1e-4, 1.7e-4];
 
 /// Adds what a tick of a tool costs that touches `shape`.
 pub(super) fn ticks(
-    key: &'static str,
+    key: &str,
     shape: &Shape<3>,
-    rows: &mut TimedRows,
+    passes: u32,
+    rows: &mut Rows,
 ) -> Result<(), Box<dyn Error>> {
     let block = RoundedCuboid::new(Vector([0.04, 0.024, 0.03]), 0.004)?;
     let shell = Shell::from_field(&Shape::from_kernel(block), POINTS, BALLS)?;
@@ -37,10 +39,10 @@ pub(super) fn ticks(
     for (tick, place) in path.iter().enumerate() {
         states.push(state(&shell, shape, (tick, *place))?);
     }
-    let times = rows.times_of(key);
+    let mut times = Times::new();
     let (mut evaluations, mut contacts) = (0_u64, 0_u64);
     let (mut touching, mut degraded) = (0_u64, 0_u64);
-    for pass in 0..PASSES {
+    for pass in 0..passes {
         let mut bodies = bodies(shape)?;
         let mut tool = Tool::new(shell.clone(), options())?;
         for (tick, state) in states.iter().enumerate() {
@@ -55,7 +57,7 @@ pub(super) fn ticks(
             }
         }
     }
-    let rows = &mut rows.rows;
+    times.insert(key, rows);
     rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
     rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
     rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);

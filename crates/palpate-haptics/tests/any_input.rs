@@ -20,7 +20,7 @@ fn whatever_comes_in_no_promise_is_broken() {
 
 #[test]
 fn what_once_broke_a_promise_no_longer_does() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/servo");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/regressions/servo");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         servo_input::check(&std::fs::read(entry.unwrap().path()).unwrap());
