@@ -5,8 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
+mod pictures;
 
-use common::{Folder, errors, json, palpate, status, text, words};
+use common::{Folder, errors, json, palpate, status, text};
+use pictures::words;
 use serde_json::Value;
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,

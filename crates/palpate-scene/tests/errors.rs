@@ -4,11 +4,11 @@
 //! Every error names its path, its line and what is wrong, and the schema
 //! agrees where it can.
 
-mod common;
+mod refusal;
 
-use common::refusal::Schema::{Accepts, Refuses};
-use common::refusal::check_all;
 use palpate_scene::{Body, Dimension, Node, Scene};
+use refusal::Schema::{Accepts, Refuses};
+use refusal::check_all;
 
 #[test]
 fn a_negative_radius_is_found_in_its_line() {

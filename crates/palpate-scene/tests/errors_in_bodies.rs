@@ -4,10 +4,10 @@
 //! Errors in bodies, tools, motions and views name their path, their line and what
 //! is wrong.
 
-mod common;
+mod refusal;
 
-use common::refusal::Schema::{Accepts, Refuses};
-use common::refusal::check_all;
+use refusal::Schema::{Accepts, Refuses};
+use refusal::check_all;
 
 #[test]
 fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {

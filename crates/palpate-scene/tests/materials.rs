@@ -3,15 +3,14 @@
 
 //! Materials by name: what is shown and documented is what there is.
 
-mod common;
-
 use std::collections::BTreeSet;
 
 use palpate_scene::{Dimension, Material, Scene, World, WrittenMaterial};
 
 #[test]
 fn every_name_is_shown_and_documented() {
-    let scene = Scene::from_file(common::repository().join("scenes/materials.json")).unwrap();
+    let repository = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let scene = Scene::from_file(format!("{repository}/scenes/materials.json")).unwrap();
     let shown: BTreeSet<_> = scene
         .bodies
         .iter()
@@ -21,8 +20,7 @@ fn every_name_is_shown_and_documented() {
         })
         .collect();
     assert_eq!(shown, Material::preset_names().collect());
-    let formats =
-        std::fs::read_to_string(common::repository().join("docs/formats.md")).unwrap();
+    let formats = std::fs::read_to_string(format!("{repository}/docs/formats.md")).unwrap();
     for name in Material::preset_names() {
         assert!(formats.contains(&format!("`\"{name}\"`")), "{name}");
     }

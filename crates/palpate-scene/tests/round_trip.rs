@@ -4,12 +4,13 @@
 //! Writing and reading back is the identity.
 
 mod common;
+mod random;
 
 use arbtest::arbtest;
-use common::random::{Generator, Known, known};
 use palpate_field::Shape;
 use palpate_field::kernel::Entry;
 use palpate_scene::{Body, Dimension, Scene, World, schema};
+use random::{Generator, Known, known};
 
 /// Set to write the scenes as they should be instead of comparing them.
 const UPDATE: &str = "PALPATE_UPDATE_SCENES";

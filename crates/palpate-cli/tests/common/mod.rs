@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Runs the program, and reads what it says.
-#![allow(dead_code, reason = "several programs share it: each uses a part, one may use all")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -56,9 +55,4 @@ impl Folder {
         std::fs::write(self.path(name), text).unwrap();
         self.name(name)
     }
-}
-
-/// The words of a picture.
-pub(crate) fn words(svg: &str) -> Vec<&str> {
-    svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }

@@ -1,12 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Scenes for tests: those in the repository, and random ones.
-#![allow(dead_code, reason = "several programs share it: each uses a part, one may use all")]
+//! The scenes in the repository.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
-
-pub(crate) mod random;
-pub(crate) mod refusal;
 
 use std::path::{Path, PathBuf};
 
