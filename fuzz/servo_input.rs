@@ -8,7 +8,7 @@ use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, DeviceProfile, Guide, GuideOptions, Material, PointState, Probe, Protection,
-    Servo, ServoOptions, Surface, Touch,
+    Renderer, Servo, ServoOptions, Surface, Touch, UnprotectedServo,
 };
 use palpate_scene::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 
@@ -193,7 +193,40 @@ where
     Ok(Bodies::new(bodies).unwrap_or_else(|_| Bodies::from(ball(0.05))))
 }
 
-fn servo<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<Servo<D>>
+/// A servo with or without a safety chain.
+enum AnyServo<const D: usize> {
+    Protected(Servo<D>),
+    Unprotected(UnprotectedServo<D>),
+}
+
+/// Does the same with either kind of servo.
+macro_rules! either {
+    ($any:expr, $servo:ident => $does:expr) => {
+        match $any {
+            AnyServo::Protected($servo) => $does,
+            AnyServo::Unprotected($servo) => $does,
+        }
+    };
+}
+
+impl<const D: usize> AnyServo<D> {
+    fn seen(&self) -> &Renderer<D> {
+        either!(self, servo => servo)
+    }
+
+    fn swap_bodies(&mut self, bodies: Bodies<D>) {
+        match self {
+            Self::Protected(servo) => {
+                if let Ok(bodies) = servo.accept(bodies) {
+                    drop(servo.replace_bodies(bodies));
+                }
+            }
+            Self::Unprotected(servo) => drop(servo.replace_bodies(bodies)),
+        }
+    }
+}
+
+fn servo<const D: usize>(u: &mut Unstructured<'_>, pops: bool) -> Result<AnyServo<D>>
 where
     Here: Dimension<D>,
 {
@@ -207,7 +240,7 @@ where
         rate: *u.choose(&[1000.0, 10.0, 1e5])?,
     };
     let points = *u.choose(&[1, 2, 5, 24])?;
-    let mut servo = Servo::new(bodies(u, pops)?, points, options).expect("options");
+    let mut servo = UnprotectedServo::new(bodies(u, pops)?, points, options).expect("options");
     if u.ratio(1, 3)? {
         let options = GuideOptions::default();
         if let Ok(guide) = Guide::to_point(vector(u)? * 0.05, options) {
@@ -225,9 +258,10 @@ where
             encoder_step: *u.choose(&[0.0, 2e-5])?,
             ..DeviceProfile::unlimited("any")
         };
-        servo.protect(&Protection::new(profile)).expect("a profile");
+        let servo = servo.protected(&Protection::new(profile)).expect("a profile");
+        return Ok(AnyServo::Protected(servo));
     }
-    Ok(servo)
+    Ok(AnyServo::Unprotected(servo))
 }
 
 fn play<const D: usize>(u: &mut Unstructured<'_>) -> Result<()>
@@ -236,7 +270,7 @@ where
 {
     let pops = u.ratio(1, 4)?;
     let mut servo = servo::<D>(u, pops)?;
-    let points = servo.touches().len();
+    let points = servo.seen().touches().len();
     let mut hand: Vec<Point<D>> = vec![vector(u)? * 0.1; points];
     let mut before = 0.0;
     for _ in 0..TICKS {
@@ -259,35 +293,56 @@ where
             // Fewer states than points, or far more.
             states.resize([0, 1, 3000][u.choose_index(3)?], PointState::at_rest(Vector::ZERO));
         }
-        servo.step(&states);
-        let extent = extent(&servo);
-        promises_hold(&servo, extent.max(before), pops);
+        either!(&mut servo, servo => drop(servo.step(&states)));
+        let extent = extent(servo.seen());
+        promises_hold(servo.seen(), extent.max(before), pops);
         before = extent;
     }
     Ok(())
 }
 
 /// What else may happen between two ticks.
-fn act<const D: usize>(u: &mut Unstructured<'_>, servo: &mut Servo<D>, pops: bool) -> Result<()>
+fn act<const D: usize>(
+    u: &mut Unstructured<'_>,
+    any: &mut AnyServo<D>,
+    pops: bool,
+) -> Result<()>
 where
     Here: Dimension<D>,
 {
     let body = u.choose_index(10)?;
     match u.choose_index(24)? {
-        0..4 => servo.set_pose(body, Here::pose(u)?),
+        0..4 => {
+            let pose = Here::pose(u)?;
+            either!(any, servo => servo.set_pose(body, pose));
+        }
         4..8 => {
             // A small motion.
-            if let Some(at) = servo.bodies().bodies().get(body).map(|b| *b.world_from_body()) {
+            let bodies = any.seen().bodies().bodies();
+            if let Some(at) = bodies.get(body).map(|b| *b.world_from_body()) {
                 let translation = at.translation + vector(u)? * 0.003;
-                servo.set_pose(body, Pose { translation, ..at });
+                either!(any, servo => servo.set_pose(body, Pose { translation, ..at }));
             }
         }
-        8 => servo.set_pose(body, Pose { translation: junk(u)?, ..Here::pose(u)? }),
-        9 => drop(servo.replace_bodies(bodies(u, pops)?)),
-        10 => servo.set_late(u.arbitrary()?),
-        11 => servo.stop(u.arbitrary()?),
-        // A device that is protected has its limit already.
-        12 if servo.safety().is_empty() => servo.limit_force(*u.choose(&JUNK)?),
+        8 => {
+            let pose = Pose { translation: junk(u)?, ..Here::pose(u)? };
+            either!(any, servo => servo.set_pose(body, pose));
+        }
+        9 => any.swap_bodies(bodies(u, pops)?),
+        10 => {
+            let is_late = u.arbitrary()?;
+            either!(any, servo => servo.set_late(is_late));
+        }
+        11 => {
+            let is_stopped = u.arbitrary()?;
+            either!(any, servo => servo.stop(is_stopped));
+        }
+        12 => {
+            // The chain of a protected servo has the limit of its device already.
+            if let AnyServo::Unprotected(servo) = any {
+                servo.limit_force(*u.choose(&JUNK)?);
+            }
+        }
         _ => {}
     }
     Ok(())
@@ -304,7 +359,7 @@ fn length<const D: usize>(v: Vector<f64, D>) -> f64 {
 }
 
 /// How far from the origin anything is [m].
-fn extent<const D: usize>(servo: &Servo<D>) -> f64 {
+fn extent<const D: usize>(servo: &Renderer<D>) -> f64 {
     let bodies = servo.bodies().bodies().iter().map(|b| b.world_from_body().translation.norm());
     let touches = servo.touches().iter();
     let touches = touches.flat_map(|t| [t.device.norm(), t.proxy.norm()]);
@@ -312,7 +367,7 @@ fn extent<const D: usize>(servo: &Servo<D>) -> f64 {
     finite.fold(0.2, f64::max)
 }
 
-fn promises_hold<const D: usize>(servo: &Servo<D>, farthest: f64, pops: bool) {
+fn promises_hold<const D: usize>(servo: &Renderer<D>, farthest: f64, pops: bool) {
     // Squares of forces smaller than this vanish.
     let most = servo.options().max_force * (1.0 + 1e-12) + 1e-150;
     for (touch, force) in servo.touches().iter().zip(servo.forces()) {
@@ -330,7 +385,7 @@ fn promises_hold<const D: usize>(servo: &Servo<D>, farthest: f64, pops: bool) {
 }
 
 /// No body holds the proxy's ball.
-fn is_outside<const D: usize>(servo: &Servo<D>, touch: &Touch<D>, farthest: f64) {
+fn is_outside<const D: usize>(servo: &Renderer<D>, touch: &Touch<D>, farthest: f64) {
     let size = |body: &Body<D>| body.shape().promise().bounds.map_or(0.0, |b| b.ball.radius);
     let bodies = servo.bodies().bodies();
     let tolerance = INSIDE * bodies.iter().map(size).fold(farthest, f64::max);

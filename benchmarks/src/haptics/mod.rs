@@ -18,7 +18,7 @@ use std::hint::black_box;
 
 use palpate::field::{Point, Shape, Vector, kernel::Ball};
 use palpate::haptics::{
-    Bodies, Body, Material, PointState, Probe, Servo, ServoOptions, Surface,
+    Bodies, Body, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
 };
 
 use crate::fields::Rows;
@@ -112,7 +112,7 @@ fn state(path: &[Point<3>], tick: usize) -> PointState<3> {
 }
 
 /// A servo of one body with friction.
-fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3>, Box<dyn Error>> {
+fn servo(shape: &Shape<3>, points: usize) -> Result<UnprotectedServo<3>, Box<dyn Error>> {
     let material = Material {
         stiffness: 1000.0,
         static_friction: 0.5,
@@ -122,5 +122,5 @@ fn servo(shape: &Shape<3>, points: usize) -> Result<Servo<3>, Box<dyn Error>> {
     let body = Body::new(shape.clone(), Surface::new(&material)?)?;
     let probe = Probe::new(PROBE)?;
     let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
-    Ok(Servo::new(Bodies::new(vec![body])?, points, options)?)
+    Ok(UnprotectedServo::new(Bodies::new(vec![body])?, points, options)?)
 }

@@ -8,7 +8,7 @@
 
 use palpate_devices::{Device, DeviceLost, DeviceProfile, PointState};
 use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
-use palpate_haptics::{HapticsError, Pace, RunOptions, RunReport, Servo, ServoOptions, run};
+use palpate_haptics::{HapticsError, Pace, RunOptions, RunReport, Servo, run};
 
 /// A carriage that a motor draws around a circle of 48 mm in two seconds.
 struct Carriage {
@@ -54,10 +54,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Two seconds on a disc that reaches 20 mm into the circle.
 fn feel() -> Result<RunReport, Failure> {
-    let profile = DeviceProfile { max_force: 1.5, ..DeviceProfile::unlimited("carriage") };
+    let profile = DeviceProfile {
+        max_force: 1.5,
+        max_force_rate: 3000.0,
+        mass: 0.1,
+        least_damping: 0.5,
+        ..DeviceProfile::unlimited("carriage")
+    };
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::from_kernel(Ball::new(0.02)?).translated(Vector([0.06, 0.0]))?;
-    let mut servo = Servo::new(disc, 1, ServoOptions::default())?;
+    // Protected by what the profile says: no force beyond it reaches the hand.
+    let mut servo = Servo::for_device(disc, &device)?;
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
     Ok(run(&mut servo, &mut device, options)?)
 }

@@ -20,21 +20,15 @@
 //! ```
 //! use palpate_devices::{Device, Hand, SimulatedDevice, profile_named};
 //! use palpate_field::{Shape, Vector, kernel::Ball};
-//! use palpate_haptics::{
-//!     Bodies, Body, Pace, Probe, RunOptions, Servo, ServoOptions, Surface, run,
-//! };
+//! use palpate_haptics::{Bodies, Body, Pace, RunOptions, Servo, Surface, run};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let hand = Hand::resting(Vector([0.0, 0.06, 0.0]))?
 //!     .with_spring(0.0, 5.0)?
 //!     .with_push(Vector([0.0, -1.0, 0.0]))?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
-//! let options = ServoOptions {
-//!     probe: Probe::new(0.0)?,
-//!     ..ServoOptions::default()
-//! };
 //! let ball = Body::new(Shape::from_kernel(Ball::new(0.05)?), Surface::smooth(1000.0, 0.0)?)?;
-//! let mut servo = Servo::new(Bodies::new(vec![ball])?, 1, options)?;
+//! let mut servo = Servo::for_device(Bodies::new(vec![ball])?, &device)?;
 //! let paced = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
 //! run(&mut servo, &mut device, paced)?;
 //!

@@ -12,7 +12,7 @@ use palpate_field::kernel::Ball;
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
     Interpolation, Pace, Protection, RunOptions, Servo, ServoOptions, Shell, Tool, ToolOptions,
-    run,
+    UnprotectedServo, run,
 };
 
 /// Aborts on an allocation where none is allowed.
@@ -66,8 +66,7 @@ fn a_tick_of_a_tool_that_turns_allocates_nothing() {
     let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
     let rod = Shell::capsule([Vector([-0.05, 0.0, 0.0]), Vector([0.05, 0.0, 0.0])], 4e-3, 21);
     let tool = Tool::new(rod.unwrap(), ToolOptions::default()).unwrap();
-    let mut servo = Servo::with_tool(ball, tool, ServoOptions::default()).unwrap();
-    servo.protect(&Protection::new(device.profile().clone())).unwrap();
+    let mut servo = Servo::for_tool(ball, tool, &device).unwrap();
     let (mut points, mut largest) = ([PointState::at_rest(Vector::ZERO)], 0.0_f64);
     for tick in 0..2000 {
         assert_no_alloc(|| {
@@ -111,7 +110,10 @@ fn every_known_device_rests_on_a_ball() {
         let hand = hand.with_push(Vector([0.0, -5.0, 0.0])).unwrap();
         let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
         let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
-        let mut servo = Servo::new(ball, 1, ServoOptions::default()).unwrap();
+        // A force that rises from nothing under the hand would lift it, which takes energy.
+        let protection = Protection { rise_time: 0.0, ..Protection::new(profile.clone()) };
+        let servo = UnprotectedServo::new(ball, 1, ServoOptions::of_device(profile)).unwrap();
+        let mut servo = servo.protected(&protection).unwrap();
         let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
         let report = run(&mut servo, &mut device, options).unwrap();
         assert!(report.contact_time > 1.0, "{name}: {report:?}");
@@ -129,7 +131,7 @@ fn two_gloves_feel_with_24_points() {
     let mut gloves = both_hands();
     assert_eq!(gloves.points(), 24);
     let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
-    let mut servo = Servo::new(ball, 24, ServoOptions::default()).unwrap();
+    let mut servo = Servo::for_device(ball, &gloves).unwrap();
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
     let report = run(&mut servo, &mut gloves, options).unwrap();
     assert_eq!((report.points, report.ticks), (24, 1500));

@@ -10,7 +10,7 @@ use palpate_devices::{
 use palpate_field::kernel::HalfSpace;
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Body, Probe, Protection, Servo, ServoOptions, Surface,
+    Acceptance, Bodies, Body, Probe, Protection, ServoOptions, Surface, UnprotectedServo,
 };
 
 const PERIOD: f64 = 1e-3;
@@ -33,7 +33,7 @@ fn smooth(profile: &DeviceProfile) -> DeviceProfile {
 /// it.
 struct Pressed {
     device: SimulatedDevice<2>,
-    servo: Servo<2>,
+    servo: UnprotectedServo<2>,
     tick: u32,
 }
 
@@ -50,7 +50,7 @@ impl Pressed {
         let surface = Surface::smooth(stiffness, 0.0).unwrap();
         let wall = Body::new(Shape::from_kernel(wall), surface).unwrap();
         let bodies = Bodies::new(vec![wall]).unwrap();
-        let mut servo = Servo::new(bodies, 1, options).unwrap();
+        let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
         // It comes from outside, so that its force need not rise.
         servo.step(&[PointState::at_rest(Vector([0.0, 1e-3]))]);
         let hand = Hand::resting(Vector([0.0, height - 1.0 / stiffness])).unwrap();
@@ -176,15 +176,15 @@ fn a_passive_wall_gives_no_energy_to_any_grip() {
 /// device is in the end, on a wall three times as stiff as is passive.
 fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f64, f64) {
     let stiffness = 3.0 * 2.0 * profile.least_damping / PERIOD;
-    let Pressed { mut servo, .. } = Pressed::new(profile, stiffness, height);
-    let accepted = servo
-        .protect(&Protection {
+    let Pressed { servo, .. } = Pressed::new(profile, stiffness, height);
+    let mut servo = servo
+        .protected(&Protection {
             acceptance: Acceptance::AsItIs,
             rise_time: 0.0,
             ..Protection::new(profile.clone())
         })
         .unwrap();
-    assert_eq!(accepted[0].factor, 1.0);
+    assert_eq!(servo.accepted()[0].factor, 1.0);
     let hand = Hand::resting(Vector([0.0, height])).unwrap();
     let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
     let hand = hand.with_push(Vector([0.0, -1.0])).unwrap();

@@ -12,7 +12,7 @@ use palpate_field::kernel::HalfSpace;
 use palpate_field::{Rotation, Shape, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Body, HandPath, Interpolation, Protection, Servo, ServoOptions, Shell,
-    Surface, Tool, ToolOptions, turn_between, turned,
+    Surface, Tool, ToolOptions, UnprotectedServo, turn_between, turned,
 };
 
 const PERIOD: f64 = 1e-3;
@@ -194,7 +194,7 @@ fn wrong_wrists_are_refused_and_several_hands_turn_nothing() {
 }
 
 /// A rod along x of two points, 5 cm to each side, on a coupling.
-fn on_ground<const D: usize>(stiffness: f64, angular: f64) -> Servo<D> {
+fn on_ground<const D: usize>(stiffness: f64, angular: f64) -> UnprotectedServo<D> {
     let end = Vector::unit(0) * 0.05;
     let options = ToolOptions {
         stiffness,
@@ -213,7 +213,8 @@ fn on_ground<const D: usize>(stiffness: f64, angular: f64) -> Servo<D> {
         max_force: f64::INFINITY,
         ..ServoOptions::default()
     };
-    let mut servo = Servo::with_tool(Bodies::new(vec![body]).unwrap(), tool, options).unwrap();
+    let mut servo =
+        UnprotectedServo::with_tool(Bodies::new(vec![body]).unwrap(), tool, options).unwrap();
     servo.step(&[PointState::at_rest(Vector::unit(1) * 0.01)]);
     servo
 }
@@ -221,7 +222,7 @@ fn on_ground<const D: usize>(stiffness: f64, angular: f64) -> Servo<D> {
 /// A rod held flat on the ground by its ends, and a device that turns it.
 struct Flat<const D: usize> {
     device: SimulatedDevice<D>,
-    servo: Servo<D>,
+    servo: UnprotectedServo<D>,
     tick: u32,
 }
 
@@ -313,10 +314,10 @@ impl Leaning {
     /// With couplings so many times as stiff as is passive.
     fn new(part: f64, acceptance: Acceptance) -> Self {
         let (stiffness, angular) = (2.0 / PERIOD, 2.0 * DAMPING / PERIOD);
-        let mut servo = on_ground(part * stiffness, part * angular);
+        let servo = on_ground(part * stiffness, part * angular);
         let protection =
             Protection { acceptance, rise_time: 0.0, ..Protection::new(profile()) };
-        servo.protect(&protection).unwrap();
+        let servo = servo.protected(&protection).unwrap();
         let hand = Hand::resting(Vector([0.0, 0.015, 0.0])).unwrap().with_mass(0.02).unwrap();
         let hand = hand.with_spring(100.0, 1.0).unwrap().with_push(Vector([0.1, -1.0, 0.0]));
         let hand = hand.unwrap().with_turns(held_at(Vector([0.05, 0.1, -0.3])));

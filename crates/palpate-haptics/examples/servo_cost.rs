@@ -10,7 +10,8 @@ use std::error::Error;
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
-    Pace, Probe, RecordedDevice, RunOptions, Servo, ServoOptions, Tour, run,
+    Device, Pace, Probe, Protection, RecordedDevice, RunOptions, ServoOptions, Tour,
+    UnprotectedServo, run,
 };
 
 const DURATION: f64 = 60.0;
@@ -36,9 +37,10 @@ fn measure(
 ) -> Result<(), Box<dyn Error>> {
     let bounds = shape.promise().bounds.ok_or("the shape has no bounds")?;
     let path = Tour::new(bounds.aabb, DURATION)?.with_probe_radius(radius)?.over(shape)?;
-    let options = ServoOptions { probe: Probe::new(radius)?, ..ServoOptions::default() };
-    let mut servo = Servo::new(shape.clone(), points, options)?;
     let mut device = RecordedDevice::new(vec![path; points])?;
+    let options = ServoOptions { probe: Probe::new(radius)?, ..ServoOptions::default() };
+    let mut servo = UnprotectedServo::new(shape.clone(), points, options)?
+        .protected(&Protection::new(device.profile().clone()))?;
     let pace = Pace::AsFastAsPossible;
     let report =
         run(&mut servo, &mut device, RunOptions { pace, ..RunOptions::new(DURATION) })?;

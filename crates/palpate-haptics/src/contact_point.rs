@@ -82,7 +82,7 @@ pub(crate) struct ContactPoint<const D: usize> {
     of_others: f64,
     ringing: Ringing,
     pub(crate) guides: Vec<Guide<D>>,
-    /// Its way to the device; none of a servo that is not protected.
+    /// Its way to the device; `None` without protection.
     pub(crate) port: Option<Port<D>>,
 }
 
@@ -169,6 +169,13 @@ impl<const D: usize> ContactPoint<D> {
     pub(crate) fn forget_bodies(&mut self, wanted: Vector<f64, D>) {
         self.proxy.forget_bodies();
         self.of_others = wanted.norm();
+    }
+
+    /// Lets the force rise from nothing; with a port, its chain does.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn rise_anew(&mut self) {
+        self.rise = 0.0;
     }
 
     /// One tick, from the state of the device to the force to write to it [N], in its

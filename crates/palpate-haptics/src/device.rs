@@ -7,6 +7,8 @@ use std::borrow::Cow;
 
 use palpate_field::{Point, Rotation, Vector};
 
+use crate::error::HapticsError;
+
 /// One contact point of a device, as read in a tick. Coordinates of the device, which are those
 /// of the world unless a servo [protects](crate::Protection) it with a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +117,55 @@ impl DeviceProfile {
     }
 }
 
+impl DeviceProfile {
+    /// Refuses a `device` that bears less than this one: what is rendered for this one might
+    /// harm it, or be unstable on it.
+    pub(crate) fn check_bears(&self, device: &Self) -> Result<(), HapticsError> {
+        at_most("max_force", self.max_force, device.max_force, "N")?;
+        at_most("continuous_force", self.continuous_force, device.continuous_force, "N")?;
+        at_most("max_force_rate", self.max_force_rate, device.max_force_rate, "N/s")?;
+        at_most("max_stiffness", self.max_stiffness, device.max_stiffness, "N/m")?;
+        at_most("max_damping", self.max_damping, device.max_damping, "N·s/m")?;
+        at_most("least_damping", self.least_damping, device.least_damping, "N·s/m")?;
+        at_least("encoder_step", self.encoder_step, device.encoder_step, "m")?;
+        match (&self.turning, &device.turning) {
+            // Without a torque there is nothing to bear.
+            (None, _) => Ok(()),
+            (Some(turning), None) => at_most("max_torque", turning.max_torque, 0.0, "N·m"),
+            (Some(turning), Some(device)) => turning.check_bears(device),
+        }
+    }
+}
+
+/// Refuses a limit of the servo's device that is larger than the running device's.
+fn at_most(
+    limit: &'static str,
+    servo: f64,
+    device: f64,
+    unit: &'static str,
+) -> Result<(), HapticsError> {
+    // Written so that NaN is refused.
+    if servo <= device {
+        Ok(())
+    } else {
+        Err(HapticsError::OtherDevice { limit, servo, device, unit })
+    }
+}
+
+/// Refuses a limit of the servo's device that is smaller than the running device's.
+fn at_least(
+    limit: &'static str,
+    servo: f64,
+    device: f64,
+    unit: &'static str,
+) -> Result<(), HapticsError> {
+    if servo >= device {
+        Ok(())
+    } else {
+        Err(HapticsError::OtherDevice { limit, servo, device, unit })
+    }
+}
+
 /// What a device can do about its axes: the numbers of a [`DeviceProfile`], angles for lengths
 /// and torques for forces. They are those of the worst axis.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -168,6 +219,21 @@ impl TurningProfile {
             source: Cow::Borrowed(""),
             assumed: Cow::Borrowed(&[]),
         }
+    }
+}
+
+impl TurningProfile {
+    /// As [`DeviceProfile::check_bears`], about the axes.
+    fn check_bears(&self, device: &Self) -> Result<(), HapticsError> {
+        at_most("max_torque", self.max_torque, device.max_torque, "N·m")?;
+        let (torque, of_device) = (self.continuous_torque, device.continuous_torque);
+        at_most("continuous_torque", torque, of_device, "N·m")?;
+        at_most("max_torque_rate", self.max_torque_rate, device.max_torque_rate, "N·m/s")?;
+        at_most("angular max_stiffness", self.max_stiffness, device.max_stiffness, "N·m/rad")?;
+        at_most("angular max_damping", self.max_damping, device.max_damping, "N·m·s/rad")?;
+        let (damping, of_device) = (self.least_damping, device.least_damping);
+        at_most("angular least_damping", damping, of_device, "N·m·s/rad")?;
+        at_least("angular encoder_step", self.encoder_step, device.encoder_step, "rad")
     }
 }
 

@@ -94,6 +94,21 @@ pub enum HapticsError {
         /// Contact points of the device.
         device: usize,
     },
+    /// A device bears less than the one that the servo was made for.
+    #[error(
+        "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \
+         {device} {unit}: make the servo for this device"
+    )]
+    OtherDevice {
+        /// Which limit differs: "max_force".
+        limit: &'static str,
+        /// The limit that the servo was made for, in `unit`.
+        servo: f64,
+        /// The limit of the device, in `unit`.
+        device: f64,
+        /// The unit of the limit: "N".
+        unit: &'static str,
+    },
     /// There is nothing to touch.
     #[error("there must be at least one body to touch")]
     NoBody,

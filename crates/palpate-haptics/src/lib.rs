@@ -9,8 +9,8 @@
 //! counts, records and reports. A [`ServoThread`] runs the same loop beside a program, whose
 //! [`Control`] changes what is touched and sees what happens, and never makes the servo wait.
 //!
-//! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it hangs on the hand
-//! by a spring, and bodies stop it. A servo renders it [instead](Servo::with_tool) of contact
+//! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it is coupled to the hand
+//! by a spring, and bodies stop it. A servo renders it [instead](Servo::for_tool) of contact
 //! points; on a device that turns, with six degrees of freedom, it turns with the hand and gives
 //! it a torque.
 //!
@@ -37,7 +37,7 @@
 //! ```
 //! use palpate_field::{Shape, kernel::Ball};
 //! use palpate_haptics::{
-//!     Pace, RunOptions, Servo, ServoOptions, RecordedDevice, Tour, run,
+//!     Pace, RecordedDevice, RunOptions, Servo, Tour, run,
 //! };
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -45,7 +45,7 @@
 //! let bounds = ball.promise().bounds.ok_or("a ball has bounds")?;
 //! let hand = Tour::new(bounds.aabb, 5.0)?.over(&ball)?;
 //! let mut device = RecordedDevice::new(vec![hand])?;
-//! let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
+//! let mut servo = Servo::for_device(ball, &device)?;
 //!
 //! let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
 //! let report = run(&mut servo, &mut device, options)?;
@@ -56,10 +56,11 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod accepted_bodies;
 mod bend;
 mod bodies;
 #[cfg(test)]
-#[path = "../tests/common/cases.rs"]
+#[path = "../tests/all/common/cases.rs"]
 mod cases;
 mod clock;
 mod contact;
@@ -83,7 +84,6 @@ mod protection;
 mod proxy;
 mod recorded;
 mod recorder;
-mod rendering;
 mod report;
 mod rotation;
 mod run;
@@ -100,6 +100,7 @@ mod velocity;
 pub mod vibrotactile;
 mod workspace;
 
+pub use accepted_bodies::AcceptedBodies;
 pub use bodies::{Bodies, Body};
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use contact_point::Touch;
@@ -127,7 +128,7 @@ pub use safety::{
     Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
     SafetyChain, SafetyOptions, SafetyReport, TurningReport, WatchdogReport,
 };
-pub use servo::{Servo, ServoOptions};
+pub use servo::{Renderer, Servo, ServoOptions, UnprotectedServo};
 pub use statistics::{Bucket, Distribution};
 pub use surface::Surface;
 pub use thread::{EndedThread, ServoThread, ThreadOptions};

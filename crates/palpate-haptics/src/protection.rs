@@ -6,12 +6,12 @@
 
 use palpate_field::{Rotation, Vector};
 
+use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::device::{DeviceProfile, PointState, TurnState, TurningProfile};
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
 use crate::recorder::Energy;
-use crate::rendering::Rendering;
 use crate::rotation::turn_between;
 use crate::safety::{
     Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
@@ -26,20 +26,15 @@ use crate::workspace::WorkspaceMap;
 /// # Examples
 ///
 /// ```
-/// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{
-///     Bodies, Body, DeviceProfile, Protection, Servo, ServoOptions, Surface,
-/// };
+/// use palpate_field::{Shape, kernel::Ball};
+/// use palpate_haptics::{DeviceProfile, Protection, ServoOptions, UnprotectedServo};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
-/// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
-/// let mut servo = Servo::new(bodies, 1, ServoOptions::default())?;
-/// // 0.5 N·s/m bear 1000 N/m at 1 kHz.
-/// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
-/// let accepted = servo.protect(&Protection::new(device))?;
-/// assert_eq!(accepted[0].factor, 0.5);
-/// assert_eq!(servo.bodies().bodies()[0].surface().stiffness(), 1000.0);
+/// let device = DeviceProfile { max_force: 2.0, ..DeviceProfile::unlimited("example") };
+/// let protection = Protection { has_passivity_control: false, ..Protection::new(device) };
+/// let servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?.protected(&protection)?;
+/// assert_eq!(servo.options().max_force, 2.0);
 /// # Ok(())
 /// # }
 /// ```
@@ -100,29 +95,30 @@ impl<const D: usize> Protection<D> {
         Ok((bodies, all))
     }
 
-    /// Likewise all that a servo renders, its bodies alone or with a tool.
-    pub(crate) fn rendering(
+    /// The same for all that a servo renders: its bodies alone, or with the coupling that is
+    /// requested of its tool.
+    pub(crate) fn accepted_bodies(
         &self,
         bodies: Bodies<D>,
-        wanted: Option<Coupling>,
+        requested: Option<Coupling>,
         rate: f64,
-    ) -> Result<Rendering<D>, HapticsError> {
-        if let Some(coupling) = wanted {
+    ) -> Result<AcceptedBodies<D>, HapticsError> {
+        if let Some(coupling) = requested {
             return self.accept_tool(bodies, coupling, rate);
         }
         let (bodies, accepted) = self.accept(bodies, rate)?;
-        Ok(Rendering { bodies, coupling: None, accepted })
+        Ok(AcceptedBodies { bodies, coupling: None, accepted })
     }
 
-    /// Likewise the bodies and a tool, together: what the worst layer through the coupling needs
-    /// makes all of them softer. Of a device that gives a torque, followed by what became of
-    /// the coupling's angular stiffness and damping.
+    /// The same for bodies and a tool together: what the worst layer through the coupling needs
+    /// makes all of them softer. Where the device gives a torque, the second entry says what
+    /// became of the coupling's angular stiffness and damping.
     fn accept_tool(
         &self,
         mut bodies: Bodies<D>,
         mut coupling: Coupling,
         rate: f64,
-    ) -> Result<Rendering<D>, HapticsError> {
+    ) -> Result<AcceptedBodies<D>, HapticsError> {
         let mut worst: Option<Accepted> = None;
         for layer in layers(&bodies)? {
             let accepted = self.accepted(coupling.on(layer)?, rate)?;
@@ -140,7 +136,7 @@ impl<const D: usize> Protection<D> {
                 self.accept_turning(&layers(&bodies)?, &mut coupling, (turning, rate));
             accepted.push(turning?);
         }
-        Ok(Rendering { bodies, coupling: Some(coupling), accepted })
+        Ok(AcceptedBodies { bodies, coupling: Some(coupling), accepted })
     }
 
     /// What the device can do about its axes, if it gives a torque.
@@ -192,10 +188,10 @@ impl<const D: usize> Protection<D> {
     /// The port of one contact point.
     pub(crate) fn port(
         &self,
-        rendering: &Rendering<D>,
+        bodies: &AcceptedBodies<D>,
         rate: f64,
     ) -> Result<Port<D>, HapticsError> {
-        let along = rendering.along().map(|accepted| accepted.impedance);
+        let along = bodies.along().map(|accepted| accepted.impedance);
         let options = self.safety_options(along.unwrap_or_default());
         Ok(Port {
             chain: SafetyChain::new(&self.profile, rate, options)?,
@@ -207,11 +203,11 @@ impl<const D: usize> Protection<D> {
     /// What is between a tool and a device that turns; none of a device that does not.
     pub(crate) fn turning(
         &self,
-        rendering: &Rendering<D>,
+        bodies: &AcceptedBodies<D>,
         rate: f64,
     ) -> Result<Option<TurningPort<D>>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
-        let chain = if let Some((along, about)) = rendering.wrench() {
+        let chain = if let Some((along, about)) = bodies.wrench() {
             let limits = (&Limits::along(&self.profile), &Limits::about(turning));
             let options = self.safety_options(along.impedance);
             let accepted = (along.clone(), about.clone());

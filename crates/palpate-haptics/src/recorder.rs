@@ -5,7 +5,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::servo::Servo;
+use crate::servo::Renderer;
 use crate::tool::HeldTool;
 
 /// One contact point in one tick: a row of a trace. World coordinates.
@@ -32,9 +32,9 @@ pub struct TraceRow<const D: usize> {
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,
     /// Energy that the hand gave to the device and got from it so far, and what the safety
-    /// chain kept back [J]; zero of a servo that is not protected.
+    /// chain kept back [J].
     pub energy: Energy,
-    /// The tool with a shape that hangs there; none of a contact point.
+    /// The tool with a shape that is coupled to the point; `None` for a contact point.
     pub tool: Option<HeldTool<D>>,
     /// Evaluations of the shape for this point in this tick.
     pub evaluations: u32,
@@ -91,7 +91,7 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn record(&mut self, times: TickTimes, servo: &Servo<D>) {
+    pub(crate) fn record(&mut self, times: TickTimes, servo: &Renderer<D>) {
         for (point, touch) in (0..).zip(servo.touches()) {
             if self.rows.len() >= self.capacity {
                 self.dropped += 1;

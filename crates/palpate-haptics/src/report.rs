@@ -7,7 +7,7 @@ use crate::event::EventCounts;
 use crate::live::Progress;
 use crate::recorder::TickTimes;
 use crate::safety::SafetyReport;
-use crate::servo::Servo;
+use crate::servo::Renderer;
 use crate::statistics::{Distribution, Times};
 use crate::tool::{ToolReport, ToolTally};
 
@@ -44,7 +44,7 @@ pub struct RunReport {
     pub rows_dropped: u64,
     /// What happened at the contact points.
     pub events: EventCounts,
-    /// What the safety chain of each contact point did; none of a servo that is not protected.
+    /// What the safety chain of each contact point did; empty on a device that gives no force.
     pub safety: Vec<SafetyReport>,
     /// What a tool with a shape felt; none of contact points.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -135,7 +135,7 @@ impl Tally {
     pub(crate) fn tick<const D: usize>(
         &mut self,
         times: TickTimes,
-        servo: &Servo<D>,
+        servo: &Renderer<D>,
     ) -> Progress {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {

@@ -64,20 +64,20 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// Tick `k` is at `k / rate` of the servo's time. In real time the loop sleeps, and rehearses each
 /// tick up to the moment at which it begins, so that the tick finds its code and data in the
 /// caches; a tick that comes more than a period late moves all later ones, so that the servo never
-/// hurries after lost time. The device's largest force becomes the servo's, if it is smaller.
+/// hurries after lost time.
 /// Whatever ends the run, the last forces written are zero.
 ///
 /// # Errors
 ///
-/// If the duration is negative or not finite, or servo and device have different numbers of
-/// contact points. What goes wrong during the run is in the report.
+/// If the duration is negative or not finite, servo and device have different numbers of contact
+/// points, or the device bears less than the one that the servo was made for. What goes wrong during the run is in the report.
 ///
 /// # Examples
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
 /// use palpate_haptics::{
-///     HandPath, Interpolation, Pace, RunOptions, Servo, ServoOptions, RecordedDevice, run,
+///     HandPath, Interpolation, Pace, RecordedDevice, RunOptions, Servo, run,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -85,7 +85,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
 /// let mut device = RecordedDevice::new(vec![press])?;
 /// let ball = Shape::from_kernel(Ball::new(0.05)?);
-/// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
+/// let mut servo = Servo::for_device(ball, &device)?;
 ///
 /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
 /// let report = run(&mut servo, &mut device, options)?;
@@ -93,6 +93,20 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// assert!((report.largest_depth - 0.002).abs() < 1e-5); // the probe's radius
 /// # Ok(())
 /// # }
+/// ```
+///
+/// A servo without protection does not run with a device:
+///
+/// ```compile_fail,E0308
+/// use palpate_field::{Shape, kernel::Ball};
+/// use palpate_haptics::{Device, RunOptions, ServoOptions, UnprotectedServo, run};
+///
+/// fn feel(device: &mut dyn Device<3>) -> Result<(), Box<dyn std::error::Error>> {
+///     let ball = Shape::from_kernel(Ball::new(0.05)?);
+///     let mut servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?;
+///     run(&mut servo, device, RunOptions::new(1.0))?;
+///     Ok(())
+/// }
 /// ```
 pub fn run<const D: usize>(
     servo: &mut Servo<D>,
@@ -121,7 +135,7 @@ pub fn run_on<const D: usize>(
     let (control, mut end) = options
         .watch
         .is_some()
-        .then(|| handoff(servo, HandoffOptions { events: 0, bodies: 0 }))
+        .then(|| handoff(&*servo, HandoffOptions { events: 0, bodies: 0 }))
         .unzip();
     let servo_loop = ServoLoop::new(servo, device, points)
         .recording(options.recorder)

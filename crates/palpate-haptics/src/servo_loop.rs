@@ -19,7 +19,7 @@ use crate::pacer::{Pacer, nanoseconds};
 use crate::recorder::{Recorder, TickTimes};
 use crate::report::{Ending, RunReport, Tally};
 use crate::run::Pace;
-use crate::servo::Servo;
+use crate::servo::{AnyServo, Servo};
 
 /// How long before a tick it is rehearsed, again and again: the first time loads what is cold,
 /// the others teach predictors.
@@ -34,7 +34,7 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     states: Vec<PointState<D>>,
     /// What the next tick may read.
     expected: Vec<PointState<D>>,
-    /// The forces of an emergency, and of the end.
+    /// The forces of the end.
     no_forces: Vec<Vector<f64, D>>,
     /// The device said how it is turned: it is written a torque.
     is_turned: bool,
@@ -49,17 +49,12 @@ pub(crate) struct Schedule {
 }
 
 impl<'a, const D: usize> ServoLoop<'a, D> {
-    /// A loop with as many contact points as were [checked](check). The servo never exceeds the
-    /// device's largest force.
+    /// A loop with as many contact points as were [checked](check).
     pub(crate) fn new(
         servo: &'a mut Servo<D>,
         device: &'a mut dyn Device<D>,
         points: usize,
     ) -> Self {
-        servo.limit_force(device.profile().max_force);
-        if let Some(turning) = &device.profile().turning {
-            servo.limit_torque(turning.max_torque);
-        }
         let tally = Tally::new(points, servo.options().rate);
         Self {
             servo,
@@ -136,7 +131,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             let (position, velocity) = (*position + *velocity * period, *velocity);
             *expected = PointState { position, velocity };
         }
-        self.servo.rehearse(&self.expected);
+        self.servo.renderer_mut().rehearse(&self.expected);
     }
 
     /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's
@@ -152,14 +147,9 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         let start = clock.now();
         self.servo.step(&self.states);
         let cost = clock.now().saturating_sub(start);
-        let is_stopped = self.end.as_ref().is_some_and(|end| end.is_stopped());
-        self.device.write(if is_stopped { &self.no_forces } else { self.servo.forces() })?;
+        self.device.write(self.servo.forces())?;
         if self.is_turned {
-            self.device.write_torque(if is_stopped {
-                Vector::ZERO
-            } else {
-                self.servo.torque()
-            })?;
+            self.device.write_torque(self.servo.torque())?;
         }
         Ok(nanoseconds(cost))
     }
@@ -168,7 +158,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     fn account(&mut self, times: TickTimes) {
         let progress = self.tally.tick(times, self.servo);
         if let Some(end) = &mut self.end {
-            end.publish(self.servo, &progress);
+            end.publish(&*self.servo, &progress);
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.record(times, self.servo);
@@ -176,11 +166,12 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     }
 }
 
-/// How many contact points a servo and its device have.
+/// How many contact points a servo and its device have; refuses a device that is not the servo's.
 pub(crate) fn check<const D: usize>(
     servo: &Servo<D>,
     device: &dyn Device<D>,
 ) -> Result<usize, HapticsError> {
+    servo.check_device(device.profile())?;
     let (points, device) = (servo.touches().len(), device.points());
     if points == device {
         Ok(points)

@@ -50,8 +50,7 @@ impl Default for ThreadOptions {
 ///
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
 /// use palpate_haptics::{
-///     Bodies, Body, HandPath, Interpolation, Probe, RecordedDevice, Servo, ServoOptions,
-///     ServoThread, Surface, ThreadOptions, VirtualClock,
+///     HandPath, Interpolation, RecordedDevice, Servo, ServoThread, ThreadOptions, VirtualClock,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -60,9 +59,7 @@ impl Default for ThreadOptions {
 /// let hand = HandPath::new(vec![0.0, 1.0], rest, Interpolation::Linear)?;
 /// let device = Box::new(RecordedDevice::new(vec![hand])?);
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
-/// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
-/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
-/// let servo = Servo::new(bodies, 1, options)?;
+/// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
 /// let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
@@ -116,8 +113,7 @@ impl<const D: usize> ServoThread<D> {
     ///
     /// # Errors
     ///
-    /// If servo and device have different numbers of contact points, the duration is negative
-    /// or not finite, or the system gives no thread.
+    /// As [`run`](crate::run()), and if the system gives no thread.
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,

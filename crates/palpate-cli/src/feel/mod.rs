@@ -18,8 +18,8 @@ use palpate::devices::profile_named;
 use palpate::field::{Rotation, Vector};
 use palpate::haptics::{
     Acceptance, Accepted, Bodies, Body, Ending, Guide, HandPath, HapticsError, Interpolation,
-    Pace, Probe, Progress, Protection, Recorder, RunOptions, Servo, ServoOptions, Surface,
-    Tour, run as run_servo,
+    Pace, Probe, Progress, Protection, Recorder, RunOptions, ServoOptions, Surface, Tour,
+    UnprotectedServo, run as run_servo,
 };
 use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
 
@@ -97,23 +97,25 @@ where
         _ => None,
     };
     let map = held::map((scene, tool.as_ref()), &choice)?;
-    let mut servo = bodies(scene, options)
+    let servo = bodies(scene, options)
         .and_then(|bodies| match tool {
             Some(held) => {
-                Servo::with_tool(bodies, held.tool_for(&choice, map.scale())?, servo_options)
+                let tool = held.tool_for(&choice, map.scale())?;
+                UnprotectedServo::with_tool(bodies, tool, servo_options)
             }
-            None => Servo::new(bodies, contacts, servo_options),
+            None => UnprotectedServo::new(bodies, contacts, servo_options),
         })
         .map_err(Failure::input)?;
-    let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
-    servo.guide(&guides.map_err(Failure::input)?);
     let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
     let protection = Protection {
         map,
         acceptance: if options.strict { Acceptance::Strict } else { Acceptance::Scaled },
         ..Protection::new(device.profile().clone())
     };
-    let accepted = servo.protect(&protection).map_err(Failure::input)?;
+    let mut servo = servo.protected(&protection).map_err(Failure::input)?;
+    let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
+    servo.guide(&guides.map_err(Failure::input)?);
+    let accepted = servo.accepted().to_vec();
 
     let ticks = ticks(duration, options.rate)?;
     let keeps_rows = options.trace.is_some() || options.plot.is_some() || options.wav.is_some();

@@ -10,12 +10,12 @@ use palpate_field::Pose;
 
 use super::exchange::{Flag, Reader, Sender};
 use super::{Edits, Flags};
+use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::{Bodies, is_usable};
 use crate::error::{HapticsError, not_negative};
 use crate::event::Event;
 use crate::live::Snapshot;
 use crate::protection::Protection;
-use crate::rendering::Rendering;
 use crate::safety::Accepted;
 use crate::tool::Coupling;
 
@@ -32,24 +32,27 @@ pub struct Control<const D: usize> {
     /// Bodies of the newest scene.
     pub(super) bodies: usize,
     pub(super) most_bodies: usize,
-    /// What a servo that is protected is protected by, and its rate [Hz].
+    /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` of an unprotected
+    /// one.
     pub(super) protection: Option<(Protection<D>, f64)>,
-    /// How its tool was to hang on the hand; none of contact points.
-    pub(super) wanted_coupling: Option<Coupling>,
+    /// The coupling that was requested of its tool; `None` for contact points.
+    pub(super) requested_coupling: Option<Coupling>,
 }
 
 impl<const D: usize> Control<D> {
     /// Renders `bodies` from the next tick on, instead of all before. Poses set before were
     /// those of the old ones.
     ///
-    /// To a [protected](crate::Servo::protect) servo they go as its device can render them, and
-    /// a tool's coupling with them: returned is what `protect` would return. To another they go
-    /// as they are, and nothing is returned.
+    /// A [`Servo`](crate::Servo) gets them as its device can render them, and a tool's coupling
+    /// with them; what became of them is returned, as by
+    /// [`Servo::accepted`](crate::Servo::accepted). An
+    /// [`UnprotectedServo`](crate::UnprotectedServo) gets them as they are, and the list is
+    /// empty.
     ///
     /// # Errors
     ///
     /// [`HapticsError::TooManyBodies`] if there are more than the hand-off has room for; as
-    /// [`Servo::protect`](crate::Servo::protect).
+    /// [`Servo::accept`](crate::Servo::accept).
     pub fn replace_bodies(
         &mut self,
         bodies: impl Into<Bodies<D>>,
@@ -59,17 +62,17 @@ impl<const D: usize> Control<D> {
         if count > self.most_bodies {
             return Err(HapticsError::TooManyBodies { bodies: count, most: self.most_bodies });
         }
-        let rendering = match &self.protection {
+        let bodies = match &self.protection {
             Some((protection, rate)) => {
-                protection.rendering(bodies, self.wanted_coupling, *rate)?
+                protection.accepted_bodies(bodies, self.requested_coupling, *rate)?
             }
-            None => Rendering::plain(bodies),
+            None => AcceptedBodies::unchanged(bodies),
         };
-        let accepted = rendering.accepted.clone();
+        let accepted = bodies.accepted.clone();
         self.bodies = count;
         self.edit(|edits| {
             edits.poses.clear();
-            edits.rendering = Some(rendering);
+            edits.bodies = Some(bodies);
         });
         Ok(accepted)
     }
@@ -124,7 +127,7 @@ impl<const D: usize> Control<D> {
     /// Drops what the servo no longer renders; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
-            edits.rendering = None;
+            edits.bodies = None;
             edits.poses.clear();
             edits.max_force = f64::INFINITY;
             edits.max_torque = f64::INFINITY;
@@ -190,8 +193,7 @@ impl StopSwitch {
         self.flags.stop.set(true);
     }
 
-    /// Forces are written again; those of a [protected](crate::Servo::protect) servo rise from
-    /// nothing.
+    /// Forces are written again; they rise from nothing.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn release(&self) {

@@ -18,9 +18,9 @@ pub use servo_end::ServoEnd;
 
 use exchange::{Medium, Native, counter, latest};
 
+use crate::accepted_bodies::AcceptedBodies;
 use crate::live::{Progress, Snapshot};
-use crate::rendering::Rendering;
-use crate::servo::Servo;
+use crate::servo::AnyServo;
 
 /// What a hand-off has room for; the servo allocates nothing later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,19 +43,19 @@ impl Default for HandoffOptions {
 ///
 /// [`ServoThread`](crate::ServoThread) makes them itself. A loop of one's own, as where a
 /// device's driver calls back, [receives](ServoEnd::receive) before each
-/// [step](Servo::step) and [publishes](ServoEnd::publish) after it.
+/// [step](crate::Servo::step) and [publishes](ServoEnd::publish) after it.
 ///
 /// # Examples
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
 /// use palpate_haptics::{
-///     HandoffOptions, PointState, Progress, Servo, ServoOptions, handoff,
+///     HandoffOptions, PointState, Progress, ServoOptions, UnprotectedServo, handoff,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
-/// let mut servo = Servo::new(ball, 1, ServoOptions::default())?;
+/// let mut servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?;
 /// let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
 ///
 /// control.set_poses(&[(0, Pose::translation(Vector([0.0, -1.0])))])?;
@@ -71,9 +71,11 @@ impl Default for HandoffOptions {
 /// ```
 #[must_use]
 pub fn handoff<const D: usize>(
-    servo: &Servo<D>,
+    servo: &impl AnyServo<D>,
     options: HandoffOptions,
 ) -> (Control<D>, ServoEnd<D>) {
+    let protection = servo.any_protection().cloned();
+    let servo = servo.renderer();
     let bodies = servo.bodies().bodies().len();
     let most_bodies = options.bodies.max(bodies);
     let (sender, receiver) = counter();
@@ -95,8 +97,8 @@ pub fn handoff<const D: usize>(
         flags: flags.clone(),
         bodies,
         most_bodies,
-        protection: servo.protection().map(|protection| (protection.clone(), rate)),
-        wanted_coupling: servo.wanted_coupling(),
+        protection: protection.map(|protection| (protection, rate)),
+        requested_coupling: servo.requested_coupling(),
     };
     let end = ServoEnd {
         receiver,
@@ -112,7 +114,7 @@ pub fn handoff<const D: usize>(
 /// What the servo is to change before a tick, all of it together.
 struct Edits<const D: usize> {
     /// The new bodies, as they are rendered; after that tick, those to be dropped.
-    rendering: Option<Rendering<D>>,
+    bodies: Option<AcceptedBodies<D>>,
     /// New poses, by the number of the body.
     poses: Vec<Option<Pose<D>>>,
     /// The largest force on a contact point [N].
@@ -124,7 +126,7 @@ struct Edits<const D: usize> {
 impl<const D: usize> Default for Edits<D> {
     fn default() -> Self {
         let none = f64::INFINITY;
-        Self { rendering: None, poses: Vec::new(), max_force: none, max_torque: none }
+        Self { bodies: None, poses: Vec::new(), max_force: none, max_torque: none }
     }
 }
 

@@ -12,7 +12,7 @@ use super::exchange::{Flag, Receiver, Writer};
 use super::{Edits, Flags};
 use crate::event::Event;
 use crate::live::{Progress, Snapshot};
-use crate::servo::Servo;
+use crate::servo::AnyServo;
 
 /// Receives edits for a servo and publishes what it does. From [`handoff`](crate::handoff).
 pub struct ServoEnd<const D: usize> {
@@ -28,7 +28,8 @@ impl<const D: usize> ServoEnd<D> {
     /// Changes `servo` as the other end asks; before a tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn receive(&mut self, servo: &mut Servo<D>) {
+    pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
+        let servo = servo.renderer_mut();
         let is_stopped = self.flags.stop.is_set();
         if is_stopped != self.is_stopped {
             self.is_stopped = is_stopped;
@@ -36,8 +37,8 @@ impl<const D: usize> ServoEnd<D> {
         }
         let Some(mut parcel) = self.receiver.take() else { return };
         let edits = &mut parcel.content;
-        if let Some(rendering) = &mut edits.rendering {
-            servo.adopt(rendering);
+        if let Some(bodies) = &mut edits.bodies {
+            servo.adopt(bodies);
         }
         for (body, pose) in edits.poses.iter().enumerate() {
             if let Some(pose) = pose {
@@ -47,13 +48,6 @@ impl<const D: usize> ServoEnd<D> {
         servo.limit_force(edits.max_force);
         servo.limit_torque(edits.max_torque);
         self.receiver.give_back(parcel);
-    }
-
-    /// Whether the forces to be written are zero, whatever the servo wants: since the last
-    /// [receipt](Self::receive) of an emergency stop.
-    #[must_use]
-    pub fn is_stopped(&self) -> bool {
-        self.is_stopped
     }
 
     /// Whether the loop is to end: it was asked to, or there is nobody left to ask.
@@ -67,7 +61,8 @@ impl<const D: usize> ServoEnd<D> {
     /// Shows the other end what `servo` did; after a tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub fn publish(&mut self, servo: &Servo<D>, progress: &Progress) {
+    pub fn publish(&mut self, servo: &impl AnyServo<D>, progress: &Progress) {
+        let servo = servo.renderer();
         for event in servo.events() {
             self.events_lost += u64::from(self.events.push(*event).is_err());
         }

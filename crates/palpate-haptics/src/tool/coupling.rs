@@ -8,7 +8,7 @@ use crate::error::{HapticsError, positive};
 use crate::impedance::Impedance;
 
 /// The spring and damper between hand and tool as they are rendered: those of the
-/// [options](ToolOptions), or softer ones, where a [protected](crate::Servo::protect) servo's
+/// [options](ToolOptions), or softer ones, where the device of a [`Servo`](crate::Servo)
 /// device needs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupling {

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a servo renders with, and how fast.
+
+use crate::device::DeviceProfile;
+use crate::proxy::Probe;
+
+/// What a servo renders with, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ServoOptions {
+    /// Ticks a second [Hz].
+    pub rate: f64,
+    /// The ball that touches.
+    pub probe: Probe,
+    /// The largest force on a contact point [N]; infinite for none.
+    pub max_force: f64,
+    /// The time over which the force of a contact rises from nothing to all of it, where a
+    /// body covered the device point or moved onto it [s].
+    pub rise_time: f64,
+}
+
+impl Default for ServoOptions {
+    /// 1 kHz, a ball of 2 mm, 3.3 N (a desktop stylus), 0.1 s.
+    fn default() -> Self {
+        Self { rate: 1000.0, probe: Probe::default(), max_force: 3.3, rise_time: 0.1 }
+    }
+}
+
+impl ServoOptions {
+    /// The defaults, with the largest force of `device`.
+    ///
+    /// ```
+    /// use palpate_haptics::{DeviceProfile, ServoOptions};
+    ///
+    /// let device = DeviceProfile { max_force: 7.5, ..DeviceProfile::unlimited("example") };
+    /// assert_eq!(ServoOptions::of_device(&device).max_force, 7.5);
+    /// ```
+    #[must_use]
+    pub fn of_device(device: &DeviceProfile) -> Self {
+        // A device without force feedback: its protection gives no force.
+        let max_force = if device.max_force > 0.0 { device.max_force } else { f64::INFINITY };
+        Self { max_force, ..Self::default() }
+    }
+}

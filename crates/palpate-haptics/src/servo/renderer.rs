@@ -1,0 +1,461 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What both kinds of servo do in a tick: device points in, forces out.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::hint::black_box;
+use std::mem::swap;
+
+use palpate_field::{Point, Pose, Vector};
+
+use super::ServoOptions;
+use crate::accepted_bodies::AcceptedBodies;
+use crate::bodies::Bodies;
+use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
+use crate::device::{PointState, TurnState};
+use crate::error::{HapticsError, positive, positive_or_infinite};
+use crate::event::{Event, Reaction};
+use crate::guide::Guide;
+use crate::nearby::Nearby;
+use crate::protection::{Port, TurningPort};
+use crate::proxy::Probe;
+use crate::recorder::Energy;
+use crate::safety::SafetyReport;
+use crate::tool::{CoupledTool, Coupling, HeldTool, Tool};
+use crate::workspace::WorkspaceMap;
+
+/// Bodies fewer than this are all near.
+const FEW: usize = 5;
+
+/// How far proxies may go in a tick, in motions and radii of the probe: far enough that they
+/// see no horizon.
+const WAYS: f64 = 32.0;
+
+/// Renders bodies to contact points or to a tool, and shows what the last tick did.
+///
+/// A [`Servo`](crate::Servo) and an [`UnprotectedServo`](crate::UnprotectedServo) hold one and
+/// lend it: what can be seen of either is here, what can be changed is theirs.
+#[derive(Clone, Debug)]
+pub struct Renderer<const D: usize> {
+    bodies: Bodies<D>,
+    contacts: Contacts<D>,
+    rendered: Rendered<D>,
+    setting: Setting<D>,
+    is_stopped: bool,
+    /// Ticks done.
+    tick: u64,
+}
+
+/// What feels the bodies.
+#[derive(Clone, Debug)]
+enum Rendered<const D: usize> {
+    /// Contact points, each on its own.
+    Points {
+        /// What a tick is rehearsed on.
+        doubles: Contacts<D>,
+    },
+    /// A tool with a shape, coupled to the one contact point.
+    Tool(Box<CoupledTool<D>>),
+}
+
+/// Contact points and what the last tick made of them.
+#[derive(Clone, Debug)]
+struct Contacts<const D: usize> {
+    points: Vec<ContactPoint<D>>,
+    touches: Vec<Touch<D>>,
+    events: Vec<Event>,
+    /// The forces to write [N], in device coordinates.
+    forces: Vec<Vector<f64, D>>,
+}
+
+impl<const D: usize> Contacts<D> {
+    fn new(probe: Probe, points: usize) -> Self {
+        Self {
+            points: vec![ContactPoint::new(probe); points],
+            touches: vec![Touch::NONE; points],
+            events: Vec::with_capacity(MOST_EVENTS * points),
+            forces: vec![Vector::ZERO; points],
+        }
+    }
+}
+
+impl<const D: usize> Renderer<D> {
+    /// Renders `bodies` to `points` contact points.
+    pub(super) fn of_points(
+        bodies: Bodies<D>,
+        points: usize,
+        options: ServoOptions,
+    ) -> Result<Self, HapticsError> {
+        if points == 0 {
+            return Err(HapticsError::NoContactPoint);
+        }
+        let rate = positive("rate", options.rate, "Hz")?;
+        let rise_time = positive("rise_time", options.rise_time, "s")?;
+        positive_or_infinite("max_force", options.max_force, "N")?;
+        Ok(Self {
+            bodies,
+            contacts: Contacts::new(options.probe, points),
+            rendered: Rendered::Points { doubles: Contacts::new(options.probe, points) },
+            setting: Setting {
+                options,
+                map: WorkspaceMap::default(),
+                is_late: false,
+                rise_step: 1.0 / (rate * rise_time),
+            },
+            is_stopped: false,
+            tick: 0,
+        })
+    }
+
+    /// Renders `bodies` to a tool with a shape.
+    pub(super) fn of_tool(
+        bodies: Bodies<D>,
+        tool: Tool<D>,
+        options: ServoOptions,
+    ) -> Result<Self, HapticsError> {
+        let renderer = Self::of_points(bodies, 1, options)?;
+        let tool = Box::new(CoupledTool::new(tool.of_servo(&options)));
+        Ok(Self { rendered: Rendered::Tool(tool), ..renderer })
+    }
+
+    fn coupled_tool(&self) -> Option<&CoupledTool<D>> {
+        match &self.rendered {
+            Rendered::Points { .. } => None,
+            Rendered::Tool(tool) => Some(tool),
+        }
+    }
+
+    fn coupled_tool_mut(&mut self) -> Option<&mut CoupledTool<D>> {
+        match &mut self.rendered {
+            Rendered::Points { .. } => None,
+            Rendered::Tool(tool) => Some(tool),
+        }
+    }
+
+    /// The tool with a shape that is rendered to; `None` for contact points.
+    #[must_use]
+    pub fn tool(&self) -> Option<&Tool<D>> {
+        self.coupled_tool().map(|coupled| &coupled.tool)
+    }
+
+    /// The tool with a shape after the last tick, as it is held; `None` for contact points.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn held_tool(&self) -> Option<HeldTool<D>> {
+        self.coupled_tool().map(CoupledTool::held)
+    }
+
+    /// The torque of the last tick, to be written to a device that turns [N·m]: in its
+    /// coordinates, about the device point. Zero for contact points.
+    #[must_use]
+    pub fn torque(&self) -> Vector<f64, 3> {
+        self.coupled_tool().map_or(Vector::ZERO, |coupled| coupled.torque)
+    }
+
+    /// What is rendered with, and how fast.
+    #[must_use]
+    pub fn options(&self) -> &ServoOptions {
+        &self.setting.options
+    }
+
+    /// What is touched, as it is rendered.
+    #[must_use]
+    pub fn bodies(&self) -> &Bodies<D> {
+        &self.bodies
+    }
+
+    /// The contact points after the last tick.
+    #[must_use]
+    pub fn touches(&self) -> &[Touch<D>] {
+        &self.contacts.touches
+    }
+
+    /// The forces of the last tick, to be written to the device [N]: in its coordinates.
+    #[must_use]
+    pub fn forces(&self) -> &[Vector<f64, D>] {
+        &self.contacts.forces
+    }
+
+    /// What happened in the last tick.
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        &self.contacts.events
+    }
+
+    /// What was done to each body in the last tick.
+    #[must_use]
+    pub fn reactions(&self) -> &[Reaction<D>] {
+        self.bodies.reactions()
+    }
+
+    /// Whether forces and torques are stopped.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped
+    }
+
+    /// What the safety chain of every contact point did so far; empty for an
+    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    #[must_use]
+    pub fn safety(&self) -> Vec<SafetyReport> {
+        let port = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
+        if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
+            return vec![chain.report()];
+        }
+        self.contacts
+            .points
+            .iter()
+            .filter_map(|point| point.port.as_ref())
+            .map(Port::report)
+            .collect()
+    }
+
+    /// The energy at a contact point since the start; zero for an
+    /// [`UnprotectedServo`](crate::UnprotectedServo).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn energy(&self, point: u32) -> Energy {
+        let turning = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
+        if let Some(energy) = turning.and_then(TurningPort::energy) {
+            return energy;
+        }
+        let port =
+            self.contacts.points.get(point as usize).and_then(|point| point.port.as_ref());
+        port.map_or(Energy::default(), Port::energy)
+    }
+
+    /// The coupling that was asked of the tool, before any limit of a device; `None` for contact
+    /// points.
+    pub(crate) fn requested_coupling(&self) -> Option<Coupling> {
+        self.coupled_tool().map(|coupled| coupled.requested)
+    }
+
+    /// The torque of the last tick on a device that turns [N·m]; `None` on another.
+    pub(crate) fn given_torque(&self) -> Option<Vector<f64, 3>> {
+        self.coupled_tool()
+            .filter(|coupled| coupled.turn.is_some())
+            .map(|coupled| coupled.torque)
+    }
+
+    /// Places the workspace of the device in the world.
+    pub(super) fn set_map(&mut self, map: WorkspaceMap<D>) {
+        self.setting.map = map;
+    }
+
+    /// Stands `port` between every contact point and the device, and `turning` between a tool
+    /// and a device that turns.
+    pub(super) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
+        self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.port = turning;
+        }
+    }
+
+    pub(crate) fn set_turn(&mut self, turn: Option<TurnState<D>>) {
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.turn = turn;
+        }
+    }
+
+    pub(super) fn guide(&mut self, guides: &[Guide<D>]) {
+        for point in &mut self.contacts.points {
+            point.guides = guides.to_vec();
+        }
+    }
+
+    pub(crate) fn set_late(&mut self, is_late: bool) {
+        self.setting.is_late = is_late;
+    }
+
+    pub(crate) fn stop(&mut self, is_stopped: bool) {
+        self.is_stopped = is_stopped;
+        self.ports().for_each(|port| port.stop(is_stopped));
+        if let Some(chain) = self.coupled_tool_mut().and_then(CoupledTool::chain) {
+            if is_stopped { chain.stop() } else { chain.release() }
+        }
+    }
+
+    fn ports(&mut self) -> impl Iterator<Item = &mut Port<D>> {
+        self.contacts.points.iter_mut().filter_map(|point| point.port.as_mut())
+    }
+
+    pub(crate) fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
+        self.bodies.set_pose(body, world_from_body);
+    }
+
+    /// Renders `bodies` from the next tick on, and leaves there the bodies rendered so far.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) {
+        swap(&mut self.bodies, &mut bodies.bodies);
+        let Contacts { points, touches, .. } = &mut self.contacts;
+        for (point, touch) in points.iter_mut().zip(touches) {
+            point.forget_bodies(touch.wanted);
+        }
+        if let Some(accepted) = bodies.along() {
+            self.ports().for_each(|port| port.renew(accepted));
+        }
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.adopt(bodies);
+        }
+    }
+
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        // `min` ignores NaN.
+        self.setting.options.max_force = self.setting.options.max_force.min(max_force).max(0.0);
+        let limit = self.setting.options.max_force;
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.limit_force(limit);
+        }
+        self.ports().for_each(|port| port.limit_force(limit));
+    }
+
+    pub(crate) fn limit_torque(&mut self, max_torque: f64) {
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.limit_torque(max_torque.max(0.0));
+        }
+    }
+
+    pub(crate) fn step(&mut self, states: &[PointState<D>]) -> &[Touch<D>] {
+        if matches!(self.rendered, Rendered::Tool(_)) {
+            self.render_tool(states);
+        } else {
+            self.render_points(states);
+            self.bodies.settle();
+        }
+        self.tick += 1;
+        if self.is_stopped {
+            self.withhold();
+        }
+        &self.contacts.touches
+    }
+
+    /// Gives nothing of what was rendered; after the release, forces rise from nothing.
+    #[cold]
+    fn withhold(&mut self) {
+        let Contacts { points, touches, forces, .. } = &mut self.contacts;
+        forces.fill(Vector::ZERO);
+        touches.iter_mut().for_each(|touch| touch.force = Vector::ZERO);
+        points.iter_mut().for_each(ContactPoint::rise_anew);
+        if let Some(coupled) = self.coupled_tool_mut() {
+            coupled.withhold();
+        }
+    }
+
+    fn render_tool(&mut self, states: &[PointState<D>]) {
+        let Rendered::Tool(coupled) = &mut self.rendered else { return };
+        let Contacts { points, touches, events, forces } = &mut self.contacts;
+        events.clear();
+        let points = points.iter_mut().zip(touches).zip(forces);
+        for (index, ((point, touch), force)) in points.enumerate() {
+            let at = (point, &mut self.bodies);
+            *force = coupled.tick(at, &self.setting, state(states, index), touch);
+        }
+        let told = coupled.tool.events().iter().take(MOST_EVENTS);
+        events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
+    }
+
+    /// A tick of contact points, up to its end.
+    ///
+    /// Never inlined: rehearsal and tick share one code address, so the rehearsal warms the
+    /// instruction cache for the tick.
+    #[inline(never)]
+    fn render_points(&mut self, states: &[PointState<D>]) {
+        let Contacts { points, touches, events, forces } = &mut self.contacts;
+        events.clear();
+        let (mut list, mut reactions) = self.bodies.take_scratch();
+        reactions.fill(Reaction::NONE);
+        let hand = || hand(touches, states, &self.setting);
+        let nearby = nearby(&self.bodies, hand, &mut list);
+        let mut tick = Tick::new(&nearby, &self.setting, self.tick, events);
+        let points = points.iter_mut().zip(touches).zip(forces);
+        for (index, ((point, touch), force)) in points.enumerate() {
+            *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
+            let touched = nearby.body(touch.body).filter(|_| touch.contact);
+            let reaction = reactions.get_mut(touch.body as usize);
+            if let Some((body, reaction)) = touched.zip(reaction) {
+                reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
+            }
+        }
+        self.bodies.put_back((list, reactions));
+    }
+
+    /// Does what a tick would with `states`, on doubles of the contact points: its only effect
+    /// is that the next tick finds its code and data in the caches. A tool has no double, as to
+    /// copy it would allocate: the bodies alone are asked where it is.
+    ///
+    /// Real-time: as [`Servo::step`](crate::Servo::step).
+    pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
+        match &mut self.rendered {
+            Rendered::Tool(coupled) => {
+                let origin = coupled.tool.touch().pose.translation;
+                black_box(self.bodies.everything().look(origin));
+                return;
+            }
+            Rendered::Points { doubles } => {
+                let contacts = self.contacts.points.iter().zip(&self.contacts.touches);
+                let copies = doubles.points.iter_mut().zip(&mut doubles.touches);
+                for ((double, its_touch), (point, touch)) in copies.zip(contacts) {
+                    (*double, *its_touch) = (point.double(), *touch);
+                }
+            }
+        }
+        self.swap_doubles();
+        self.render_points(states);
+        self.swap_doubles();
+    }
+
+    /// Swaps what a tick changes with its doubles.
+    fn swap_doubles(&mut self) {
+        if let Rendered::Points { doubles } = &mut self.rendered {
+            swap(&mut self.contacts, doubles);
+        }
+        self.bodies.swap_reactions();
+    }
+}
+
+/// The bodies that are near enough to matter in a tick.
+fn nearby<'a, const D: usize>(
+    bodies: &'a Bodies<D>,
+    hand: impl FnOnce() -> (Point<D>, f64),
+    list: &'a mut [u32],
+) -> Nearby<'a, D> {
+    if bodies.bodies().len() < FEW { bodies.everything() } else { bodies.nearby(hand(), list) }
+}
+
+/// The state of a contact point; not finite if it is missing.
+fn state<const D: usize>(states: &[PointState<D>], index: usize) -> PointState<D> {
+    states.get(index).copied().unwrap_or(PointState::at_rest(Vector([f64::NAN; D])))
+}
+
+/// A ball around all contact points and where their proxies may go in this tick, as far as
+/// they are finite.
+fn hand<const D: usize>(
+    touches: &[Touch<D>],
+    states: &[PointState<D>],
+    Setting { map, options, .. }: &Setting<D>,
+) -> (Point<D>, f64) {
+    let known = states.iter().zip(touches).filter(|(state, _)| state.position.is_finite());
+    let known = known.map(|(state, touch)| (map.point_to_world(state.position), touch));
+    let (mut sum, mut count, mut motion) = (Vector::ZERO, 0.0, 0.0_f64);
+    for (position, touch) in known.clone() {
+        sum += position;
+        count += 1.0;
+        motion = motion.max((position - touch.proxy).norm());
+    }
+    let centre = if count > 0.0 { sum * (1.0 / count) } else { Vector::ZERO };
+    let mut radius = 0.0_f64;
+    // One alone is the centre.
+    if count > 1.0 {
+        for (position, _) in known {
+            radius = radius.max((position - centre).norm());
+        }
+    }
+    (centre, radius + WAYS * (motion + options.probe.radius()))
+}

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A servo without a safety chain.
+
+use std::ops::Deref;
+
+use super::{Renderer, Servo, ServoOptions};
+use crate::bodies::Bodies;
+use crate::device::DeviceProfile;
+use crate::error::HapticsError;
+use crate::protection::Protection;
+use crate::tool::Tool;
+
+/// Renders bodies to contact points or to a tool, **without any protection of a device or a
+/// hand** but a largest force.
+///
+/// It is for tests, for measurements, and for loops that no hand feels. It does not
+/// [run with a device](crate::run()): [`protected`](Self::protected) makes a [`Servo`] of it,
+/// which does.
+///
+/// What the servo shows of its last tick are the methods of [`Renderer`], which it lends.
+///
+/// # Examples
+///
+/// A wall pressed to a depth of 1/256 m:
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::Ball};
+/// use palpate_haptics::{
+///     Bodies, Body, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
+/// };
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
+/// let ball = Shape::from_kernel(Ball::new(0.5)?);
+/// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
+/// let mut servo = UnprotectedServo::new(bodies, 1, options)?;
+/// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
+/// let touches = servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
+///
+/// assert!(touches[0].contact);
+/// assert!((touches[0].force - Vector([0.0, 2.0])).norm() < 1e-4);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct UnprotectedServo<const D: usize> {
+    pub(super) renderer: Renderer<D>,
+}
+
+impl<const D: usize> UnprotectedServo<D> {
+    /// A servo that renders `bodies` to `points` contact points. A shape alone is one body of
+    /// the default surface.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::NoContactPoint`] if there are none; [`HapticsError::Number`] if the
+    /// rate, the rise time or the largest force is not positive.
+    pub fn new(
+        bodies: impl Into<Bodies<D>>,
+        points: usize,
+        options: ServoOptions,
+    ) -> Result<Self, HapticsError> {
+        Ok(Self { renderer: Renderer::of_points(bodies.into(), points, options)? })
+    }
+
+    /// A servo that renders `bodies` to a tool with a shape, which is coupled to the one contact
+    /// point of a device: its origin is at the device point, its axes are those of the device, or
+    /// of what the hand holds where that [turns](Self::set_turn).
+    ///
+    /// Rate, rise time and largest force of the servo become the tool's; the probe is not used.
+    /// The [touch](Renderer::touches) is that of the whole tool, with the origin for its proxy,
+    /// the normal and the body of the contact that pushes hardest, and a wanted force that is
+    /// limited already; the rest is in [`tool`](Renderer::tool).
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::Number`] as [`new`](Self::new).
+    ///
+    /// # Examples
+    ///
+    /// A ball of 62.5 mm pressed 2 mm into the ground:
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector, kernel::HalfSpace};
+    /// use palpate_haptics::{
+    ///     PointState, ServoOptions, Shell, Tool, ToolOptions, UnprotectedServo,
+    /// };
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
+    /// let coupling = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
+    /// let tool = Tool::new(Shell::ball(0.0625)?, coupling)?;
+    /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.0605, 0.0]))]);
+    /// assert!((servo.forces()[0] - Vector([0.0, 1.0, 0.0])).norm() < 1e-9);
+    /// assert_eq!(servo.tool().map(|tool| tool.touch().contacts.len()), Some(1));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// A rod of 10 cm is pressed onto the ground by 1 cm and turned by 0.1 rad: it stays flat, and
+    /// its coupling of 1 N·m/rad turns the hand back.
+    ///
+    /// ```
+    /// use palpate_field::{Rotation, Shape, Vector, kernel::HalfSpace};
+    /// use palpate_haptics::{
+    ///     PointState, ServoOptions, Shell, Tool, ToolOptions, TurnState, UnprotectedServo,
+    /// };
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
+    /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
+    /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
+    /// let tool = Tool::new(rod, coupling)?;
+    /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
+    /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
+    /// for tick in 1..=100 {
+    ///     let orientation = Rotation::from_angle(0.001 * f64::from(tick))?;
+    ///     servo.set_turn(Some(TurnState::at_rest(orientation)));
+    ///     servo.step(&[PointState::at_rest(Vector([0.0, -0.009]))]);
+    /// }
+    /// assert!((servo.torque() - Vector([0.0, 0.0, -0.1])).norm() < 1e-6);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn with_tool(
+        bodies: impl Into<Bodies<D>>,
+        tool: Tool<D>,
+        options: ServoOptions,
+    ) -> Result<Self, HapticsError> {
+        Ok(Self { renderer: Renderer::of_tool(bodies.into(), tool, options)? })
+    }
+
+    /// A servo for a device: a safety chain stands between every contact point and it. States
+    /// are read and forces written in the coordinates of the device.
+    ///
+    /// Bodies and tool become as soft as the device needs them: see [`Servo::accepted`]. A device
+    /// without force feedback gets no chain and no force.
+    ///
+    /// # Errors
+    ///
+    /// If a body is refused, or a limit of the profile is not positive.
+    ///
+    /// # Examples
+    ///
+    /// A loop of one's own, on a device that renders 1000 N/m:
+    ///
+    /// ```
+    /// use palpate_field::{Shape, kernel::Ball};
+    /// use palpate_haptics::{Bodies, Body, DeviceProfile, Protection, Surface, UnprotectedServo};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
+    /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
+    /// // 0.5 N·s/m bear 1000 N/m at 1 kHz.
+    /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+    /// let servo = UnprotectedServo::new(bodies, 1, Default::default())?
+    ///     .protected(&Protection::new(device))?;
+    /// assert_eq!(servo.accepted()[0].factor, 0.5);
+    /// assert_eq!(servo.bodies().bodies()[0].surface().stiffness(), 1000.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn protected(self, protection: &Protection<D>) -> Result<Servo<D>, HapticsError> {
+        let mut renderer = self.renderer;
+        let protection = protection.clone();
+        renderer.set_map(protection.map);
+        renderer.limit_force(protection.profile.max_force);
+        if protection.profile.turning.is_none() {
+            renderer.limit_torque(0.0);
+        }
+        let limit = renderer.options().max_force;
+        if limit == 0.0 {
+            renderer.limit_torque(0.0);
+            return Ok(Servo { renderer, protection, accepted: Vec::new() });
+        }
+        let rate = renderer.options().rate;
+        let coupling = renderer.requested_coupling();
+        let bodies = renderer.bodies().clone();
+        let mut bodies = protection.accepted_bodies(bodies, coupling, rate)?;
+        let profile = DeviceProfile { max_force: limit, ..protection.profile.clone() };
+        let limited = Protection { profile, ..protection.clone() };
+        renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
+        renderer.adopt(&mut bodies);
+        Ok(Servo { renderer, protection, accepted: bodies.accepted })
+    }
+
+    /// The same by the default protection of `profile`.
+    pub(super) fn protected_for(
+        self,
+        profile: &DeviceProfile,
+    ) -> Result<Servo<D>, HapticsError> {
+        self.protected(&Protection::new(profile.clone()))
+    }
+
+    /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
+    /// where freeing is allowed.
+    ///
+    /// A contact point that the new bodies cover is placed anew, and its force rises gently; so
+    /// does one that pushes harder on them than on those before, from where it was.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn replace_bodies(&mut self, bodies: Bodies<D>) -> Bodies<D> {
+        let mut bodies = crate::accepted_bodies::AcceptedBodies::unchanged(bodies);
+        self.renderer.adopt(&mut bodies);
+        bodies.bodies
+    }
+}
+
+impl<const D: usize> Deref for UnprotectedServo<D> {
+    type Target = Renderer<D>;
+
+    fn deref(&self) -> &Renderer<D> {
+        &self.renderer
+    }
+}

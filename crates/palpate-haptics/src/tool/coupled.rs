@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A tool that a servo renders instead of contact points: it is coupled to the one contact point
+//! of a device, and uses that point's way to the device.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Point, Pose, Vector};
+
+use super::twist::Twist;
+use super::{Coupling, Tool, ToolState};
+use crate::accepted_bodies::AcceptedBodies;
+use crate::bodies::Bodies;
+use crate::contact_point::{ContactPoint, Setting, Touch};
+use crate::device::{PointState, TurnState};
+use crate::limit::limited;
+use crate::protection::TurningPort;
+use crate::safety::{Both, WrenchChain, WrenchState};
+use crate::servo::ServoOptions;
+
+/// A tool after a tick, as rows of a trace and snapshots have it. World coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldTool<const D: usize> {
+    /// Where the tool is: `world_from_tool`.
+    pub pose: Pose<D>,
+    /// How it is turned against the device: along the axis, as long as the angle [rad]; in the
+    /// plane about z alone.
+    pub turn: Vector<f64, 3>,
+    /// The torque about the tool's origin that is wanted on the hand [N·m]; in the plane about z
+    /// alone.
+    pub torque: Vector<f64, 3>,
+    /// The torque that is given to the hand by a device that turns [N·m]; none by another.
+    pub given: Option<Vector<f64, 3>>,
+    /// Contacts that push.
+    pub contacts: u32,
+    /// How far the tool's surface may be from balls that are known to be outside [m].
+    pub resolution: f64,
+    /// `true` if the budget did not allow all levels of the shell.
+    pub is_degraded: bool,
+    /// `true` if bodies cover the tool: it touches nothing.
+    pub is_covered: bool,
+}
+
+impl<const D: usize> Tool<D> {
+    /// After the last tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn held(&self) -> HeldTool<D> {
+        let touch = self.touch();
+        HeldTool {
+            pose: touch.pose,
+            turn: Twist::between(&touch.device, &touch.pose).angular,
+            torque: touch.torque,
+            given: None,
+            contacts: touch.contacts.len() as u32,
+            resolution: touch.resolution,
+            is_degraded: touch.is_degraded,
+            is_covered: touch.is_covered,
+        }
+    }
+
+    /// The same at a servo's rate, with its rise time and largest force.
+    pub(crate) fn of_servo(mut self, servo: &ServoOptions) -> Self {
+        let ServoOptions { rate, max_force, rise_time, .. } = *servo;
+        self.options.rate = rate;
+        self.options.rise_time = rise_time;
+        self.options.max_force = max_force;
+        self
+    }
+
+    /// Lowers the largest force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        self.options.max_force = self.options.max_force.min(max_force);
+    }
+}
+
+/// A tool coupled to the contact point of a servo, and how it turns with the device.
+#[derive(Clone, Debug)]
+pub(crate) struct CoupledTool<const D: usize> {
+    pub(crate) tool: Tool<D>,
+    /// The coupling that was requested, before any limit of a device.
+    pub(crate) requested: Coupling,
+    /// How the device is turned; `None` if it does not turn.
+    pub(crate) turn: Option<TurnState<D>>,
+    /// What is between the tool and a device that turns; `None` without protection.
+    pub(crate) port: Option<TurningPort<D>>,
+    /// The largest torque without protection [N·m].
+    max_torque: f64,
+    /// The torque to write to the device [N·m].
+    pub(crate) torque: Vector<f64, 3>,
+    /// The same in the world; none on a device that does not turn.
+    given: Option<Vector<f64, 3>>,
+}
+
+impl<const D: usize> CoupledTool<D> {
+    pub(crate) fn new(tool: Tool<D>) -> Self {
+        let (max_torque, torque) = (f64::INFINITY, Vector::ZERO);
+        let requested = tool.coupling;
+        Self { tool, requested, turn: None, port: None, max_torque, torque, given: None }
+    }
+
+    /// The tool after the last tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn held(&self) -> HeldTool<D> {
+        HeldTool { given: self.given, ..self.tool.held() }
+    }
+
+    /// The chain of force and torque; none of a device that gives no torque.
+    pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain<D>> {
+        self.port.as_mut().and_then(|port| port.chain.as_mut())
+    }
+
+    /// Touches other bodies from the next tick on, through the coupling that they need.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies<D>) {
+        self.tool.forget_bodies();
+        if let Some(coupling) = bodies.coupling {
+            self.tool.coupling = coupling;
+        }
+        if let Some((chain, accepted)) = self.chain().zip(bodies.wrench()) {
+            chain.renew(accepted);
+        }
+    }
+
+    /// Lowers the largest force [N].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_force(&mut self, max_force: f64) {
+        self.tool.limit_force(max_force);
+        if let Some(chain) = self.chain() {
+            chain.limit_force(max_force);
+        }
+    }
+
+    /// Gives no torque in this tick.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn withhold(&mut self) {
+        self.torque = Vector::ZERO;
+        self.given = self.given.map(|_| Vector::ZERO);
+    }
+
+    /// Lowers the largest torque [N·m].
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn limit_torque(&mut self, max_torque: f64) {
+        match self.chain() {
+            Some(chain) => chain.limit_torque(max_torque),
+            // `min` ignores NaN.
+            None => self.max_torque = self.max_torque.min(max_torque),
+        }
+    }
+
+    /// One tick of the tool coupled to `point`, from the state of the device to the force to
+    /// write to it [N], in its coordinates; the torque to write is kept. The touch is that of the
+    /// whole tool.
+    ///
+    /// Real-time: as [`Tool::step`].
+    pub(crate) fn tick(
+        &mut self,
+        (point, bodies): (&mut ContactPoint<D>, &mut Bodies<D>),
+        setting: &Setting<D>,
+        state: PointState<D>,
+        touch: &mut Touch<D>,
+    ) -> Vector<f64, D> {
+        let map = &setting.map;
+        let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
+        let (turn, angle) = match &mut self.port {
+            Some(port) => port.state(self.turn),
+            None => (self.turn, Vector::ZERO),
+        };
+        let PointState { position, velocity } = map.state_to_world(at_device);
+        let (rotation, angular_velocity) = match &turn {
+            Some(turn) => (
+                map.orientation_to_world(turn.orientation),
+                map.spin_to_world(turn.angular_velocity),
+            ),
+            None => (map.rotation(), Vector::ZERO),
+        };
+        let pose = Pose::new(rotation, position);
+        self.tool.step(bodies, &ToolState { pose, velocity, angular_velocity });
+        let felt = self.tool.touch();
+        let free = point.guided(position, velocity);
+        *touch = Touch {
+            device: position,
+            velocity: self.tool.hand_velocity,
+            proxy: felt.pose.translation,
+            wanted: felt.force,
+            force: Vector::ZERO,
+            normal: felt.normal,
+            contact: felt.contact,
+            body: felt.body.unwrap_or(0),
+            is_slipping: felt.is_slipping,
+            evaluations: felt.evaluations,
+        };
+        let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
+        let force = if let Some(chain) = self.chain() {
+            let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
+            let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
+            let state = WrenchState {
+                position: Both { along: at_device.position, about: angle },
+                velocity: Both { along: at_device.velocity, about: spin },
+                free_force: map.force_to_device(free),
+                is_late: setting.is_late,
+            };
+            let given = chain.step(Both { along: force, about: torque }, &state);
+            self.torque = given.about;
+            touch.force = map.force_to_world(given.along);
+            given.along
+        } else {
+            // Of a port without a chain, the device gives no torque.
+            let most = if self.port.is_some() { 0.0 } else { self.max_torque };
+            self.torque = limited(torque, most);
+            point.give(setting, at_device, touch, (free, false))
+        };
+        self.given = turn.map(|_| map.torque_to_world(self.torque));
+        force
+    }
+}
+
+impl<const D: usize> ContactPoint<D> {
+    /// The force of the guides [N]; none where a number is not finite.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn guided(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
+        let mut free = Vector::ZERO;
+        if position.is_finite() && velocity.is_finite() {
+            for guide in &mut self.guides {
+                free += guide.force(position, velocity);
+            }
+        }
+        free
+    }
+}

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! All tests of the crate in one program, which links faster than many.
+
+use assert_no_alloc::AllocDisabler;
+
+mod common;
+
+mod any_input;
+mod bends;
+mod bodies;
+mod continuity;
+mod corners;
+mod degenerate;
+mod effects;
+mod energy;
+mod forces;
+mod friction;
+mod golden;
+mod handoff;
+mod happenings;
+mod moving;
+mod places;
+mod protected;
+mod real_time;
+mod runs;
+mod safety;
+mod scale;
+mod strikes;
+mod swapped;
+mod tool_materials;
+mod tool_servo;
+mod tools;
+mod tours;
+mod turning;
+mod walls;
+
+/// Aborts where a test forbids to allocate.
+#[global_allocator]
+static ALLOCATOR: AllocDisabler = AllocDisabler;

@@ -1,0 +1,263 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Whole runs of the servo, on clocks that tests move.
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
+use std::time::Duration;
+
+use crate::common::{ball, cuboid, half_space, protected, without_limits};
+use palpate_field::{CustomField, Point, Promise, Shape, Vector};
+use palpate_haptics::{
+    Bodies, Body, Clock, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError,
+    Interpolation, Material, Pace, PointState, Probe, RecordedDevice, Recorder, RunOptions,
+    Servo, ServoOptions, Surface, Tour, UnprotectedServo, VirtualClock, run, run_on,
+};
+use palpate_scene::{Impact, Layer, PopThrough};
+
+/// A clock on which looking costs a microsecond and waiting nothing more.
+#[derive(Default)]
+struct TestClock {
+    now: Duration,
+    waits: u64,
+    /// Looks at which the clock jumps, as if the machine had been busy.
+    busy: Vec<(u64, Duration)>,
+    looks: u64,
+}
+
+impl Clock for TestClock {
+    fn now(&mut self) -> Duration {
+        self.looks += 1;
+        self.now += Duration::from_micros(1);
+        for (look, time) in &self.busy {
+            if *look == self.looks {
+                self.now += *time;
+            }
+        }
+        self.now
+    }
+    fn wait_until(&mut self, deadline: Duration) {
+        self.waits += 1;
+        self.now = self.now.max(deadline);
+    }
+}
+
+fn press() -> HandPath<2> {
+    let positions =
+        [0.25, 0.0, -0.0078125, -0.0078125, 0.25].map(|y| Vector([0.0, y])).to_vec();
+    HandPath::new(vec![0.0, 1.0, 2.0, 3.0, 4.0], positions, Interpolation::Linear).unwrap()
+}
+
+fn wall_servo(options: ServoOptions) -> Servo<2> {
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..options };
+    let wall = half_space([0.0, 1.0], 0.0);
+    without_limits(UnprotectedServo::new(wall, 1, options).unwrap())
+}
+
+fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
+    RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
+}
+
+#[test]
+fn a_report_counts_what_happened() {
+    let max_force = f64::INFINITY;
+    let mut servo =
+        wall_servo(ServoOptions { rate: 128.0, max_force, ..ServoOptions::default() });
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
+    let mut recorder = Recorder::new(4 * 128);
+    let options = RunOptions { recorder: Some(&mut recorder), ..fast(4.0) };
+    let report = run_on(&mut TestClock::default(), &mut servo, &mut device, options).unwrap();
+
+    assert_eq!(report.ending, Ending::Finished);
+    assert_eq!((report.ticks, report.duration, report.points), (512, 4.0, 1));
+    // Below the wall from the tick after 1 s; above it again 1/33 s, or 3.9 ticks, after 3 s.
+    assert_eq!(report.contact_time, (2.0 * 128.0 + 3.0) / 128.0);
+    assert_eq!(report.largest_depth, 0.0078125);
+    // 500 N/m; the approach at 1/128 m/s adds up to 1/128 N for 1 N·s/m.
+    assert!((report.largest_force - 500.0 * 0.0078125).abs() < 0.01);
+    let cost = report.cost.unwrap();
+    assert_eq!((cost.count, cost.max_ns), (512, 1000));
+    assert_eq!((report.lateness, report.missed_deadlines, report.rows_dropped), (None, 0, 0));
+    assert!(report.evaluations.max <= 8 && report.evaluations.budget_spent == 0);
+
+    assert_eq!(recorder.rows().len(), 512);
+    let row = recorder.rows()[2 * 128];
+    assert_eq!((row.time_s, row.point, row.cost_ns, row.lateness_ns), (2.0, 0, 1000, 0));
+    assert_eq!((row.device, row.proxy), (Vector([0.0, -0.0078125]), Vector([0.0, 0.0])));
+    assert_eq!((row.force, row.contact), (Vector([0.0, 3.90625]), true));
+    assert_eq!(device.forces(), [Vector::ZERO]);
+}
+
+#[test]
+fn a_full_recorder_drops_rows_and_says_so() {
+    let mut servo = wall_servo(ServoOptions::default());
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
+    let mut recorder = Recorder::new(100);
+    let options = RunOptions { recorder: Some(&mut recorder), ..fast(1.0) };
+    let report = run(&mut servo, &mut device, options).unwrap();
+    assert_eq!(
+        (report.rows_dropped, recorder.dropped(), recorder.rows().len()),
+        (900, 900, 100)
+    );
+}
+
+#[test]
+fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
+    let mut servo = wall_servo(ServoOptions { rate: 1000.0, ..ServoOptions::default() });
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
+    // In a rehearsal a tenth of a second is lost.
+    let busy = vec![(1000, Duration::from_millis(100))];
+    let mut clock = TestClock { busy, ..TestClock::default() };
+    let options = RunOptions::new(1.0);
+    let report = run_on(&mut clock, &mut servo, &mut device, options).unwrap();
+    let lateness = report.lateness.unwrap();
+    // Two waits a tick: for the rehearsals and for the tick.
+    assert_eq!((report.ticks, clock.waits, lateness.count), (1000, 2000, 1000));
+    assert_eq!(report.missed_deadlines, 1);
+    assert_eq!(lateness.p50_ns, 1000);
+    assert!(lateness.max_ns >= 100_000_000);
+    assert!(clock.now >= Duration::from_millis(1098), "{:?}", clock.now);
+}
+
+/// A body that remembers: it rings, sticks, and gives way.
+fn lively_servo() -> Servo<3> {
+    let shape = cuboid([0.1, 0.1, 0.1]).difference([ball(0.06)]).unwrap();
+    let material = Material {
+        static_friction: 0.5,
+        dynamic_friction: 0.3,
+        pop_through: Some(PopThrough { description: None, force: 1.0, distance: 0.01 }),
+        layers: vec![Layer { depth: 0.004, ..Layer::default() }],
+        impact: Some(Impact {
+            description: None,
+            amplitude: 2.0,
+            frequency: 90.0,
+            decay: 20.0,
+        }),
+        ..Material::default()
+    };
+    let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
+    let bodies = Bodies::new(vec![body]).unwrap();
+    protected(UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap())
+}
+
+/// Every bit of a run: FNV-1a.
+fn hash(pace: Pace) -> u64 {
+    let mut servo = lively_servo();
+    let shape = servo.bodies().bodies()[0].shape().clone();
+    let bounds = shape.promise().bounds.unwrap().aabb;
+    let path = Tour::new(bounds, 2.0).unwrap().over(&shape).unwrap();
+    let mut device = RecordedDevice::new(vec![path]).unwrap();
+    let mut recorder = Recorder::new(2000);
+    let options = RunOptions { recorder: Some(&mut recorder), pace, ..RunOptions::new(2.0) };
+    run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
+    let numbers = recorder.rows().iter().flat_map(|row| [row.proxy.0, row.force.0].concat());
+    numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
+        (hash ^ number.to_bits()).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[test]
+fn the_same_run_gives_the_same_bits() {
+    assert_eq!(hash(Pace::AsFastAsPossible), hash(Pace::AsFastAsPossible));
+}
+
+#[test]
+fn a_tick_that_was_rehearsed_is_the_same() {
+    assert_eq!(hash(Pace::RealTime), hash(Pace::AsFastAsPossible));
+}
+
+#[test]
+fn a_watch_sees_the_end() {
+    let mut servo = wall_servo(ServoOptions::default());
+    let mut device = RecordedDevice::new(vec![press()]).unwrap();
+    let mut seen = Vec::new();
+    let mut watch = |progress: &palpate_haptics::Progress| seen.push(*progress);
+    let every = Duration::from_millis(1);
+    let options = RunOptions { watch: Some((every, &mut watch)), ..fast(3.0) };
+    run(&mut servo, &mut device, options).unwrap();
+    let last = seen.last().unwrap();
+    assert_eq!((last.ticks, last.contacts, last.time), (3000, 1, 2.999));
+    assert!(seen.windows(2).all(|pair| pair[0].ticks <= pair[1].ticks));
+}
+
+/// A wall that panics when it is touched.
+#[derive(Debug)]
+struct Trap(Promise<2>);
+
+impl CustomField<2> for Trap {
+    fn distance(&self, p: Point<2>) -> f64 {
+        p[1]
+    }
+    fn distance_gradient(&self, p: Point<2>) -> (f64, Vector<f64, 2>) {
+        assert!(p[1] > 0.1, "the trap snapped");
+        (p[1], Vector([0.0, 1.0]))
+    }
+    fn promise(&self) -> &Promise<2> {
+        &self.0
+    }
+}
+
+#[test]
+fn a_panic_stops_the_run_with_no_force() {
+    let trap = Shape::custom(Trap(Promise::lipschitz(None, 1.0)));
+    let mut device = Watched::new();
+    let mut servo = Servo::for_device(trap, &device).unwrap();
+    let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
+    assert_eq!(report.ending, Ending::Panicked { message: "the trap snapped".to_owned() });
+    assert!(report.ticks > 0 && report.ticks < 4000);
+    assert_eq!(device.written, Some(Vector::ZERO));
+}
+
+/// A device that falls for two seconds and is unplugged then.
+struct Watched {
+    profile: DeviceProfile,
+    written: Option<Vector<f64, 2>>,
+}
+
+impl Watched {
+    fn new() -> Self {
+        let profile = DeviceProfile { max_force: 3.3, ..DeviceProfile::unlimited("watched") };
+        Self { profile, written: None }
+    }
+}
+
+impl Device<2> for Watched {
+    fn points(&self) -> usize {
+        1
+    }
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
+    }
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+        if time >= 2.0 {
+            return Err(DeviceLost { reason: "unplugged".to_owned() });
+        }
+        points[0] = PointState::at_rest(Vector([0.0, 0.5 - time]));
+        Ok(())
+    }
+    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+        self.written = forces.first().copied();
+        Ok(())
+    }
+}
+
+#[test]
+fn a_lost_device_ends_the_run_with_its_reason() {
+    let mut device = Watched::new();
+    let mut servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
+    let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
+    assert_eq!(report.ending, Ending::DeviceLost { reason: "unplugged".to_owned() });
+    assert_eq!((report.ticks, device.written), (2000, Some(Vector::ZERO)));
+    // The force is the device's at most.
+    assert_eq!(report.largest_force, 3.3);
+}
+
+#[test]
+fn what_cannot_run_is_refused() {
+    let mut servo = wall_servo(ServoOptions::default());
+    let mut two = RecordedDevice::new(vec![press(), press()]).unwrap();
+    let error = run(&mut servo, &mut two, fast(1.0)).unwrap_err();
+    assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
+    assert!(run(&mut servo, &mut Watched::new(), fast(f64::NAN)).is_err());
+    assert!(RecordedDevice::<2>::new(vec![]).is_err());
+}
