@@ -14,6 +14,8 @@ const LAYERS: &[&str] = &[
     "palpate-mesh",
     "palpate-query",
     "palpate-haptics",
+    "palpate-vibration",
+    "palpate-loop",
     "palpate-devices",
     "palpate-plot",
     "palpate",

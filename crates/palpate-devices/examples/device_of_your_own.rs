@@ -8,7 +8,8 @@
 
 use palpate_devices::{Device, DeviceLost, DeviceProfile, PointState};
 use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
-use palpate_haptics::{HapticsError, Pace, RunOptions, RunReport, Servo, run};
+use palpate_haptics::{HapticsError, Servo};
+use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 /// A carriage that a motor draws around a circle of 48 mm in two seconds.
 struct Carriage {

@@ -5,10 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::hand_path::HandPath;
 use palpate_field::Vector;
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HandPath, HapticsError, PointState, limited,
-    not_negative,
+    Device, DeviceLost, DeviceProfile, HapticsError, PointState, limited, not_negative,
 };
 
 /// Fingers that follow hand paths whatever they touch, each a contact point.
@@ -23,7 +23,7 @@ use palpate_haptics::{
 /// ```
 /// use palpate_devices::{Device, Glove, HandPath, PointState};
 /// use palpate_field::Vector;
-/// use palpate_haptics::Interpolation;
+/// use palpate_devices::Interpolation;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ends = vec![Vector([0.0, 0.1, 0.0]), Vector([0.0, 0.0, 0.0])];
@@ -165,7 +165,7 @@ impl<const D: usize> Device<D> for Glove<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use palpate_haptics::Interpolation;
+    use crate::hand_path::Interpolation;
 
     fn path(height: f64) -> HandPath<2> {
         let ends = vec![Vector([0.0, height]), Vector([1.0, height])];

@@ -3,8 +3,9 @@
 
 //! The hand that holds a simulated device.
 
+use crate::hand_path::{HandPath, Interpolation};
 use palpate_field::{Point, Vector};
-use palpate_haptics::{HandPath, HapticsError, Interpolation, not_negative};
+use palpate_haptics::{HapticsError, not_negative};
 
 /// A hand: a mass that moves with the device, drawn by a spring and a damper to where the arm
 /// wants to be, and a constant push.
@@ -127,7 +128,7 @@ impl<const D: usize> Hand<D> {
     /// ```
     /// use palpate_devices::{Device, Hand, HandPath, PointState, SimulatedDevice, profile_named};
     /// use palpate_field::Vector;
-    /// use palpate_haptics::Interpolation;
+    /// use palpate_devices::Interpolation;
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let turns = vec![Vector([0.0; 3]), Vector([0.0, 0.5, 0.0])];

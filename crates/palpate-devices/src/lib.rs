@@ -20,7 +20,8 @@
 //! ```
 //! use palpate_devices::{Device, Hand, SimulatedDevice, profile_named};
 //! use palpate_field::{Shape, Vector, kernel::Ball};
-//! use palpate_haptics::{Bodies, Body, Pace, RunOptions, Servo, Surface, run};
+//! use palpate_haptics::{Bodies, Body, Servo, Surface};
+//! use palpate_loop::{Pace, RunOptions, run};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let hand = Hand::resting(Vector([0.0, 0.06, 0.0]))?
@@ -42,19 +43,24 @@
 
 mod glove;
 mod hand;
+mod hand_path;
 mod motion;
 mod oscillator;
 mod profiles;
+mod recorded;
 mod simulated;
+mod tour;
 mod turning;
 mod wrists;
 
 pub use glove::Glove;
 pub use hand::Hand;
+pub use hand_path::{HandPath, Interpolation};
 pub use motion::Energies;
 pub use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HandPath, PointState, RecordedDevice, TurnState,
-    TurningProfile,
+    Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile,
 };
 pub use profiles::{PROFILES, UnknownDevice, profile_named};
+pub use recorded::RecordedDevice;
 pub use simulated::SimulatedDevice;
+pub use tour::Tour;

@@ -6,8 +6,8 @@
 #![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
 use palpate_devices::{Device, DeviceProfile, Energies, Hand, PointState, SimulatedDevice};
+use palpate_devices::{HandPath, Interpolation};
 use palpate_field::Vector;
-use palpate_haptics::{HandPath, Interpolation};
 
 /// One axis: device, hand, a path in straight pieces of a tick, and a force for each tick.
 #[derive(Clone, Copy, Debug)]

@@ -5,15 +5,16 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use palpate_devices::Interpolation;
 use palpate_devices::{
     Device, Glove, Hand, HandPath, PROFILES, PointState, SimulatedDevice, profile_named,
 };
 use palpate_field::kernel::Ball;
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{
-    Interpolation, Pace, Protection, RunOptions, Servo, ServoOptions, Shell, Tool, ToolOptions,
-    UnprotectedServo, run,
+    Protection, Servo, ServoOptions, Shell, Tool, ToolOptions, UnprotectedServo,
 };
+use palpate_loop::{Pace, RunOptions, run};
 
 /// Aborts on an allocation where none is allowed.
 #[global_allocator]

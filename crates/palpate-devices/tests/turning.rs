@@ -8,11 +8,12 @@
 use palpate_devices::{
     Device, DeviceProfile, Hand, PointState, SimulatedDevice, TurnState, TurningProfile,
 };
+use palpate_devices::{HandPath, Interpolation};
 use palpate_field::kernel::HalfSpace;
 use palpate_field::{Rotation, Shape, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Body, HandPath, Interpolation, Protection, Servo, ServoOptions, Shell,
-    Surface, Tool, ToolOptions, UnprotectedServo, turn_between, turned,
+    Acceptance, Bodies, Body, Protection, Servo, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, UnprotectedServo, turn_between, turned,
 };
 
 const PERIOD: f64 = 1e-3;

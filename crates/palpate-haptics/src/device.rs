@@ -55,7 +55,8 @@ impl<const D: usize> TurnState<D> {
 ///
 /// Of a device that is not known, everything is [unlimited](Self::unlimited) until told
 /// otherwise: its maker has to say what is safe.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DeviceProfile {
     /// The device's name.
     pub name: Cow<'static, str>,
@@ -81,7 +82,7 @@ pub struct DeviceProfile {
     /// The step of its encoders at the handle [m].
     pub encoder_step: f64,
     /// What it can do about its axes; none of a device that does not turn.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningProfile>,
     /// Where the numbers are from.
     pub source: Cow<'static, str>,
@@ -168,7 +169,8 @@ fn at_least(
 
 /// What a device can do about its axes: the numbers of a [`DeviceProfile`], angles for lengths
 /// and torques for forces. They are those of the worst axis.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurningProfile {
     /// Largest torque [N·m]; zero of a device that senses how it is turned, and gives no torque.
     pub max_torque: f64,

@@ -8,7 +8,8 @@
 use palpate_field::{Point, Vector};
 
 /// Something that happened at a contact point.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Event {
     /// In which tick, from 0.
     pub tick: u64,
@@ -17,13 +18,14 @@ pub struct Event {
     /// On which body.
     pub body: u32,
     /// What it was.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub kind: EventKind,
 }
 
 /// What can happen at a contact point.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum EventKind {
     /// It touches a body that it did not touch before.
     Touch {
@@ -44,7 +46,8 @@ pub enum EventKind {
 }
 
 /// How many events of each kind there were.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EventCounts {
     /// A contact point touched a body that it did not touch before.
     pub touches: u64,
@@ -62,7 +65,7 @@ impl EventCounts {
     /// Counts an event.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn count(&mut self, event: &Event) {
+    pub fn count(&mut self, event: &Event) {
         *match event.kind {
             EventKind::Touch { .. } => &mut self.touches,
             EventKind::Leave => &mut self.leaves,

@@ -153,7 +153,7 @@ fn three<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     fn half_space<const D: usize>(point: [f64; D], normal: [f64; D]) -> HalfSpace<D> {
         HalfSpace { point: Vector(point), normal: Vector(normal).normalized().unwrap() }

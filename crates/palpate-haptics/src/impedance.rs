@@ -11,7 +11,8 @@ use crate::error::{HapticsError, not_negative, positive};
 /// let error = palpate_haptics::Impedance::new(-3.0, 0.0).unwrap_err();
 /// assert_eq!(error.to_string(), "stiffness must be positive and finite, got -3 N/m");
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Impedance {
     stiffness: f64,
     damping: f64,

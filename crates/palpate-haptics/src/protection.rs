@@ -9,9 +9,9 @@ use palpate_field::{Rotation, Vector};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::device::{DeviceProfile, PointState, TurnState, TurningProfile};
+use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::impedance::Impedance;
-use crate::recorder::Energy;
 use crate::rotation::turn_between;
 use crate::safety::{
     Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,

@@ -104,7 +104,7 @@ fn angle<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     #[test]
     fn a_turn_between_two_rotations_leads_from_one_to_the_other() {

@@ -50,6 +50,25 @@ pub fn check(
     panic!("{} of {count} cases fail\n{}", failures.len(), shown.join("\n"));
 }
 
+/// Checks a `property` that panics where it fails, for the seeds `0..count`. A case that cannot be
+/// drawn is skipped.
+///
+/// # Panics
+///
+/// If the property panics, or half of the cases cannot be drawn.
+pub fn each(
+    count: u64,
+    mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<()>,
+) {
+    let mut drawn = 0;
+    check(count, |u| {
+        property(u)?;
+        drawn += 1;
+        Ok(Ok(()))
+    });
+    assert!(2 * drawn > count, "only {drawn} of {count} cases could be drawn");
+}
+
 /// The bytes of a seed, by SplitMix64 (Steele, Lea and Flood 2014).
 #[must_use]
 pub fn entropy(seed: u64) -> Vec<u8> {

@@ -25,7 +25,9 @@
 pub use palpate_devices as devices;
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
+pub use palpate_loop as servo_loop;
 pub use palpate_mesh as mesh;
 pub use palpate_plot as plot;
 pub use palpate_query as query;
 pub use palpate_scene as scene;
+pub use palpate_vibration as vibration;

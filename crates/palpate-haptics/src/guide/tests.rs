@@ -5,7 +5,7 @@ use arbitrary::Unstructured;
 use palpate_field::{Shape, kernel::Ball};
 
 use super::*;
-use crate::cases::cases;
+use palpate_testkit::cases::each as cases;
 
 type Random<'a, 'b> = &'a mut Unstructured<'b>;
 

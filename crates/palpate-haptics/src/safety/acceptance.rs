@@ -16,8 +16,9 @@ use crate::error::{HapticsError, positive};
 use crate::impedance::Impedance;
 
 /// What is done with a material that a device cannot render.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Acceptance {
     /// Stiffness and damping are made smaller by the same factor.
     #[default]
@@ -29,8 +30,9 @@ pub enum Acceptance {
 }
 
 /// A rule that limits what a device renders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Rule {
     /// `K ≤ 2 (b − |B|) / T`, Colgate and Schenkel (1997).
     Passivity,
@@ -105,10 +107,11 @@ impl Rule {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Accepted {
     /// The material to render, in the world; about axes, angular numbers.
-    #[serde(skip)]
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub impedance: Impedance,
     /// Its stiffness at the device [N/m]; about axes [N·m/rad].
     pub device_stiffness: f64,
@@ -256,7 +259,7 @@ fn factors(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     fn device() -> DeviceProfile {
         DeviceProfile {

@@ -8,7 +8,8 @@
 use super::passivity::Directed;
 
 /// What a stage of the safety chain did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Effect {
     /// Ticks in which it changed the force.
     pub ticks: u64,

@@ -68,10 +68,11 @@ pub(crate) struct Seen<V> {
 }
 
 /// What the passivity observer saw and the controller did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassivityReport {
     /// Interventions, and the largest change of the force.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
     /// Energy that the forces written took from the hand [J].
     pub energy_in: f64,

@@ -9,7 +9,8 @@ use super::effect::Effect;
 use super::passivity::PassivityReport;
 
 /// What every stage of a safety chain did, since it was made.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SafetyReport {
     /// Ticks done.
     pub ticks: u64,
@@ -35,13 +36,14 @@ pub struct SafetyReport {
     /// How often it was pulled.
     pub stops: u64,
     /// What the stages of the torque did; none of a device that gives no torque.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningReport>,
 }
 
 /// What every stage that the torque passes did, at a device that turns: changes are in N·m.
 /// Passivity is that of force and torque together, [`SafetyReport::passivity`].
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurningReport {
     /// What became of the coupling's angular stiffness and damping.
     pub impedance: Accepted,
@@ -64,20 +66,22 @@ pub struct TurningReport {
 }
 
 /// What the limit of the continuous force did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContinuousReport {
     /// How often it acted, and how much.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
     /// The steady force that would be as warm now [N]; of torques [N·m].
     pub root_mean_square: f64,
 }
 
 /// What the deadline watchdog did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WatchdogReport {
     /// How often it acted, and how much.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
     /// How often it tripped.
     pub trips: u64,

@@ -4,7 +4,7 @@
 //! The servo: from device points to forces, once a tick.
 //!
 //! A [`Servo`] is made for a device, and a safety chain stands between every force and the hand.
-//! It is the only kind that [runs with a device](crate::run()). An [`UnprotectedServo`] has no
+//! It is the only kind that the loops of `palpate-loop` run. An [`UnprotectedServo`] has no
 //! chain: it is for tests, and for the step before a servo gets its device.
 
 mod any;
@@ -22,7 +22,7 @@ pub use unprotected::UnprotectedServo;
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
-use crate::device::{Device, DeviceProfile};
+use crate::device::{Device, PointState};
 use crate::error::HapticsError;
 use crate::protection::Protection;
 use crate::safety::Accepted;
@@ -81,7 +81,9 @@ impl<const D: usize> Servo<D> {
     ///
     /// ```
     /// use palpate_field::{Shape, kernel::Ball};
-    /// use palpate_haptics::{HandPath, Interpolation, Pace, RecordedDevice, RunOptions, Servo, run};
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{Pace, RunOptions, run};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ends = vec![[0.0, 0.08, 0.0].into(), [0.0, 0.05, 0.0].into()];
@@ -156,9 +158,31 @@ impl<const D: usize> Servo<D> {
         bodies
     }
 
-    /// Refuses a device that bears less than the one that the servo was made for.
-    pub(crate) fn check_device(&self, device: &DeviceProfile) -> Result<(), HapticsError> {
-        self.protection.profile.check_bears(device)
+    /// Refuses a device that bears less than the one that the servo was made for, or has another
+    /// number of contact points. A loop asks before its first tick.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::OtherDevice`], [`HapticsError::ContactPoints`].
+    pub fn check_device(&self, device: &(impl Device<D> + ?Sized)) -> Result<(), HapticsError> {
+        self.protection.profile.check_bears(device.profile())?;
+        let (servo, device) = (self.touches().len(), device.points());
+        if servo == device {
+            Ok(())
+        } else {
+            Err(HapticsError::ContactPoints { servo, device })
+        }
+    }
+
+    /// Does what [`step`](Self::step) would with `states`, on copies: its only effect is that the
+    /// next tick finds its code and data in the caches. A loop that sleeps between ticks may call
+    /// it until the next tick begins.
+    ///
+    /// It asks fields once more for each call, custom ones too.
+    ///
+    /// Real-time: as [`step`](Self::step).
+    pub fn rehearse(&mut self, states: &[PointState<D>]) {
+        self.renderer.rehearse(states);
     }
 }
 

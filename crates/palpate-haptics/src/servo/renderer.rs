@@ -15,13 +15,13 @@ use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
 use crate::device::{PointState, TurnState};
+use crate::energy::Energy;
 use crate::error::{HapticsError, positive, positive_or_infinite};
 use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
-use crate::recorder::Energy;
 use crate::safety::SafetyReport;
 use crate::tool::{CoupledTool, Coupling, HeldTool, Tool};
 use crate::workspace::WorkspaceMap;
@@ -234,13 +234,6 @@ impl<const D: usize> Renderer<D> {
     /// points.
     pub(crate) fn requested_coupling(&self) -> Option<Coupling> {
         self.coupled_tool().map(|coupled| coupled.requested)
-    }
-
-    /// The torque of the last tick on a device that turns [N·m]; `None` on another.
-    pub(crate) fn given_torque(&self) -> Option<Vector<f64, 3>> {
-        self.coupled_tool()
-            .filter(|coupled| coupled.turn.is_some())
-            .map(|coupled| coupled.torque)
     }
 
     /// Places the workspace of the device in the world.

@@ -15,9 +15,8 @@ use crate::tool::Tool;
 /// Renders bodies to contact points or to a tool, **without any protection of a device or a
 /// hand** but a largest force.
 ///
-/// It is for tests, for measurements, and for loops that no hand feels. It does not
-/// [run with a device](crate::run()): [`protected`](Self::protected) makes a [`Servo`] of it,
-/// which does.
+/// It is for tests, for measurements, and for loops that no hand feels. The loops of `palpate-loop`
+/// do not run it: [`protected`](Self::protected) makes a [`Servo`] of it, which they run.
 ///
 /// What the servo shows of its last tick are the methods of [`Renderer`], which it lends.
 ///

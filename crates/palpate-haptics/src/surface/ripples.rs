@@ -103,7 +103,7 @@ mod tests {
     use palpate_scene::TextureKind;
 
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     fn texture(direction: Option<Vec<f64>>) -> Texture {
         let (amplitude, wavelength) = (0.5, 8.0);

@@ -184,7 +184,7 @@ fn add(to: &mut [f64; FREEDOMS], factor: f64, other: &[f64; FREEDOMS]) {
 #[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     fn row(along: [f64; 3], least: f64) -> Row {
         let [x, y, z] = along;

@@ -7,14 +7,13 @@
 use crate::common::ball;
 use assert_no_alloc::assert_no_alloc;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::vibrotactile::{
+use palpate_haptics::{Guide, PointState, ServoOptions, UnprotectedServo};
+use palpate_scene::{Material, Scene};
+use palpate_vibration::{
     ActuatorArray, Cue, Mapping, MappingOptions, Publisher, Synthesiser, Tap, Voice,
     one_channel, two_channels,
 };
-use palpate_haptics::{Guide, PointState, ServoOptions, UnprotectedServo};
-use palpate_scene::{Material, Scene};
 
-/// Aborts on an allocation where none is allowed.
 /// A guide of each kind, as a scene has them.
 fn guides() -> Vec<Guide<3>> {
     let scene = Scene::from_json(

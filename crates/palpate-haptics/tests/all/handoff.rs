@@ -10,10 +10,11 @@ use std::time::Duration;
 use crate::common::{ball, body, half_space, without_limits};
 use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Body, ClockDriver, Device, DeviceLost, DeviceProfile, Ending,
-    EventKind, HandoffOptions, HapticsError, PointState, Priority, Probe, Protection, Servo,
-    ServoOptions, ServoThread, Surface, ThreadOptions, UnprotectedServo, VirtualClock, handoff,
+    Acceptance, Bodies, Body, Device, DeviceLost, DeviceProfile, EventKind, HandoffOptions,
+    HapticsError, PointState, Probe, Protection, Servo, ServoOptions, Surface,
+    UnprotectedServo, handoff,
 };
+use palpate_loop::{ClockDriver, Ending, Priority, ServoThread, ThreadOptions, VirtualClock};
 
 const TICK: Duration = Duration::from_millis(1);
 

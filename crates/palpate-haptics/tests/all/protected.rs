@@ -9,10 +9,10 @@ use std::time::Duration;
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Bodies, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, Pace, PointState,
-    Protection, RunOptions, Servo, ServoOptions, ServoThread, Surface, ThreadOptions,
-    UnprotectedServo, VirtualClock, handoff, run,
+    Bodies, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, PointState,
+    Protection, Servo, ServoOptions, Surface, UnprotectedServo, handoff,
 };
+use palpate_loop::{Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
 use crate::common::{body, half_space};
 

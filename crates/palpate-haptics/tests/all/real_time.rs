@@ -6,14 +6,13 @@
 use crate::common::wild::{bodies, servo, step};
 use crate::common::{ball, cuboid, protected, torus};
 use assert_no_alloc::assert_no_alloc;
+use palpate_devices::Tour;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, DeviceProfile, HandoffOptions, Material, PointState, Progress, Protection,
-    ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, Tour, UnprotectedServo,
-    handoff,
+    ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, UnprotectedServo, handoff,
 };
 
-/// Aborts on an allocation where none is allowed.
 #[test]
 fn a_step_allocates_and_frees_nothing() {
     let cup = cuboid([0.08, 0.09, 0.08])

@@ -7,12 +7,13 @@
 use std::time::Duration;
 
 use crate::common::{ball, cuboid, half_space, protected, without_limits};
+use palpate_devices::{HandPath, Interpolation, RecordedDevice, Tour};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Body, Clock, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError,
-    Interpolation, Material, Pace, PointState, Probe, RecordedDevice, Recorder, RunOptions,
-    Servo, ServoOptions, Surface, Tour, UnprotectedServo, VirtualClock, run, run_on,
+    Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
+    Servo, ServoOptions, Surface, UnprotectedServo,
 };
+use palpate_loop::{Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on};
 use palpate_scene::{Impact, Layer, PopThrough};
 
 /// A clock on which looking costs a microsecond and waiting nothing more.
@@ -108,7 +109,7 @@ fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
     // In a rehearsal a tenth of a second is lost.
     let busy = vec![(1000, Duration::from_millis(100))];
     let mut clock = TestClock { busy, ..TestClock::default() };
-    let options = RunOptions::new(1.0);
+    let options = RunOptions { rehearses: true, ..RunOptions::new(1.0) };
     let report = run_on(&mut clock, &mut servo, &mut device, options).unwrap();
     let lateness = report.lateness.unwrap();
     // Two waits a tick: for the rehearsals and for the tick.
@@ -148,7 +149,9 @@ fn hash(pace: Pace) -> u64 {
     let path = Tour::new(bounds, 2.0).unwrap().over(&shape).unwrap();
     let mut device = RecordedDevice::new(vec![path]).unwrap();
     let mut recorder = Recorder::new(2000);
-    let options = RunOptions { recorder: Some(&mut recorder), pace, ..RunOptions::new(2.0) };
+    let recorder_of_run = Some(&mut recorder);
+    let options =
+        RunOptions { recorder: recorder_of_run, pace, rehearses: true, ..RunOptions::new(2.0) };
     run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     let numbers = recorder.rows().iter().flat_map(|row| [row.proxy.0, row.force.0].concat());
     numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {

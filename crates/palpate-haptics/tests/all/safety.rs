@@ -12,7 +12,6 @@ use palpate_haptics::{
     VelocityEstimator,
 };
 
-/// Aborts on an allocation where none is allowed.
 const RATE: f64 = 1000.0;
 const PERIOD: f64 = 1e-3;
 

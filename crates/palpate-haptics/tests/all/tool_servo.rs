@@ -9,13 +9,14 @@ use std::time::Duration;
 
 use crate::common::tools::smooth;
 use crate::common::{ball, body, half_space, without_limits};
+use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HandPath, HapticsError,
-    Interpolation, Material, Pace, PointState, Protection, RecordedDevice, Recorder,
-    RunOptions, ServoOptions, ServoThread, Shell, Surface, ThreadOptions, Tool, ToolOptions,
-    ToolState, UnprotectedServo, VirtualClock, WorkspaceMap, run,
+    Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HapticsError, Material,
+    PointState, Protection, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
+    UnprotectedServo, WorkspaceMap,
 };
+use palpate_loop::{Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
 const STIFFNESS: f64 = 500.0;
 

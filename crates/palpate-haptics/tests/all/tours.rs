@@ -5,13 +5,12 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
+use palpate_devices::{HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Smooth;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{
-    HandPath, HapticsError, Pace, RecordedDevice, RunOptions, RunReport, ServoOptions, Tour,
-    UnprotectedServo, run,
-};
+use palpate_haptics::{HapticsError, ServoOptions, UnprotectedServo};
+use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 const DURATION: f64 = 20.0;
 

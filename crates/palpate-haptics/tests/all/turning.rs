@@ -9,13 +9,15 @@ use std::time::Duration;
 
 use crate::common::tools::smooth;
 use crate::common::{AnyServo, body, cases, half_space};
+use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Device, DeviceLost, DeviceProfile, Ending, HandPath, HapticsError,
-    Interpolation, Material, Pace, PointState, Protection, RecordedDevice, Recorder, Rule,
-    RunOptions, Servo, ServoOptions, ServoThread, Shell, Surface, ThreadOptions, Tool,
-    ToolOptions, TurnState, TurningProfile, UnprotectedServo, VirtualClock, WorkspaceMap, run,
-    turn_between, turned,
+    Acceptance, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState,
+    Protection, Rule, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, TurnState,
+    TurningProfile, UnprotectedServo, WorkspaceMap, turn_between, turned,
+};
+use palpate_loop::{
+    Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
 };
 
 const STIFFNESS: f64 = 500.0;

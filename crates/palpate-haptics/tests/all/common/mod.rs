@@ -4,20 +4,19 @@
 //! Shapes and hands that several tests use.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod cases;
 pub(crate) mod tools;
 pub(crate) mod wild;
 
 use std::ops::Deref;
 
 use arbitrary::Unstructured;
-pub(crate) use cases::cases;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{CustomField, Point, Pose, Promise, Rotation, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, DeviceProfile, Following, PointState, Probe, Protection, Proxy, Renderer,
     Servo, Surface, TurnState, UnprotectedServo,
 };
+pub(crate) use palpate_testkit::cases::each as cases;
 
 /// A ball of `radius`.
 pub(crate) fn ball<const D: usize>(radius: f64) -> Shape<D> {

@@ -5,10 +5,10 @@
 
 use palpate_field::{Rotation, Vector};
 
-use crate::device::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
-use crate::error::HapticsError;
 use crate::hand_path::HandPath;
-use crate::rotation::{turn_between, turned};
+use palpate_haptics::HapticsError;
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
+use palpate_haptics::{turn_between, turned};
 
 /// A device whose points follow recorded hand paths.
 ///
@@ -18,7 +18,7 @@ use crate::rotation::{turn_between, turned};
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::{Device, HandPath, Interpolation, PointState, RecordedDevice};
+/// use palpate_devices::{Device, HandPath, Interpolation, PointState, RecordedDevice};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ends = vec![Vector([0.0, 0.5, 0.0]), Vector([0.0, 0.0, 0.0])];
@@ -66,7 +66,7 @@ impl<const D: usize> RecordedDevice<D> {
     ///
     /// ```
     /// use palpate_field::Vector;
-    /// use palpate_haptics::{Device, HandPath, Interpolation, PointState, RecordedDevice};
+    /// use palpate_devices::{Device, HandPath, Interpolation, PointState, RecordedDevice};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let rest = HandPath::new(vec![0.0, 2.0], vec![Vector([0.0, 0.0]); 2], Interpolation::Linear)?;

@@ -4,9 +4,7 @@
 //! A recording of every tick, into memory set aside beforehand.
 
 use palpate_field::{Point, Vector};
-
-use crate::servo::Renderer;
-use crate::tool::HeldTool;
+use palpate_haptics::{Energy, HeldTool, Servo};
 
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,17 +40,6 @@ pub struct TraceRow<const D: usize> {
     pub cost_ns: u64,
     /// How late the tick started [ns]; zero where it is not paced.
     pub lateness_ns: u64,
-}
-
-/// Energy at a contact point since the start [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Energy {
-    /// What the forces took from the hand.
-    pub taken: f64,
-    /// What they gave to it.
-    pub given: f64,
-    /// What the wanted forces would have given, but those written did not.
-    pub kept: f64,
 }
 
 /// What the loop knows about a tick beside its touches.
@@ -91,7 +78,7 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn record(&mut self, times: TickTimes, servo: &Renderer<D>) {
+    pub(crate) fn record(&mut self, times: TickTimes, servo: &Servo<D>) {
         for (point, touch) in (0..).zip(servo.touches()) {
             if self.rows.len() >= self.capacity {
                 self.dropped += 1;

@@ -7,12 +7,11 @@
 
 use std::error::Error;
 
+use palpate_devices::{RecordedDevice, Tour};
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{
-    Device, Pace, Probe, Protection, RecordedDevice, RunOptions, ServoOptions, Tour,
-    UnprotectedServo, run,
-};
+use palpate_haptics::{Device, Probe, Protection, ServoOptions, UnprotectedServo};
+use palpate_loop::{Pace, RunOptions, run};
 
 const DURATION: f64 = 60.0;
 

@@ -15,7 +15,7 @@ use std::io::{self, Seek, Write};
 /// Those of `file`, and one if there are more samples than a WAV file holds, 2³¹.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::write_wav;
+/// use palpate_vibration::write_wav;
 ///
 /// # fn main() -> std::io::Result<()> {
 /// let mut file = std::io::Cursor::new(Vec::new());

@@ -54,7 +54,7 @@ impl WallClock {
     ///
     /// ```
     /// use std::time::Duration;
-    /// use palpate_haptics::{Clock, WallClock};
+    /// use palpate_loop::{Clock, WallClock};
     ///
     /// let mut never_asleep = WallClock::spinning_for(Duration::MAX);
     /// never_asleep.wait_until(Duration::from_micros(50));
@@ -93,7 +93,7 @@ impl Clock for WallClock {
 ///
 /// ```
 /// use std::time::Duration;
-/// use palpate_haptics::{Clock, VirtualClock};
+/// use palpate_loop::{Clock, VirtualClock};
 ///
 /// let mut clock = VirtualClock::new();
 /// clock.wait_until(Duration::from_secs(3600));
@@ -117,7 +117,7 @@ impl VirtualClock {
     ///
     /// ```
     /// use std::time::Duration;
-    /// use palpate_haptics::{Clock, VirtualClock};
+    /// use palpate_loop::{Clock, VirtualClock};
     ///
     /// let (mut clock, mut driver) = VirtualClock::driven();
     /// let sleeper = std::thread::spawn(move || clock.wait_until(Duration::from_secs(2)));

@@ -5,10 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use palpate_haptics::{HapticsError, not_negative, positive};
 use std::time::Duration;
 
 use crate::clock::Clock;
-use crate::error::{HapticsError, not_negative, positive};
 use crate::run::ticks;
 use crate::statistics::{Distribution, Times};
 
@@ -36,11 +36,10 @@ impl Pacer {
         Self { period: Duration::from_secs_f64(1.0 / rate), deadline: clock.now() }
     }
 
-    /// Waits for the next deadline. From `ahead` of it on, `warm_up` is called again and again,
-    /// as often as there is time for, but at most [`MOST_WARM_UPS`] times; and once even if it
-    /// is late, which costs no more than what follows would cost for being cold. A deadline met
-    /// more than a period late moves all later ones, so that nothing hurries after lost time.
-    pub(crate) fn wait(
+    /// Waits as [`wait`](Self::wait). From `ahead` of the deadline on, `warm_up` is called again
+    /// and again, as often as there is time for, but at most [`MOST_WARM_UPS`] times; and once even
+    /// if it is late, which costs no more than what follows would cost for being cold.
+    pub(crate) fn wait_warm(
         &mut self,
         clock: &mut dyn Clock,
         ahead: Duration,
@@ -55,6 +54,12 @@ impl Pacer {
                 break;
             }
         }
+        self.wait(clock)
+    }
+
+    /// Waits for the next deadline. A deadline met more than a period late moves all later ones,
+    /// so that nothing hurries after lost time.
+    pub(crate) fn wait(&mut self, clock: &mut dyn Clock) -> Late {
         clock.wait_until(self.deadline);
         let late = clock.now().saturating_sub(self.deadline);
         let is_missed = late > self.period;
@@ -71,7 +76,8 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 }
 
 /// How late a loop without work wakes.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lateness {
     /// By how much; `None` if the loop had no tick.
     pub times: Option<Distribution>,
@@ -89,7 +95,7 @@ impl Lateness {
     /// # Examples
     ///
     /// ```
-    /// use palpate_haptics::{Lateness, VirtualClock};
+    /// use palpate_loop::{Lateness, VirtualClock};
     ///
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let lateness = Lateness::measure(&mut VirtualClock::new(), 1000.0, 2.0)?;
@@ -109,7 +115,7 @@ impl Lateness {
         let mut times = Times::new();
         let mut missed = 0;
         for _ in 0..ticks(duration, rate) {
-            let late = pacer.wait(clock, Duration::ZERO, || {});
+            let late = pacer.wait(clock);
             times.record(late.ns);
             missed += u64::from(late.is_missed);
         }

@@ -3,19 +3,19 @@
 
 //! A servo in a thread of its own.
 
+use palpate_haptics::{
+    Control, Device, HandoffOptions, HapticsError, Servo, ServoEnd, handoff, not_negative,
+};
 use std::fmt;
 use std::panic::resume_unwind;
 use std::thread::JoinHandle;
 
 use crate::clock::{Clock, WallClock};
-use crate::device::Device;
-use crate::error::{HapticsError, not_negative};
-use crate::handoff::{Control, HandoffOptions, ServoEnd, handoff};
 use crate::priority::{Priority, raise_priority};
+use crate::recorder::Recorder;
 use crate::report::RunReport;
 use crate::run::{Pace, ticks};
-use crate::servo::Servo;
-use crate::servo_loop::{Schedule, ServoLoop, check};
+use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How a thread runs a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,14 +24,26 @@ pub struct ThreadOptions {
     pub duration: Option<f64>,
     /// Whether the thread asks to be scheduled before others.
     pub raises_priority: bool,
+    /// Whether ticks are rehearsed, as by [`RunOptions::rehearses`](crate::RunOptions::rehearses).
+    pub rehearses: bool,
+    /// Rows that a [`Recorder`] has room for, one for each tick and contact point; none are kept
+    /// without.
+    pub rows: Option<usize>,
     /// What the hand-off has room for.
     pub handoff: HandoffOptions,
 }
 
 impl Default for ThreadOptions {
-    /// Until it is ended, with a raised priority and the hand-off's default.
+    /// Until it is ended, with a raised priority and the hand-off's default; without rehearsals
+    /// and rows.
     fn default() -> Self {
-        Self { duration: None, raises_priority: true, handoff: HandoffOptions::default() }
+        Self {
+            duration: None,
+            raises_priority: true,
+            rehearses: false,
+            rows: None,
+            handoff: HandoffOptions::default(),
+        }
     }
 }
 
@@ -49,9 +61,9 @@ impl Default for ThreadOptions {
 /// use std::time::Duration;
 ///
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
-/// use palpate_haptics::{
-///     HandPath, Interpolation, RecordedDevice, Servo, ServoThread, ThreadOptions, VirtualClock,
-/// };
+/// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+/// use palpate_haptics::Servo;
+/// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// // A hand that rests 1/128 m above a ball.
@@ -94,6 +106,8 @@ pub struct EndedThread<const D: usize> {
     pub control: Control<D>,
     /// What happened.
     pub report: RunReport,
+    /// Every tick, if rows were to be kept.
+    pub recorder: Option<Recorder<D>>,
     /// Whether the thread was scheduled before others.
     pub priority: Priority,
 }
@@ -105,6 +119,7 @@ struct Left<const D: usize> {
     /// Kept so that what is left in it is not freed in the thread.
     _end: ServoEnd<D>,
     report: RunReport,
+    recorder: Option<Recorder<D>>,
     priority: Priority,
 }
 
@@ -142,23 +157,25 @@ impl<const D: usize> ServoThread<D> {
         mut device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, HapticsError> {
-        let points = check(&servo, &*device)?;
+        servo.check_device(&*device)?;
         let ticks = match options.duration {
             None => u64::MAX,
             Some(duration) => {
                 ticks(not_negative("duration", duration, "s")?, servo.options().rate)
             }
         };
-        let schedule = Schedule { ticks, pace: Pace::RealTime };
+        let schedule = Schedule { ticks, pace: Pace::RealTime, rehearses: options.rehearses };
+        let mut recorder = options.rows.map(Recorder::new);
         let (control, mut end) = handoff(&servo, options.handoff);
         let work = move || {
             let priority =
                 if options.raises_priority { raise_priority() } else { Priority::Normal };
             let mut clock = clock(&priority);
-            let report = ServoLoop::new(&mut servo, &mut *device, points)
+            let report = ServoLoop::new(&mut servo, &mut *device)
+                .recording(recorder.as_mut())
                 .handing_off(Some(&mut end))
                 .run(&mut clock, &schedule);
-            Left { servo, device, _end: end, report, priority }
+            Left { servo, device, _end: end, report, recorder, priority }
         };
         let thread =
             std::thread::Builder::new().name("palpate servo".to_owned()).spawn(work).map_err(
@@ -193,8 +210,8 @@ impl<const D: usize> ServoThread<D> {
     pub fn join(self) -> EndedThread<D> {
         // Panics in the loop are part of the report.
         let left = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
-        let Left { servo, device, report, priority, _end } = left;
-        EndedThread { servo, device, control: self.control, report, priority }
+        let Left { servo, device, report, recorder, priority, _end } = left;
+        EndedThread { servo, device, control: self.control, report, recorder, priority }
     }
 }
 

@@ -29,7 +29,7 @@ const BEND: f64 = 550.0;
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::threshold_db;
+/// use palpate_vibration::threshold_db;
 ///
 /// assert_eq!(threshold_db(250.0), -45.0);
 /// assert!((threshold_db(100.0) - -31.2).abs() < 0.05);
@@ -52,7 +52,7 @@ pub fn threshold_db(frequency: f64) -> f64 {
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::perceptual_weight;
+/// use palpate_vibration::perceptual_weight;
 ///
 /// // 60 Hz has to be 17 times as strong as 250 Hz.
 /// let ratio = perceptual_weight(60.0) / perceptual_weight(250.0);

@@ -11,7 +11,7 @@ use palpate_field::Point;
 
 use super::cue::{Tone, level};
 use super::ringing::Tones;
-use crate::error::{HapticsError, positive};
+use palpate_haptics::{HapticsError, positive};
 
 /// One tone for an actuator that plays one at a time: the frequency of the strongest, the
 /// amplitude `√(Σ a²)` of them together, at most one.
@@ -19,7 +19,7 @@ use crate::error::{HapticsError, positive};
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{Tone, Tones, one_channel};
+/// use palpate_vibration::{Tone, Tones, one_channel};
 ///
 /// let tones = Tones {
 ///     hold: Tone { frequency: 60.0, amplitude: 0.375 },
@@ -56,7 +56,7 @@ pub struct TwoChannels {
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{Tone, Tones, TwoChannels, two_channels};
+/// use palpate_vibration::{Tone, Tones, TwoChannels, two_channels};
 ///
 /// let tones = Tones {
 ///     hold: Tone { frequency: 60.0, amplitude: 0.5 },
@@ -87,7 +87,7 @@ pub fn two_channels(tones: &Tones, split: f64) -> TwoChannels {
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::phantom;
+/// use palpate_vibration::phantom;
 ///
 /// assert_eq!(phantom(0.8, 0.0), [0.8, 0.0]);
 /// assert_eq!(phantom(0.5, 0.75), [0.25, 0.5 * 0.75_f64.sqrt()]);
@@ -110,7 +110,7 @@ const NEAREST: usize = 3;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::vibrotactile::ActuatorArray;
+/// use palpate_vibration::ActuatorArray;
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let places = [0.0, 0.25, 0.5, 0.75].map(|x| Vector([x, 0.0]));
@@ -175,7 +175,7 @@ impl<const D: usize> ActuatorArray<D> {
     ///
     /// ```
     /// use palpate_field::Vector;
-    /// use palpate_haptics::vibrotactile::ActuatorArray;
+    /// use palpate_vibration::ActuatorArray;
     ///
     /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let places = [0.0, 0.25, 0.5].map(|x| Vector([x, 0.0]));
@@ -235,7 +235,7 @@ mod tests {
     use palpate_field::Vector;
 
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     fn tapped(frequency: f64, decay: f64) -> Tones {
         let tap = Tone { frequency, amplitude: 0.5 };

@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Tone, level};
-use crate::error::{HapticsError, positive};
+use palpate_haptics::{HapticsError, positive};
 
 /// What a device is told to play on a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ const PERIODS: f64 = 2.5;
 /// of 2.5 periods, so that nothing gets stuck.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{Publisher, Tone};
+/// use palpate_vibration::{Publisher, Tone};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let mut publisher = Publisher::new(1, 1000.0, 50.0)?;

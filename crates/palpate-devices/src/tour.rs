@@ -8,8 +8,8 @@ mod smoothing;
 
 use palpate_field::{Aabb, Point, Shape, Vector};
 
-use crate::error::{HapticsError, not_negative, positive};
 use crate::hand_path::{HandPath, Interpolation};
+use palpate_haptics::{HapticsError, not_negative, positive};
 
 use orbit::orbit;
 use smoothing::{highest, smoothed, smoothed_points};
@@ -104,7 +104,7 @@ const DOWN: f64 = 0.85;
 ///
 /// ```
 /// use palpate_field::{Shape, kernel::Ball};
-/// use palpate_haptics::Tour;
+/// use palpate_devices::Tour;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
@@ -140,7 +140,7 @@ impl<const D: usize> Tour<D> {
         let edges = bounds.half_extents() * 2.0;
         let size = positive("size of the box", edges.0.into_iter().fold(0.0, f64::max), "m")?;
         let duration = positive("duration", duration, "s")?;
-        let probe_radius = crate::proxy::Probe::default().radius();
+        let probe_radius = palpate_haptics::Probe::default().radius();
         let speed = 0.3 * size.sqrt();
         Ok(Self { bounds, duration, size, probe_radius, depth: None, speed })
     }

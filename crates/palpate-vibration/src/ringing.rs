@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Sensation, Tap, Tone};
-use crate::error::{HapticsError, positive};
+use palpate_haptics::{HapticsError, positive};
 
 /// The amplitude below which a tap is over: a tenth of the threshold at 250 Hz, where the skin
 /// is most sensitive. Larger, and its end could be felt; smaller, and it rings on for nothing.
@@ -71,7 +71,7 @@ pub struct Tones {
 /// second.
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{Sensation, Tap, Voice};
+/// use palpate_vibration::{Sensation, Tap, Voice};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let mut voice = Voice::new(1000.0)?;

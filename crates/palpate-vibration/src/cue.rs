@@ -10,8 +10,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use crate::contact_point::Touch;
-use crate::error::{HapticsError, not_negative, positive};
+use palpate_haptics::Touch;
+use palpate_haptics::{HapticsError, not_negative, positive};
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +28,8 @@ pub struct Tap {
 impl Tap {
     /// What a tap on a material of a scene rings like.
     #[must_use]
-    pub fn from_data(impact: &palpate_scene::Impact) -> Self {
-        let palpate_scene::Impact { amplitude, frequency, decay, .. } = *impact;
+    pub fn from_data(impact: &palpate_haptics::Impact) -> Self {
+        let palpate_haptics::Impact { amplitude, frequency, decay, .. } = *impact;
         Self { amplitude, frequency, decay }
     }
 }
@@ -155,7 +155,7 @@ impl Default for MappingOptions {
 /// # Examples
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{Cue, Mapping, MappingOptions, Tone};
+/// use palpate_vibration::{Cue, Mapping, MappingOptions, Tone};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let options = MappingOptions {
@@ -301,7 +301,7 @@ fn at_most(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::cases;
+    use palpate_testkit::cases::each as cases;
 
     const STEEL: Tap = Tap { amplitude: 4.0, frequency: 300.0, decay: 90.0 };
 

@@ -11,8 +11,9 @@ use thread_priority::{ThreadPriority, thread_native_id};
 const PERCENT: u8 = 70;
 
 /// Whether a thread is scheduled before others.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Priority {
     /// It was not asked for.
     Normal,

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::cue::{Mapping, Sensation, Tap, Tone};
 use super::ringing::Ringing;
-use crate::error::{HapticsError, positive};
+use palpate_haptics::{HapticsError, positive};
 
 /// How long an amplitude takes from nothing to all [s]: a change within a sample would click, a
 /// slower one would blur a texture.
@@ -63,7 +63,7 @@ struct Player {
 /// A tap is `a exp(−d t) sin(2π f t)` from its first sample on:
 ///
 /// ```
-/// use palpate_haptics::vibrotactile::{
+/// use palpate_vibration::{
 ///     Mapping, MappingOptions, Sensation, Synthesiser, Tap,
 /// };
 ///
@@ -184,8 +184,8 @@ impl Player {
 #[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
-    use crate::cases::cases;
-    use crate::vibrotactile::{Cue, MappingOptions};
+    use crate::{Cue, MappingOptions};
+    use palpate_testkit::cases::each as cases;
 
     const WOOD: Tap = Tap { amplitude: 8.0, frequency: 100.0, decay: 80.0 };
 

@@ -7,10 +7,11 @@
 
 use palpate_field::Vector;
 
-use super::Tool;
+use palpate_haptics::Tool;
 
 /// A tool with a shape in a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ToolReport {
     /// Points of its shell.
     pub points: u32,
@@ -24,7 +25,7 @@ pub struct ToolReport {
     pub largest_torque: f64,
     /// The largest torque that was written to a device that turns [N·m], in its coordinates; none
     /// of another.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub largest_torque_written: Option<f64>,
     /// The most contacts that pushed in a tick.
     pub most_contacts: u32,

@@ -3,16 +3,14 @@
 
 //! What happened in a run of the servo.
 
-use crate::event::EventCounts;
-use crate::live::Progress;
 use crate::recorder::TickTimes;
-use crate::safety::SafetyReport;
-use crate::servo::Renderer;
 use crate::statistics::{Distribution, Times};
-use crate::tool::{ToolReport, ToolTally};
+use crate::tool_report::{ToolReport, ToolTally};
+use palpate_haptics::{EventCounts, Progress, SafetyReport, Servo};
 
 /// A run of the servo in numbers.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RunReport {
     /// How it ended.
     pub ending: Ending,
@@ -47,12 +45,13 @@ pub struct RunReport {
     /// What the safety chain of each contact point did; empty on a device that gives no force.
     pub safety: Vec<SafetyReport>,
     /// What a tool with a shape felt; none of contact points.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
 }
 
 /// How often the shape was evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Evaluations {
     /// In all ticks together.
     pub total: u64,
@@ -65,8 +64,9 @@ pub struct Evaluations {
 }
 
 /// Why a run ended.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Ending {
     /// Its time was over.
     Finished,
@@ -135,12 +135,14 @@ impl Tally {
     pub(crate) fn tick<const D: usize>(
         &mut self,
         times: TickTimes,
-        servo: &Renderer<D>,
+        servo: &Servo<D>,
     ) -> Progress {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {
             budget = tool.options().budget;
-            self.tool.get_or_insert_default().tick(tool, servo.given_torque());
+            let is_turned = servo.held_tool().is_some_and(|held| held.given.is_some());
+            let written = is_turned.then(|| servo.torque());
+            self.tool.get_or_insert_default().tick(tool, written);
         }
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;

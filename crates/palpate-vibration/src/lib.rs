@@ -11,6 +11,8 @@
 //!   until a slow device takes it.
 //! - *Audio*, for voice coils: a [`Synthesiser`] makes samples, and [`write_wav`] a file of them.
 
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
 mod audio;
 mod channels;
 mod cue;

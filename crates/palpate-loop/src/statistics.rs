@@ -12,7 +12,8 @@ const LONGEST_NS: u64 = 10_000_000_000;
 const DIGITS: u8 = 3;
 
 /// A distribution of times.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Distribution {
     /// How many times were measured.
     pub count: u64,
@@ -31,7 +32,8 @@ pub struct Distribution {
 }
 
 /// A bar of a histogram: how many times lie above the bucket before and up to a bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bucket {
     /// The largest time of the bucket [ns].
     pub up_to_ns: u64,

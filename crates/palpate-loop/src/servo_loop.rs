@@ -5,6 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use palpate_haptics::{Device, DeviceLost, PointState, Servo, ServoEnd};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -12,14 +13,10 @@ use std::time::Duration;
 use palpate_field::Vector;
 
 use crate::clock::Clock;
-use crate::device::{Device, DeviceLost, PointState};
-use crate::error::HapticsError;
-use crate::handoff::ServoEnd;
 use crate::pacer::{Pacer, nanoseconds};
 use crate::recorder::{Recorder, TickTimes};
 use crate::report::{Ending, RunReport, Tally};
 use crate::run::Pace;
-use crate::servo::{AnyServo, Servo};
 
 /// How long before a tick it is rehearsed, again and again: the first time loads what is cold,
 /// the others teach predictors.
@@ -46,15 +43,14 @@ pub(crate) struct Schedule {
     /// Unless the other end of the hand-off ends the loop before.
     pub(crate) ticks: u64,
     pub(crate) pace: Pace,
+    /// Whether ticks are rehearsed.
+    pub(crate) rehearses: bool,
 }
 
 impl<'a, const D: usize> ServoLoop<'a, D> {
-    /// A loop with as many contact points as were [checked](check).
-    pub(crate) fn new(
-        servo: &'a mut Servo<D>,
-        device: &'a mut dyn Device<D>,
-        points: usize,
-    ) -> Self {
+    /// A loop with a device that was [checked](Servo::check_device).
+    pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
+        let points = device.points();
         let tally = Tally::new(points, servo.options().rate);
         Self {
             servo,
@@ -107,7 +103,11 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             let time_s = tick as f64 / rate;
             let mut lateness_ns = 0;
             if schedule.pace == Pace::RealTime {
-                let late = pacer.wait(clock, REHEARSAL, || self.rehearse());
+                let late = if schedule.rehearses {
+                    pacer.wait_warm(clock, REHEARSAL, || self.rehearse())
+                } else {
+                    pacer.wait(clock)
+                };
                 self.tally.late(late.ns, late.is_missed);
                 self.servo.set_late(late.is_missed);
                 lateness_ns = late.ns;
@@ -131,7 +131,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             let (position, velocity) = (*position + *velocity * period, *velocity);
             *expected = PointState { position, velocity };
         }
-        self.servo.renderer_mut().rehearse(&self.expected);
+        self.servo.rehearse(&self.expected);
     }
 
     /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's
@@ -163,20 +163,6 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         if let Some(recorder) = &mut self.recorder {
             recorder.record(times, self.servo);
         }
-    }
-}
-
-/// How many contact points a servo and its device have; refuses a device that is not the servo's.
-pub(crate) fn check<const D: usize>(
-    servo: &Servo<D>,
-    device: &dyn Device<D>,
-) -> Result<usize, HapticsError> {
-    servo.check_device(device.profile())?;
-    let (points, device) = (servo.touches().len(), device.points());
-    if points == device {
-        Ok(points)
-    } else {
-        Err(HapticsError::ContactPoints { servo: points, device })
     }
 }
 

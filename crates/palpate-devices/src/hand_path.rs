@@ -5,8 +5,8 @@
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use crate::device::PointState;
-use crate::error::HapticsError;
+use palpate_haptics::HapticsError;
+use palpate_haptics::PointState;
 
 /// How a hand moves between two samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum Interpolation {
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::{HandPath, Interpolation};
+/// use palpate_devices::{HandPath, Interpolation};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
 /// let path = HandPath::new(

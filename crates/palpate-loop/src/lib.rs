@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The loop around a servo and its device: it paces, counts, records and reports.
+//!
+//! [`run`] is the loop in a call; a [`ServoThread`] runs the same loop beside a program, whose
+//! [`Control`](palpate_haptics::Control) changes what is touched and sees what happens, and never
+//! makes the servo wait. Both run a [`Servo`](palpate_haptics::Servo) alone, which is protected,
+//! and write zero forces last whatever ends them.
+//!
+//! The loop runs on the clock of the machine, a [`WallClock`], or on one of a test, a
+//! [`VirtualClock`]. A [`Recorder`] keeps every tick, a [`RunReport`] says what happened, and
+//! [`Lateness`] measures how late a machine wakes up.
+//!
+//! # Examples
+//!
+//! ```
+//! use palpate_devices::{RecordedDevice, Tour};
+//! use palpate_field::{Shape, kernel::Ball};
+//! use palpate_haptics::Servo;
+//! use palpate_loop::{Pace, RunOptions, run};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
+//! let bounds = ball.promise().bounds.ok_or("a ball has bounds")?;
+//! let hand = Tour::new(bounds.aabb, 5.0)?.over(&ball)?;
+//! let mut device = RecordedDevice::new(vec![hand])?;
+//! let mut servo = Servo::for_device(ball, &device)?;
+//!
+//! let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(5.0) };
+//! let report = run(&mut servo, &mut device, options)?;
+//! assert!(report.contact_time > 2.5 && report.largest_force < 1.0);
+//! assert!(report.evaluations.mean < 4.0);
+//! # Ok(())
+//! # }
+//! ```
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
+mod clock;
+mod pacer;
+mod priority;
+mod recorder;
+mod report;
+mod run;
+mod servo_loop;
+mod statistics;
+mod thread;
+mod tool_report;
+
+pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
+pub use pacer::Lateness;
+pub use priority::{Priority, raise_priority};
+pub use recorder::{Recorder, TraceRow};
+pub use report::{Ending, Evaluations, RunReport};
+pub use run::{Pace, RunOptions, Watch, run, run_on};
+pub use statistics::{Bucket, Distribution};
+pub use thread::{EndedThread, ServoThread, ThreadOptions};
+pub use tool_report::ToolReport;
