@@ -17,7 +17,8 @@ use serde_json::json;
 use crate::arguments::{GalleryOptions, Map, Plane};
 use crate::input::promise_in_words;
 use crate::outcome::{Failure, Outcome};
-use crate::picture::{self, Dimensions, Drawable};
+use crate::output::{self, Files, shown};
+use crate::picture::{self, Dimensions, Drawable, Picture};
 
 /// Every operator on a simple example, a body each.
 const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
@@ -70,7 +71,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
         }
     }
     work.bar.finish_and_clear();
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     if options.json {
         let pictures = written
             .iter()
@@ -79,13 +80,14 @@ pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
             "map": options.map.name(),
             "pictures": pictures.collect::<Vec<_>>(),
         });
-        writeln!(out, "{answer:#}")?;
+        out.json(&answer)?;
         return Ok(Outcome::Yes);
     }
     for picture in &written {
+        let path = picture.path.display().to_string();
         match &picture.shapes[..] {
-            [name] => writeln!(out, "{}: {name}", picture.path.display())?,
-            names => writeln!(out, "{}: {} pictures", picture.path.display(), names.len())?,
+            [name] => writeln!(out, "{}: {name}", shown(&path))?,
+            names => writeln!(out, "{}: {} pictures", shown(&path), names.len())?,
         }
     }
     Ok(Outcome::Yes)
@@ -113,7 +115,8 @@ impl Work<'_> {
         let folder = &self.options.output;
         let each = folder.join(stem);
         let last = if self.options.each { &each } else { folder };
-        std::fs::create_dir_all(last).map_err(|error| Failure::file(last, error))?;
+        output::make_folder(last)?;
+        let sheet = self.picture(&folder.join(stem))?;
         let map = self.options.map;
         let drawn: Vec<(Isolines, Option<Written>)> = specimens
             .par_iter()
@@ -134,7 +137,7 @@ impl Work<'_> {
         let (tiles, single): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
         let figure = Figure::new(title).with_caption(caption(map)).with_sheet(COLUMNS, tiles);
         let shapes = specimens.iter().map(|specimen| specimen.name.clone()).collect();
-        let mut written = vec![self.save(&figure, &folder.join(stem), shapes)?];
+        let mut written = vec![self.save(&figure, &sheet, shapes)?];
         written.extend(single.into_iter().flatten());
         Ok(written)
     }
@@ -154,18 +157,24 @@ impl Work<'_> {
         let figure = Figure::new(specimen.name.replace('_', " "))
             .with_caption(promise_in_words(specimen.shape.promise()))
             .with_isolines(isolines);
-        self.save(&figure, path, vec![specimen.name.clone()])
+        self.save(&figure, &self.picture(path)?, vec![specimen.name.clone()])
+    }
+
+    /// A picture at `path`, which gets the ending of its kind. No two have one name, and
+    /// nothing is read.
+    fn picture(&self, path: &Path) -> Result<Picture, Failure> {
+        let path = path.with_extension(self.options.format.name());
+        Picture::new(&mut Files::default(), &path)
     }
 
     fn save(
         &self,
         figure: &Figure,
-        path: &Path,
+        picture: &Picture,
         shapes: Vec<String>,
     ) -> Result<Written, Failure> {
-        let path = path.with_extension(self.options.format.name());
-        picture::save(figure, &path, self.options.width)?;
-        Ok(Written { path, shapes })
+        picture.save(figure, self.options.width)?;
+        Ok(Written { path: picture.path().to_owned(), shapes })
     }
 }
 

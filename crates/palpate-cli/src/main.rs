@@ -17,6 +17,7 @@ mod jitter;
 mod mass;
 mod mesh;
 mod outcome;
+mod output;
 mod picture;
 mod plot;
 mod schema;
@@ -53,12 +54,12 @@ fn main() -> ExitCode {
         Command::Devices(options) => devices::run(&options),
         Command::Jitter(options) => jitter::run(&options),
     };
-    match result {
+    match result.and_then(output::ended) {
         Ok(Outcome::Yes) => ExitCode::SUCCESS,
         Ok(Outcome::No) => ExitCode::from(1),
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("palpate: {failure}");
+            output::complain(failure);
             ExitCode::from(2)
         }
     }

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use crate::arguments::MassOptions;
 use crate::input;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, shown};
 
 /// Computes the mass of each body; the answer is no if an error is above the tolerance.
 pub(crate) fn run(options: &MassOptions) -> Result<Outcome, Failure> {
@@ -28,7 +29,7 @@ fn report<const D: usize>(
     [volume_unit, mass_unit, moment_unit]: [&str; 3],
 ) -> Result<Outcome, Failure> {
     let limits = MassLimits { tolerance: options.tolerance, cells: options.cells };
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     let mut bodies = Vec::new();
     let mut outcome = Outcome::Yes;
     for body in &scene.bodies {
@@ -44,7 +45,7 @@ fn report<const D: usize>(
             bodies.push(described(name, &mass));
             continue;
         }
-        writeln!(out, "{name}, at {} kg/m³ ({} cells)", options.density, mass.cells)?;
+        writeln!(out, "{}, at {} kg/m³ ({} cells)", shown(name), options.density, mass.cells)?;
         let line = |what: &str, value: f64, error: f64, unit: &str| {
             format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
         };
@@ -64,11 +65,7 @@ fn report<const D: usize>(
         }
     }
     if options.json {
-        writeln!(
-            out,
-            "{:#}",
-            json!({ "density_kg_per_m3": options.density, "bodies": bodies })
-        )?;
+        out.json(&json!({ "density_kg_per_m3": options.density, "bodies": bodies }))?;
     }
     Ok(outcome)
 }

@@ -30,6 +30,13 @@ impl Failure {
         Self::Input(problem.to_string())
     }
 
+    /// All that went wrong of several things that were done; nothing if all are good.
+    pub(crate) fn any(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
+        let failures = results.into_iter().filter_map(Result::err);
+        let problems: Vec<_> = failures.map(|failure| failure.to_string()).collect();
+        if problems.is_empty() { Ok(()) } else { Err(Self::Input(problems.join("; "))) }
+    }
+
     /// `path` could not be read or written.
     pub(crate) fn file(path: &std::path::Path, error: impl fmt::Display) -> Self {
         Self::Input(format!("{}: {error}", path.display()))
@@ -53,6 +60,13 @@ impl fmt::Display for Failure {
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
+    }
+}
+
+impl From<csv::Error> for Failure {
+    /// That of a table that is written.
+    fn from(error: csv::Error) -> Self {
+        Self::Output(error.into())
     }
 }
 

@@ -4,7 +4,8 @@
 //! Many points from a file, in bounded memory and on all cores.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
+use std::num::NonZero;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -17,6 +18,7 @@ use super::answer;
 use crate::arguments::EvalOptions;
 use crate::hand_csv::columns;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Destination};
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
 /// enough to stay in their caches.
@@ -26,28 +28,30 @@ pub(crate) fn run<const D: usize>(
     shape: &Shape<D>,
     points: &Path,
     options: &EvalOptions,
+    destination: &Destination,
 ) -> Result<Outcome, Failure> {
-    let threads = options.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options.threads)).build();
     let pool = pool.map_err(Failure::input)?;
-    match &options.output {
-        None => {
-            let out = io::stdout().lock();
-            evaluate(shape, points, (options.json, &pool), BufWriter::new(out))?;
-        }
-        Some(path) => {
-            let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-            evaluate(shape, points, (options.json, &pool), BufWriter::new(file))?;
-        }
-    }
+    destination.write(|out| evaluate(shape, points, (options.json, &pool), out))?;
     Ok(Outcome::Yes)
+}
+
+/// As many threads as are asked for, but no more than the machine runs at once: others would
+/// wait, each with a batch in memory. Zero stands for all.
+fn threads(asked: Option<usize>) -> usize {
+    let asked = asked.unwrap_or(0);
+    let most = std::thread::available_parallelism().map_or(1, NonZero::get);
+    if asked > most {
+        output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
+    }
+    asked.min(most)
 }
 
 fn evaluate<const D: usize>(
     shape: &Shape<D>,
     path: &Path,
     (as_json, pool): (bool, &rayon::ThreadPool),
-    mut out: impl Write,
+    out: &mut dyn Write,
 ) -> Result<(), Failure> {
     let file = File::open(path).map_err(|error| Failure::file(path, error))?;
     let size = file.metadata().map(|m| m.len()).unwrap_or(0);
@@ -93,7 +97,6 @@ fn evaluate<const D: usize>(
         bar.set_position(reader.position().byte());
     }
     bar.finish_and_clear();
-    out.flush()?;
     Ok(())
 }
 

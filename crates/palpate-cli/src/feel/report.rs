@@ -10,6 +10,7 @@ use palpate::haptics::{
     SafetyReport, Servo, Surface, ToolReport, TurningReport,
 };
 
+use crate::output::shown;
 use crate::times::{quantiles, write_histogram};
 
 /// What is shown while the servo runs.
@@ -56,6 +57,7 @@ fn write_report<const D: usize>(
     report: &RunReport,
     (servo, profile, accepted): (&Servo<D>, &DeviceProfile, &[Accepted]),
 ) -> std::fmt::Result {
+    let name = shown(name);
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     match &report.tool {
