@@ -6,16 +6,31 @@
 use std::fmt;
 use std::io;
 
-/// What a command answers: exit status 0 or 1.
+use crate::interrupt::Interrupt;
+
+/// What a command answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Done; the answer is yes.
     Yes,
     /// Done; the answer is no.
     No,
+    /// Asked to end before all was done.
+    Interrupted,
 }
 
-/// Why a command could not answer: exit status 2.
+impl Outcome {
+    /// The exit status.
+    pub(crate) fn status(self) -> u8 {
+        match self {
+            Self::Yes => 0,
+            Self::No => 1,
+            Self::Interrupted => Interrupt::STATUS,
+        }
+    }
+}
+
+/// Why a command could not answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// What was wrong with the input, in a sentence.
@@ -25,6 +40,9 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// The exit status.
+    pub(crate) const STATUS: u8 = 2;
+
     /// What was wrong with the input.
     pub(crate) fn input(problem: impl fmt::Display) -> Self {
         Self::Input(problem.to_string())

@@ -3,6 +3,7 @@
 
 //! Running a servo with a device for a while, and a report.
 
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::clock::{Clock, WallClock};
@@ -38,13 +39,15 @@ pub struct RunOptions<'a, const D: usize> {
     pub recorder: Option<&'a mut Recorder<D>>,
     /// Called from a thread of its own every so often, and once at the end.
     pub watch: Option<(Duration, Watch<'a>)>,
+    /// Ends the run before its next tick once it is `true`, as a signal handler may set it.
+    pub interrupt: Option<&'a AtomicBool>,
 }
 
 impl<const D: usize> RunOptions<'_, D> {
     /// Runs for `duration` [s] in real time; keeps and shows nothing.
     #[must_use]
     pub fn new(duration: f64) -> Self {
-        Self { duration, pace: Pace::RealTime, recorder: None, watch: None }
+        Self { duration, pace: Pace::RealTime, recorder: None, watch: None, interrupt: None }
     }
 }
 
@@ -55,6 +58,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("pace", &self.pace)
             .field("recorder", &self.recorder.is_some())
             .field("watch", &self.watch.as_ref().map(|(every, _)| every))
+            .field("interrupt", &self.interrupt)
             .finish()
     }
 }
@@ -125,6 +129,7 @@ pub fn run_on<const D: usize>(
         .unzip();
     let servo_loop = ServoLoop::new(servo, device, points)
         .recording(options.recorder)
+        .interrupted_by(options.interrupt)
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(match control.zip(options.watch) {

@@ -13,18 +13,19 @@ use palpate::scene::{BuiltScene, World};
 
 use crate::arguments::EvalOptions;
 use crate::input::{self, promise_in_words};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
 
-pub(crate) fn run(options: &EvalOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
     let destination = match &options.output {
         Some(path) => Files::reading(inputs.into_iter().flatten()).output(path)?,
         None => Destination::standard(),
     };
     match &input::scene(Some(&options.scene))?.world {
-        World::Planar(scene) => evaluate(scene, options, &destination),
-        World::Spatial(scene) => evaluate(scene, options, &destination),
+        World::Planar(scene) => evaluate(scene, options, &destination, interrupt),
+        World::Spatial(scene) => evaluate(scene, options, &destination, interrupt),
     }
 }
 
@@ -32,9 +33,10 @@ fn evaluate<const D: usize>(
     scene: &BuiltScene<D>,
     options: &EvalOptions,
     destination: &Destination,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     if let Some(points) = &options.points {
-        return stream::run(&scene.whole, points, options, destination);
+        return stream::run(&scene.whole, points, options, destination, interrupt);
     }
     let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
     let answer = query::point(&scene.whole, point).map_err(Failure::input)?;

@@ -27,6 +27,7 @@ use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
 use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::hand_csv;
 use crate::input::{self, Named};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{Dimensions, Drawable};
@@ -57,12 +58,12 @@ const SHOWN: &str = "omega";
 /// How often the live line is renewed.
 const LIVE_EVERY: Duration = Duration::from_millis(100);
 
-pub(crate) fn run(options: &FeelOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &FeelOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let outputs = Outputs::of(options)?;
     let named = input::scene(options.scene.as_deref())?;
     match &named.world {
-        World::Planar(scene) => feel(&named, scene, options, &outputs),
-        World::Spatial(scene) => feel(&named, scene, options, &outputs),
+        World::Planar(scene) => feel(&named, scene, options, &outputs, interrupt),
+        World::Spatial(scene) => feel(&named, scene, options, &outputs, interrupt),
     }
 }
 
@@ -71,6 +72,7 @@ fn feel<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
     outputs: &Outputs,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
@@ -137,7 +139,14 @@ where
         pace: if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime },
         recorder: keeps_rows.then_some(&mut recorder),
         watch: if shows_line { Some((LIVE_EVERY, &mut show)) } else { None },
+        interrupt: Some(interrupt.flag()),
     };
+    interrupt.heed();
+    if !options.fast {
+        output::remark(format_args!(
+            "feeling {name} for {duration} s; Ctrl-C ends that, with the report"
+        ));
+    }
     let outcome =
         run_servo(&mut servo, device.as_mut(), run_options).map_err(Failure::input)?;
     if shows_line {
@@ -163,7 +172,11 @@ where
     }
     // Said after the report, which is whole whatever becomes of the files.
     written?;
-    Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
+    Ok(match outcome.ending {
+        Ending::Finished => Outcome::Yes,
+        Ending::Interrupted => Outcome::Interrupted,
+        Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
+    })
 }
 
 /// What became of the stiffness and damping of each body.

@@ -102,6 +102,9 @@ fn write_report<const D: usize>(
     }
     match &report.ending {
         Ending::Finished => {}
+        Ending::Interrupted => {
+            writeln!(out, "  interrupted: this is what was felt until then")?
+        }
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
         Ending::Panicked { message } => {
             writeln!(

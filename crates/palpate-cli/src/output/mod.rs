@@ -21,7 +21,7 @@ use crate::outcome::Failure;
 
 pub(crate) use escape::shown;
 pub(crate) use files::Files;
-pub(crate) use terminal::{answer, complain, ended, live, remark};
+pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
 
 /// Where an output goes.
 #[derive(Debug)]

@@ -50,6 +50,14 @@ pub(crate) fn ended(outcome: Outcome) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
+/// Prints help on standard output, or what is wrong with a command line on standard error;
+/// returns the exit status.
+pub(crate) fn usage(refused: &clap::Error) -> u8 {
+    // What cannot be shown is not missed.
+    let _ = refused.print();
+    u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS)
+}
+
 /// Says on standard error why a command ends.
 pub(crate) fn complain(problem: impl fmt::Display) {
     remark(format_args!("palpate: {problem}"));

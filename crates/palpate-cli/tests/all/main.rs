@@ -6,6 +6,7 @@
 
 mod common;
 mod contact;
+mod interrupted;
 mod outputs;
 mod pictures;
 mod program;
