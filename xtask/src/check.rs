@@ -5,8 +5,8 @@
 
 use std::time::Instant;
 
-use crate::command::{Failure, cargo, cargo_with, metadata};
-use crate::{layers, licences, sources};
+use crate::command::{Failure, cargo, cargo_with, metadata, root};
+use crate::{builds, layers, licences, links, sizes, sources, words};
 
 type Stage = (&'static str, fn() -> Result<(), Failure>);
 
@@ -14,11 +14,16 @@ type Stage = (&'static str, fn() -> Result<(), Failure>);
 const STAGES: &[Stage] = &[
     ("format", || cargo(&["fmt", "--all", "--check"])),
     ("sources", sources::check),
-    ("layers", || layers::check(&metadata()?)),
+    ("words", words::check),
+    ("links", links::check),
+    ("sizes", sizes::check),
+    ("layers", || layers::check(&metadata()?, &architecture()?)),
+    ("dependencies", builds::count),
     ("licences", || licences::check(&metadata()?)),
     ("clippy", || {
         cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"])
     }),
+    ("wasm", builds::wasm),
     ("docs", || {
         cargo_with(
             &["doc", "--workspace", "--no-deps", "--locked"],
@@ -27,14 +32,26 @@ const STAGES: &[Stage] = &[
     }),
 ];
 
-/// Runs every stage, all of them even if one fails.
-pub(crate) fn all() -> Result<(), Failure> {
+fn architecture() -> Result<String, Failure> {
+    std::fs::read_to_string(root().join("ARCHITECTURE.md"))
+        .map_err(|error| Failure(format!("ARCHITECTURE.md cannot be read: {error}")))
+}
+
+/// The names of the stages.
+pub(crate) fn stages() -> impl Iterator<Item = &'static str> {
+    STAGES.iter().map(|(name, _)| *name)
+}
+
+/// Runs the stages of these names, or every stage if there are none; all of them even if one
+/// fails.
+pub(crate) fn run(names: &[String]) -> Result<(), Failure> {
     let mut failures = Vec::new();
-    for (name, stage) in STAGES {
+    let asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
+    for (name, stage) in STAGES.iter().filter(|(name, _)| asked(name)) {
         let start = Instant::now();
         let result = stage();
         println!("check {name}: {:.1} s", start.elapsed().as_secs_f64());
         failures.extend(result.err().map(|failure| format!("{name}: {}", failure.0)));
     }
-    if failures.is_empty() { Ok(()) } else { Err(Failure(failures.join("\n"))) }
+    Failure::any(failures)
 }

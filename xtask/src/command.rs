@@ -11,6 +11,13 @@ use std::process::Command;
 #[derive(Debug)]
 pub(crate) struct Failure(pub(crate) String);
 
+impl Failure {
+    /// All problems, each on a line; nothing if there are none.
+    pub(crate) fn any(problems: Vec<String>) -> Result<(), Self> {
+        if problems.is_empty() { Ok(()) } else { Err(Self(problems.join("\n"))) }
+    }
+}
+
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "xtask: {}", self.0)
@@ -23,7 +30,7 @@ pub(crate) fn root() -> PathBuf {
     package.parent().map_or(package.clone(), PathBuf::from)
 }
 
-fn cargo_command(arguments: &[&str]) -> Command {
+pub(crate) fn cargo_command(arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.args(arguments).current_dir(root());
@@ -48,15 +55,23 @@ pub(crate) fn cargo_with(
     if status.success() { Ok(()) } else { Err(Failure(format!("`{line}` failed"))) }
 }
 
-/// The dependency tree, as `cargo metadata` prints it.
-pub(crate) fn metadata() -> Result<serde_json::Value, Failure> {
-    let output = cargo_command(&["metadata", "--format-version", "1", "--locked"])
+/// What a program prints on standard output.
+pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
+    let line = format!("{command:?}");
+    let output = command
         .output()
-        .map_err(|error| Failure(format!("`cargo metadata` did not start: {error}")))?;
+        .map_err(|error| Failure(format!("`{line}` did not start: {error}")))?;
     if !output.status.success() {
         let message = String::from_utf8_lossy(&output.stderr);
-        return Err(Failure(format!("`cargo metadata` failed: {message}")));
+        return Err(Failure(format!("`{line}` failed: {message}")));
     }
-    serde_json::from_slice(&output.stdout)
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// The dependency tree, as `cargo metadata` prints it.
+pub(crate) fn metadata() -> Result<serde_json::Value, Failure> {
+    let printed =
+        output(&mut cargo_command(&["metadata", "--format-version", "1", "--locked"]))?;
+    serde_json::from_str(&printed)
         .map_err(|error| Failure(format!("`cargo metadata` printed no JSON: {error}")))
 }

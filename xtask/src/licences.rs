@@ -40,7 +40,7 @@ pub(crate) fn check(metadata: &Value) -> Result<(), Failure> {
             wrong.push(format!("{name} has the licence {licence:?}"));
         }
     }
-    if wrong.is_empty() { Ok(()) } else { Err(Failure(wrong.join("\n"))) }
+    Failure::any(wrong)
 }
 
 /// `true` if a licence expression can be met with allowed licences: a choice
@@ -85,7 +85,24 @@ fn split_outside_parentheses<'a>(text: &'a str, separator: &str) -> Vec<&'a str>
 
 #[cfg(test)]
 mod tests {
-    use super::is_allowed;
+    use super::*;
+
+    #[test]
+    fn a_package_without_a_free_licence_is_refused() {
+        let packages = |licence: Value| {
+            serde_json::json!({
+                "packages": [
+                    { "name": "good", "license": "MIT" },
+                    { "name": "other", "license": licence },
+                ],
+            })
+        };
+        check(&packages("ISC".into())).unwrap();
+        for bad in ["GPL-3.0".into(), Value::Null] {
+            let said = check(&packages(bad)).unwrap_err().0;
+            assert!(said.starts_with("other has the licence"), "{said}");
+        }
+    }
 
     #[test]
     fn choices_need_one_allowed_licence_and_conjunctions_all() {

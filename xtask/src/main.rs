@@ -3,11 +3,16 @@
 
 //! The project's own chores: `cargo xtask test`, `cargo xtask check`, `cargo xtask oracle`.
 
+mod builds;
 mod check;
 mod command;
 mod layers;
 mod licences;
+mod links;
+mod sizes;
 mod sources;
+mod tree;
+mod words;
 
 use std::process::ExitCode;
 
@@ -27,8 +32,13 @@ struct Arguments {
 enum Chore {
     /// Run every test of every language in the repository.
     Test,
-    /// Check formatting, lints, documentation, licences, layers and file lengths.
-    Check,
+    /// Check formatting, sources, words, links, sizes, layers, licences, lints, documentation,
+    /// and that the core compiles without a system.
+    Check {
+        /// The stages to run; all if none is named.
+        #[arg(value_parser = clap::builder::PossibleValuesParser::new(check::stages()))]
+        stages: Vec<String>,
+    },
     /// Make testdata/recall: separations that a plain search proves; takes minutes.
     Oracle,
 }
@@ -36,7 +46,7 @@ enum Chore {
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test => test(),
-        Chore::Check => check::all(),
+        Chore::Check { stages } => check::run(&stages),
         Chore::Oracle => oracle(),
     };
     match result {

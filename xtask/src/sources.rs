@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Rules on source files: their length, where `unsafe` may be, and how they
-//! begin.
+//! Rules on Rust files: their length, how they begin, and where `unsafe` may be.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::command::{Failure, root};
+use crate::command::Failure;
+use crate::tree::{self, Text};
 
 /// The longest a source file may be.
 const MOST_LINES: usize = 600;
@@ -16,59 +15,139 @@ const MOST_LINES: usize = 600;
 const HEADER: &str = "// SPDX-FileCopyrightText: The palpate authors\n\
                       // SPDX-License-Identifier: MIT OR Apache-2.0\n";
 
-/// The modules where `unsafe` is allowed, at most one a crate, and why.
+/// The modules where `unsafe` is allowed, and why.
 const UNSAFE_MODULES: &[(&str, &str)] = &[
     ("crates/palpate-field/src/machine", "instruction sets and unwritten scratch memory"),
     ("crates/palpate-field/tests", "an allocator that counts, to prove that none happens"),
 ];
 
-/// Checks every Rust file of the repository.
+/// The lint that denies unsafe code, as attributes name it.
+const LINT: &str = concat!("unsafe", "_code");
+
+/// What follows the keyword where it opens something.
+const UNSAFE_USES: &[&str] = &["{", "fn", "impl", "trait", "extern"];
+
+/// Checks every Rust file of the repository, and that every crate inherits the lints.
 pub(crate) fn check() -> Result<(), Failure> {
+    let texts = tree::texts(&["rs", "toml"])?;
     let mut wrong = Vec::new();
-    let mut files = Vec::new();
-    rust_files(&root(), &mut files)
-        .map_err(|error| Failure(format!("the sources cannot be read: {error}")))?;
-    for file in &files {
-        let text = fs::read_to_string(file)
-            .map_err(|error| Failure(format!("{} cannot be read: {error}", file.display())))?;
-        let path = file.strip_prefix(root()).unwrap_or(file);
-        wrong.extend(problems(path, &text));
+    for Text { path, text } in &texts {
+        if path.extension().is_some_and(|ending| ending == "rs") {
+            wrong.extend(problems(path, text));
+        } else {
+            wrong.extend(manifest_problems(path, text));
+        }
     }
     for (module, why) in UNSAFE_MODULES {
         println!("unsafe is allowed in {module}: {why}");
+        let mut inside = texts.iter().filter(|text| text.path.starts_with(module));
+        if !inside.any(|text| text.text.contains(LINT)) {
+            wrong.push(format!("{module} is listed for unsafe code, but has none"));
+        }
     }
-    if wrong.is_empty() { Ok(()) } else { Err(Failure(wrong.join("\n"))) }
+    Failure::any(wrong)
 }
 
+/// What is wrong with a Rust file.
 fn problems(path: &Path, text: &str) -> Vec<String> {
+    let shown = path.display();
     let mut wrong = Vec::new();
     let lines = text.lines().count();
     if lines > MOST_LINES {
-        wrong.push(format!("{} has {lines} lines, {MOST_LINES} at most", path.display()));
+        wrong.push(format!("{shown} has {lines} lines, {MOST_LINES} at most"));
     }
     if !text.starts_with(HEADER) {
-        wrong.push(format!("{} does not begin with the two SPDX lines", path.display()));
+        wrong.push(format!("{shown} does not begin with the two SPDX lines"));
     }
-    let allowed = UNSAFE_MODULES.iter().any(|(module, _)| path.starts_with(module));
-    if !allowed && text.contains(concat!("allow(uns", "afe_code")) {
-        wrong.push(format!("{} allows unsafe code; it is not a listed module", path.display()));
+    let is_listed = UNSAFE_MODULES.iter().any(|(module, _)| path.starts_with(module));
+    // Whether it is allowed or expected: an attribute over several lines names it too.
+    if !is_listed && text.contains(LINT) {
+        wrong.push(format!("{shown} names the lint {LINT}; it is not a listed module"));
+    }
+    if !is_listed && text.lines().any(is_unsafe) {
+        wrong.push(format!("{shown} has unsafe code; it is not a listed module"));
     }
     wrong
 }
 
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    let mut entries: Vec<_> = fs::read_dir(folder)?.collect::<Result<_, _>>()?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let path = entry.path();
-        let name = entry.file_name();
-        if path.is_dir() {
-            if name != "target" && !name.to_string_lossy().starts_with('.') {
-                rust_files(&path, files)?;
-            }
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
+/// `true` if a line of code, not of comment, opens something unsafe.
+fn is_unsafe(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    let mut words = code.split_whitespace().peekable();
+    while let Some(word) = words.next() {
+        let is_keyword = word.trim_start_matches(['(', '{', '|', '=']) == "unsafe";
+        if is_keyword && words.peek().is_some_and(|next| UNSAFE_USES.contains(next)) {
+            return true;
         }
     }
-    Ok(())
+    false
+}
+
+/// What is wrong with a manifest: a crate that does not inherit the lints may have anything.
+fn manifest_problems(path: &Path, text: &str) -> Option<String> {
+    let is_fuzz = path.starts_with("fuzz");
+    if text.contains("[package]") && !is_fuzz && !text.contains("[lints]\nworkspace = true\n") {
+        return Some(format!("{} does not inherit the lints of the workspace", path.display()));
+    }
+    if text.contains("[workspace.lints") && !text.contains(&format!("{LINT} = \"deny\"")) {
+        return Some(format!("{} does not deny {LINT}", path.display()));
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(path: &str, body: &str) -> Vec<String> {
+        problems(Path::new(path), &format!("{HEADER}{body}"))
+    }
+
+    #[test]
+    fn a_good_file_has_no_problem() {
+        let body = "//! Unsafe is a word.\nfn f() {} // unsafe { } is not here\n";
+        assert_eq!(of("crates/a/src/lib.rs", body), [""; 0]);
+        assert_eq!(of("a.rs", &"\n".repeat(MOST_LINES - 2)), [""; 0]);
+    }
+
+    #[test]
+    fn a_long_file_is_refused() {
+        let wrong = of("a.rs", &"\n".repeat(MOST_LINES - 1));
+        assert_eq!(wrong, ["a.rs has 601 lines, 600 at most"]);
+    }
+
+    #[test]
+    fn a_file_without_its_licence_is_refused() {
+        let wrong = problems(Path::new("a.rs"), "//! A file.\n");
+        assert_eq!(wrong, ["a.rs does not begin with the two SPDX lines"]);
+    }
+
+    #[test]
+    fn what_is_unsafe_outside_listed_modules_is_refused() {
+        for attribute in
+            ["#![allow(L)]", "#[expect(L, reason = \"fast\")]", "#![warn(\n    L,\n)]"]
+        {
+            let body = attribute.replace('L', LINT);
+            assert_eq!(of("crates/a/src/lib.rs", &body).len(), 1, "{body}");
+            assert_eq!(of("crates/palpate-field/src/machine/lanes.rs", &body), [""; 0]);
+        }
+        let keyword = concat!("un", "safe");
+        for code in ["let x = K { f() };", "K fn f() {}", "K impl Send for A {}", "(K { 1 })"] {
+            let body = code.replace('K', keyword);
+            let wrong = of("crates/a/src/lib.rs", &body);
+            assert!(wrong[0].ends_with("has unsafe code; it is not a listed module"), "{body}");
+        }
+    }
+
+    #[test]
+    fn a_crate_that_does_not_inherit_lints_is_refused() {
+        let path = Path::new("crates/a/Cargo.toml");
+        let package = "[package]\nname = \"a\"\n";
+        assert!(manifest_problems(path, package).is_some());
+        let inherits = format!("{package}\n[lints]\nworkspace = true\n");
+        assert_eq!(manifest_problems(path, &inherits), None);
+        let lints = |level: &str| format!("[workspace.lints.rust]\n{LINT} = \"{level}\"\n");
+        assert!(manifest_problems(Path::new("Cargo.toml"), &lints("warn")).is_some());
+        assert_eq!(manifest_problems(Path::new("Cargo.toml"), &lints("deny")), None);
+    }
 }

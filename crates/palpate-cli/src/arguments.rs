@@ -18,7 +18,8 @@ Examples:
   palpate plot scenes/memoir_star.json --output star.svg
   palpate check scenes/cup.json --json
 
-Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input is bad.";
+Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input is bad, 130 if it was
+interrupted.";
 
 /// Signed distance functions that can be touched.
 #[derive(Debug, Parser)]

@@ -12,11 +12,13 @@ use serde_json::{Value, json};
 use crate::arguments::CheckOptions;
 use crate::input::{promise_in_words, text};
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, shown};
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let text = text(&options.scene)?;
-    let mut out = std::io::stdout().lock();
-    let name = options.scene.display();
+    let mut out = output::answer();
+    let name = options.scene.display().to_string();
+    let name = shown(&name);
     match Scene::from_json(&text).and_then(|scene| scene.build()) {
         Err(error) => {
             if options.json {
@@ -27,9 +29,9 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                     "column": error.column,
                     "problem": error.problem,
                 });
-                writeln!(out, "{answer:#}")?;
+                out.json(&answer)?;
             } else {
-                writeln!(out, "{name}: {error}")?;
+                writeln!(out, "{name}: {}", shown(&error.to_string()))?;
             }
             Ok(Outcome::No)
         }
@@ -40,12 +42,12 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
             };
             if options.json {
                 let answer = json!({ "ok": true, "dimension": dimension, "bodies": bodies });
-                writeln!(out, "{answer:#}")?;
+                out.json(&answer)?;
             } else {
                 writeln!(out, "{name}: good, {dimension}D, {} bodies", bodies.len())?;
                 for body in &bodies {
                     let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
-                    writeln!(out, "  {}: {}", text("name"), text("promise"))?;
+                    writeln!(out, "  {}: {}", shown(&text("name")), text("promise"))?;
                 }
             }
             Ok(Outcome::Yes)

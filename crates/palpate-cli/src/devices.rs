@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::arguments::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 
 /// A number of a profile, along axes or about them.
 struct Column<P: 'static> {
@@ -114,10 +115,10 @@ const TURNING: [Column<TurningProfile>; 9] = [
 ];
 
 pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     if options.json {
         let rows = PROFILES.iter().map(|(name, profile)| described(name, profile)).collect();
-        writeln!(out, "{:#}", Value::Array(rows))?;
+        out.json(&Value::Array(rows))?;
         return Ok(Outcome::Yes);
     }
     let along: Vec<_> =

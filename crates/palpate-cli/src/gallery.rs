@@ -16,8 +16,10 @@ use serde_json::json;
 
 use crate::arguments::{GalleryOptions, Map, Plane};
 use crate::input::promise_in_words;
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
-use crate::picture::{self, Dimensions, Drawable};
+use crate::output::{self, Files, shown};
+use crate::picture::{self, Dimensions, Drawable, Picture};
 
 /// Every operator on a simple example, a body each.
 const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
@@ -41,9 +43,10 @@ struct Specimen<const D: usize> {
 struct Work<'a> {
     options: &'a GalleryOptions,
     bar: ProgressBar,
+    interrupt: &'a Interrupt,
 }
 
-pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let planar = catalogue(Entry::<2>::ALL)?;
     let spatial = catalogue(Entry::<3>::ALL)?;
     let operators = operators()?;
@@ -52,7 +55,8 @@ pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
     let bar = ProgressBar::new((planar.len() + in_space) as u64).with_style(
         ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}").map_err(Failure::input)?,
     );
-    let work = Work { options, bar };
+    let work = Work { options, bar, interrupt };
+    interrupt.heed();
     let mut written =
         work.draw("shapes-of-the-plane", "Shapes of the plane", &planar, |_| {
             Ok(Slice::planar())
@@ -70,7 +74,6 @@ pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
         }
     }
     work.bar.finish_and_clear();
-    let mut out = std::io::stdout().lock();
     if options.json {
         let pictures = written
             .iter()
@@ -79,16 +82,14 @@ pub(crate) fn run(options: &GalleryOptions) -> Result<Outcome, Failure> {
             "map": options.map.name(),
             "pictures": pictures.collect::<Vec<_>>(),
         });
-        writeln!(out, "{answer:#}")?;
-        return Ok(Outcome::Yes);
+        output::answer().json(&answer)?;
     }
-    for picture in &written {
-        match &picture.shapes[..] {
-            [name] => writeln!(out, "{}: {name}", picture.path.display())?,
-            names => writeln!(out, "{}: {} pictures", picture.path.display(), names.len())?,
-        }
-    }
-    Ok(Outcome::Yes)
+    Ok(if interrupt.is_asked() {
+        output::remark("interrupted: what was drawn is whole");
+        Outcome::Interrupted
+    } else {
+        Outcome::Yes
+    })
 }
 
 /// A picture that was written.
@@ -97,8 +98,22 @@ struct Written {
     shapes: Vec<String>,
 }
 
+/// A line for each picture.
+fn say(written: &[Written]) -> Result<(), Failure> {
+    let mut out = output::answer();
+    for picture in written {
+        let path = picture.path.display().to_string();
+        match &picture.shapes[..] {
+            [name] => writeln!(out, "{}: {name}", shown(&path))?,
+            names => writeln!(out, "{}: {} pictures", shown(&path), names.len())?,
+        }
+    }
+    Ok(())
+}
+
 impl Work<'_> {
-    /// Draws `specimens` on one sheet, and on a picture each if that is asked for.
+    /// Draws `specimens` on one sheet, and on a picture each if that is asked for, and says
+    /// which pictures are done. If interrupted there is no sheet: it would not be whole.
     fn draw<const D: usize>(
         &self,
         stem: &str,
@@ -113,10 +128,12 @@ impl Work<'_> {
         let folder = &self.options.output;
         let each = folder.join(stem);
         let last = if self.options.each { &each } else { folder };
-        std::fs::create_dir_all(last).map_err(|error| Failure::file(last, error))?;
+        output::make_folder(last)?;
+        let sheet = self.picture(&folder.join(stem))?;
         let map = self.options.map;
         let drawn: Vec<(Isolines, Option<Written>)> = specimens
             .par_iter()
+            .take_any_while(|_| !self.interrupt.is_asked())
             .map(|specimen| {
                 let cells = Sampling::new(TILE_CELLS).map_err(Failure::input)?;
                 let tile = specimen.picture(&plane, cells, map).map_err(Failure::input)?;
@@ -132,10 +149,17 @@ impl Work<'_> {
             })
             .collect::<Result<_, Failure>>()?;
         let (tiles, single): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
-        let figure = Figure::new(title).with_caption(caption(map)).with_sheet(COLUMNS, tiles);
-        let shapes = specimens.iter().map(|specimen| specimen.name.clone()).collect();
-        let mut written = vec![self.save(&figure, &folder.join(stem), shapes)?];
+        let mut written = Vec::new();
+        if tiles.len() == specimens.len() {
+            let figure =
+                Figure::new(title).with_caption(caption(map)).with_sheet(COLUMNS, tiles);
+            let shapes = specimens.iter().map(|specimen| specimen.name.clone()).collect();
+            written.push(self.save(&figure, &sheet, shapes)?);
+        }
         written.extend(single.into_iter().flatten());
+        if !self.options.json {
+            self.bar.suspend(|| say(&written))?;
+        }
         Ok(written)
     }
 
@@ -154,18 +178,24 @@ impl Work<'_> {
         let figure = Figure::new(specimen.name.replace('_', " "))
             .with_caption(promise_in_words(specimen.shape.promise()))
             .with_isolines(isolines);
-        self.save(&figure, path, vec![specimen.name.clone()])
+        self.save(&figure, &self.picture(path)?, vec![specimen.name.clone()])
+    }
+
+    /// A picture at `path`, which gets the ending of its kind. No two have one name, and
+    /// nothing is read.
+    fn picture(&self, path: &Path) -> Result<Picture, Failure> {
+        let path = path.with_extension(self.options.format.name());
+        Picture::new(&mut Files::default(), &path)
     }
 
     fn save(
         &self,
         figure: &Figure,
-        path: &Path,
+        picture: &Picture,
         shapes: Vec<String>,
     ) -> Result<Written, Failure> {
-        let path = path.with_extension(self.options.format.name());
-        picture::save(figure, &path, self.options.width)?;
-        Ok(Written { path, shapes })
+        picture.save(figure, self.options.width)?;
+        Ok(Written { path: picture.path().to_owned(), shapes })
     }
 }
 

@@ -7,8 +7,8 @@ use std::fs::File;
 use std::path::Path;
 
 use csv::StringRecord;
+use palpate::devices::{HandPath, Interpolation};
 use palpate::field::Vector;
-use palpate::haptics::{HandPath, Interpolation};
 
 use crate::outcome::Failure;
 

@@ -3,63 +3,34 @@
 
 //! The palpate program: signed distance functions that can be touched.
 
-mod arguments;
-mod check;
-mod contact;
-mod descend;
-mod devices;
-mod eval;
-mod feel;
-mod gallery;
-mod hand_csv;
-mod input;
-mod jitter;
-mod mass;
-mod mesh;
-mod outcome;
-mod picture;
-mod plot;
-mod schema;
-mod shapes;
-mod times;
-mod trace;
-
+use std::io;
 use std::process::ExitCode;
 
-use clap::Parser;
 use mimalloc::MiMalloc;
-
-use arguments::{Arguments, Command};
-use outcome::Outcome;
+use palpate_cli::{Interrupt, run_until};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 
 /// Worlds are built of many small nodes: `docs/decisions/allocator.md`.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let result = match arguments.command.unwrap_or_default() {
-        Command::Feel(options) => feel::run(&options),
-        Command::Eval(options) => eval::run(&options),
-        Command::Contact(options) => contact::run(&options),
-        Command::Descend(options) => descend::run(&options),
-        Command::Plot(options) => plot::run(&options),
-        Command::Gallery(options) => gallery::run(&options),
-        Command::Check(options) => check::run(&options),
-        Command::Mass(options) => mass::run(&options),
-        Command::Mesh(options) => mesh::run(&options),
-        Command::Schema => schema::run(),
-        Command::Shapes(options) => shapes::run(&options),
-        Command::Devices(options) => devices::run(&options),
-        Command::Jitter(options) => jitter::run(&options),
-    };
-    match result {
-        Ok(Outcome::Yes) => ExitCode::SUCCESS,
-        Ok(Outcome::No) => ExitCode::from(1),
-        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("palpate: {failure}");
-            ExitCode::from(2)
-        }
+    let interrupt = Interrupt::new();
+    if let Err(error) = listen(&interrupt) {
+        eprintln!("palpate: signals cannot be handled: {error}");
     }
+    ExitCode::from(run_until(std::env::args_os(), &interrupt))
+}
+
+/// Has Ctrl-C and SIGTERM ask for an end; the second time they end the process at once.
+fn listen(interrupt: &Interrupt) -> io::Result<()> {
+    for signal in [SIGINT, SIGTERM] {
+        // In this order: a signal ends the process if the one before asked it to end.
+        let status = Interrupt::STATUS.into();
+        flag::register_conditional_shutdown(signal, status, interrupt.at_once())?;
+        flag::register(signal, interrupt.at_once())?;
+        flag::register(signal, interrupt.asked())?;
+    }
+    Ok(())
 }

@@ -11,14 +11,16 @@ use serde_json::{Value, json};
 
 use crate::arguments::MassOptions;
 use crate::input;
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, shown};
 
 /// Computes the mass of each body; the answer is no if an error is above the tolerance.
-pub(crate) fn run(options: &MassOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &MassOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
     match &named.world {
-        World::Planar(scene) => report(options, scene, ["m²", "kg/m", "kg·m"]),
-        World::Spatial(scene) => report(options, scene, ["m³", "kg", "kg·m²"]),
+        World::Planar(scene) => report(options, scene, ["m²", "kg/m", "kg·m"], interrupt),
+        World::Spatial(scene) => report(options, scene, ["m³", "kg", "kg·m²"], interrupt),
     }
 }
 
@@ -26,12 +28,20 @@ fn report<const D: usize>(
     options: &MassOptions,
     scene: &BuiltScene<D>,
     [volume_unit, mass_unit, moment_unit]: [&str; 3],
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let limits = MassLimits { tolerance: options.tolerance, cells: options.cells };
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     let mut bodies = Vec::new();
     let mut outcome = Outcome::Yes;
-    for body in &scene.bodies {
+    interrupt.heed();
+    for (done, body) in scene.bodies.iter().enumerate() {
+        if interrupt.is_asked() {
+            let all = scene.bodies.len();
+            output::remark(format_args!("interrupted after {done} of {all} bodies"));
+            outcome = Outcome::Interrupted;
+            break;
+        }
         let name = &body.name;
         let mass = body
             .shape
@@ -44,7 +54,7 @@ fn report<const D: usize>(
             bodies.push(described(name, &mass));
             continue;
         }
-        writeln!(out, "{name}, at {} kg/m³ ({} cells)", options.density, mass.cells)?;
+        writeln!(out, "{}, at {} kg/m³ ({} cells)", shown(name), options.density, mass.cells)?;
         let line = |what: &str, value: f64, error: f64, unit: &str| {
             format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
         };
@@ -64,11 +74,7 @@ fn report<const D: usize>(
         }
     }
     if options.json {
-        writeln!(
-            out,
-            "{:#}",
-            json!({ "density_kg_per_m3": options.density, "bodies": bodies })
-        )?;
+        out.json(&json!({ "density_kg_per_m3": options.density, "bodies": bodies }))?;
     }
     Ok(outcome)
 }

@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::arguments::MeshOptions;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, shown};
 
 /// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
 pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
@@ -22,13 +23,13 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
     }
     let report = mesh.report();
     let is_good = report.is_watertight() && report.degenerate == 0;
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     if options.json {
-        writeln!(out, "{:#}", as_json(&report, is_good))?;
+        out.json(&as_json(&report, is_good))?;
     } else {
-        let name = options.file.display();
+        let name = options.file.display().to_string();
         let verdict = if is_good { "good" } else { "not good" };
-        writeln!(out, "{name}: {verdict}, {}", in_words(&report))?;
+        writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report))?;
     }
     Ok(if is_good { Outcome::Yes } else { Outcome::No })
 }

@@ -6,16 +6,31 @@
 use std::fmt;
 use std::io;
 
-/// What a command answers: exit status 0 or 1.
+use crate::interrupt::Interrupt;
+
+/// What a command answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Done; the answer is yes.
     Yes,
     /// Done; the answer is no.
     No,
+    /// Asked to end before all was done.
+    Interrupted,
 }
 
-/// Why a command could not answer: exit status 2.
+impl Outcome {
+    /// The exit status.
+    pub(crate) fn status(self) -> u8 {
+        match self {
+            Self::Yes => 0,
+            Self::No => 1,
+            Self::Interrupted => Interrupt::STATUS,
+        }
+    }
+}
+
+/// Why a command could not answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// What was wrong with the input, in a sentence.
@@ -25,9 +40,19 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// The exit status.
+    pub(crate) const STATUS: u8 = 2;
+
     /// What was wrong with the input.
     pub(crate) fn input(problem: impl fmt::Display) -> Self {
         Self::Input(problem.to_string())
+    }
+
+    /// All that went wrong of several things that were done; nothing if all are good.
+    pub(crate) fn any(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
+        let failures = results.into_iter().filter_map(Result::err);
+        let problems: Vec<_> = failures.map(|failure| failure.to_string()).collect();
+        if problems.is_empty() { Ok(()) } else { Err(Self::Input(problems.join("; "))) }
     }
 
     /// `path` could not be read or written.
@@ -53,6 +78,13 @@ impl fmt::Display for Failure {
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
+    }
+}
+
+impl From<csv::Error> for Failure {
+    /// That of a table that is written.
+    fn from(error: csv::Error) -> Self {
+        Self::Output(error.into())
     }
 }
 

@@ -10,8 +10,9 @@ use palpate::plot::{
     Figure, Gauge, Isolines, PlotError, Promised, Sampling, Slice, Slope, View,
 };
 
-use crate::arguments::Map;
+use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
+use crate::output::{Destination, Files};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
@@ -144,16 +145,40 @@ where
     }
 }
 
-/// Writes `figure` to `path`, as its ending says.
-pub(crate) fn save(figure: &Figure, path: &Path, width: u32) -> Result<(), Failure> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let bytes = match ending.to_ascii_lowercase().as_str() {
-        "svg" => figure.to_svg().into_bytes(),
-        "png" => figure.to_png(width).map_err(Failure::input)?,
-        _ => {
-            let problem = "a picture's name must end in .svg or .png";
-            return Err(Failure::file(path, problem));
-        }
-    };
-    std::fs::write(path, bytes).map_err(|error| Failure::file(path, error))
+/// A picture that is to be written.
+#[derive(Debug)]
+pub(crate) struct Picture {
+    destination: Destination,
+    format: Format,
+}
+
+impl Picture {
+    /// A picture at `path`, of the kind that its ending says, as an output of the run of
+    /// `files`.
+    pub(crate) fn new(files: &mut Files, path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let format = match ending.to_ascii_lowercase().as_str() {
+            "svg" => Format::Svg,
+            "png" => Format::Png,
+            _ => {
+                let problem = "a picture's name must end in .svg or .png";
+                return Err(Failure::file(path, problem));
+            }
+        };
+        Ok(Self { destination: files.output(path)?, format })
+    }
+
+    /// The path that the command line gave.
+    pub(crate) fn path(&self) -> &Path {
+        self.destination.name()
+    }
+
+    /// Writes `figure`; as a PNG, `width` pixels wide.
+    pub(crate) fn save(&self, figure: &Figure, width: u32) -> Result<(), Failure> {
+        let bytes = match self.format {
+            Format::Svg => figure.to_svg().into_bytes(),
+            Format::Png => figure.to_png(width).map_err(Failure::input)?,
+        };
+        self.destination.write(|out| Ok(out.write_all(&bytes)?))
+    }
 }

@@ -9,30 +9,27 @@ use std::path::{Path, PathBuf};
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
 use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
 use palpate::scene::{BuiltScene, World};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::arguments::{Map, PlotOptions};
 use crate::contact::Touched;
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
-use crate::picture::{self, Dimensions, Drawable};
+use crate::output::{self, Files, shown};
+use crate::picture::{self, Dimensions, Drawable, Picture};
 
 pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
+    let mut files = Files::reading([options.scene.as_path()]);
+    let picture = Picture::new(&mut files, &output(options))?;
     let named = input::scene(Some(&options.scene))?;
     match &named.world {
-        World::Planar(scene) => {
-            let window = Window::of(options, scene)?;
-            let touched = touched(options, scene)?;
-            draw(options, scene, &window, &Slice::planar(), touched.as_ref())
-        }
+        World::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
         World::Spatial(scene) => {
-            let window = Window::of(options, scene)?;
-            let touched = touched(options, scene)?;
-            let deepest = touched.as_ref().and_then(Touched::deepest);
+            let plot = Plot::of(options, &picture, scene)?;
+            let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
-            let through = deepest.unwrap_or_else(|| window.bounds.centre());
-            let plane = plane(options, through)?;
-            draw(options, scene, &window, &plane, touched.as_ref())
+            let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
+            plot.draw(&plane(options, through)?)
         }
     }
 }
@@ -73,84 +70,127 @@ impl<const D: usize> Window<D> {
     }
 }
 
-fn draw<const D: usize>(
-    options: &PlotOptions,
-    scene: &BuiltScene<D>,
-    window: &Window<D>,
-    plane: &Slice,
-    touched: Option<&Touched<D>>,
-) -> Result<Outcome, Failure>
+/// A scene that is drawn.
+struct Plot<'a, const D: usize> {
+    options: &'a PlotOptions,
+    picture: &'a Picture,
+    scene: &'a BuiltScene<D>,
+    window: Window<D>,
+    touched: Option<Touched<D>>,
+}
+
+impl<'a, const D: usize> Plot<'a, D>
 where
     Dimensions: Drawable<D>,
 {
-    if options.step.is_some() && options.map != Map::Distance {
-        return Err(Failure::input(
-            "--step is for --map distance: other maps have no isolines",
-        ));
-    }
-    let view = Dimensions::view(plane, &window.bounds, window.margin);
-    let view = view.map_err(Failure::input)?;
-    let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
-        .map_err(Failure::input)?;
-    let isolines = match options.step {
-        Some(step) => isolines.with_step(step).map_err(Failure::input)?,
-        None => picture::mapped(&scene.whole, plane, isolines, options.map)
-            .map_err(Failure::input)?,
-    };
-    let (step, range, measured) = (isolines.step(), isolines.range(), isolines.measured());
-    let output = output(options);
-    let isolines = match touched {
-        Some(touched) => touched.draw(isolines, plane)?,
-        None => isolines,
-    };
-    let figure = Figure::new(title(&options.scene))
-        .with_caption(promise_in_words(scene.whole.promise()))
-        .with_isolines(isolines);
-    picture::save(&figure, &output, options.width)?;
-    let gauge = match <Dimensions as Drawable<D>>::GAUGE {
-        Gauge::Distance => "value_over_distance",
-        Gauge::Steepness => "steepness",
-    };
-    let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
-    let mut out = std::io::stdout().lock();
-    if options.json {
-        let mut answer = json!({
-            "output": output,
-            "map": options.map.name(),
-            "smallest_m": range.0,
-            "largest_m": range.1,
-        });
-        if options.map == Map::Distance {
-            answer["step_m"] = json!(step);
+    /// Finds what is to be drawn.
+    fn of(
+        options: &'a PlotOptions,
+        picture: &'a Picture,
+        scene: &'a BuiltScene<D>,
+    ) -> Result<Self, Failure> {
+        if options.step.is_some() && options.map != Map::Distance {
+            return Err(Failure::input(
+                "--step is for --map distance: other maps have no isolines",
+            ));
         }
-        if let Some(measured) = measured {
-            answer[gauge] = json!({
+        let window = Window::of(options, scene)?;
+        let touched = touched(options, scene)?;
+        Ok(Self { options, picture, scene, window, touched })
+    }
+
+    /// Draws the scene on `plane`, and says what was drawn.
+    fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
+        let Self { options, scene, window, .. } = self;
+        let view = Dimensions::view(plane, &window.bounds, window.margin);
+        let view = view.map_err(Failure::input)?;
+        let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
+            .map_err(Failure::input)?;
+        let isolines = match options.step {
+            Some(step) => isolines.with_step(step).map_err(Failure::input)?,
+            None => picture::mapped(&scene.whole, plane, isolines, options.map)
+                .map_err(Failure::input)?,
+        };
+        let drawn = Drawn {
+            step: isolines.step(),
+            range: isolines.range(),
+            measured: isolines.measured(),
+        };
+        let isolines = match &self.touched {
+            Some(touched) => touched.draw(isolines, plane)?,
+            None => isolines,
+        };
+        let figure = Figure::new(title(&options.scene))
+            .with_caption(promise_in_words(scene.whole.promise()))
+            .with_isolines(isolines);
+        self.picture.save(&figure, options.width)?;
+        if options.json {
+            output::answer().json(&self.described(&drawn, plane))?;
+        } else {
+            let name = self.picture.path().display().to_string();
+            writeln!(output::answer(), "{}: {}", shown(&name), self.in_words(&drawn))?;
+        }
+        Ok(Outcome::Yes)
+    }
+
+    fn described(&self, drawn: &Drawn, plane: &Slice) -> Value {
+        let mut answer = json!({
+            "output": self.picture.path(),
+            "map": self.options.map.name(),
+            "smallest_m": drawn.range.0,
+            "largest_m": drawn.range.1,
+        });
+        if self.options.map == Map::Distance {
+            answer["step_m"] = json!(drawn.step);
+        }
+        let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
+        if let Some(measured) = &drawn.measured {
+            answer[gauge::<D>()] = json!({
                 "smallest": measured.smallest,
                 "smallest_at_m": point(measured.smallest_at),
                 "largest": measured.largest,
                 "largest_at_m": point(measured.largest_at),
             });
         }
-        if let Some(touched) = touched {
+        if let Some(touched) = &self.touched {
             let (touching, boxes) = touched.counts();
             answer["touching_pairs"] = json!(touching);
             answer["proof_boxes"] = json!(boxes);
         }
-        writeln!(out, "{answer:#}")?;
-        return Ok(Outcome::Yes);
+        answer
     }
-    let shown = match options.map {
-        Map::Distance => format!("isolines every {step} m"),
-        Map::Gradient => "directions of the gradient".to_owned(),
-        Map::Promise => match measured {
-            None => "promises".to_owned(),
-            Some(Measured { smallest, largest, .. }) => {
-                format!("promises; {gauge} from {smallest:.3} to {largest:.3}")
+
+    fn in_words(&self, drawn: &Drawn) -> String {
+        match (self.options.map, &drawn.measured) {
+            (Map::Distance, _) => format!("isolines every {} m", drawn.step),
+            (Map::Gradient, _) => "directions of the gradient".to_owned(),
+            (Map::Promise, None) => "promises".to_owned(),
+            (Map::Promise, Some(Measured { smallest, largest, .. })) => {
+                format!("promises; {} from {smallest:.3} to {largest:.3}", gauge::<D>())
             }
-        },
-    };
-    writeln!(out, "{}: {shown}", output.display())?;
-    Ok(Outcome::Yes)
+        }
+    }
+}
+
+/// What was drawn, in numbers.
+struct Drawn {
+    /// Between isolines [m].
+    step: f64,
+    /// The smallest and the largest value [m].
+    range: (f64, f64),
+    /// What was measured to compare with a promise.
+    measured: Option<Measured>,
+}
+
+/// The key of what is measured to compare with a promise.
+fn gauge<const D: usize>() -> &'static str
+where
+    Dimensions: Drawable<D>,
+{
+    match <Dimensions as Drawable<D>>::GAUGE {
+        Gauge::Distance => "value_over_distance",
+        Gauge::Steepness => "steepness",
+    }
 }
 
 fn output(options: &PlotOptions) -> PathBuf {

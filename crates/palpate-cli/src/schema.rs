@@ -6,8 +6,9 @@
 use std::io::Write;
 
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
-    write!(std::io::stdout().lock(), "{}", palpate::scene::schema_text())?;
+    write!(output::answer(), "{}", palpate::scene::schema_text())?;
     Ok(Outcome::Yes)
 }

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use crate::arguments::{Dimension, ShapesOptions};
 use crate::input::{promise_in_words, quality_in_words};
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 
 pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
     let mut rows = Vec::new();
@@ -21,9 +22,9 @@ pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
     if options.dimension != Some(Dimension::Two) {
         rows.extend(list(Entry::<3>::ALL)?);
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     if options.json {
-        writeln!(out, "{:#}", Value::Array(rows))?;
+        out.json(&Value::Array(rows))?;
         return Ok(Outcome::Yes);
     }
     for row in &rows {

@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use palpate::haptics::Distribution;
+use palpate::servo_loop::Distribution;
 
 /// The widest bar of a histogram.
 const BAR: u64 = 40;

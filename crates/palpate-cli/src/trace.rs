@@ -4,11 +4,10 @@
 //! The trace of a run: every tick as a row. The columns are documented in
 //! `docs/formats.md`.
 
-use std::fs::File;
-use std::path::Path;
+use std::io::Write;
 
 use palpate::field::Vector;
-use palpate::haptics::{Recorder, TraceRow};
+use palpate::servo_loop::{Recorder, TraceRow};
 
 use crate::outcome::Failure;
 
@@ -75,20 +74,18 @@ fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
     fields
 }
 
-/// Writes all rows of `recorder` to `path`.
+/// Writes all rows of `recorder` to `out`.
 pub(crate) fn write<const D: usize>(
     recorder: &Recorder<D>,
-    path: &Path,
+    out: &mut dyn Write,
 ) -> Result<(), Failure> {
-    let wrong = |error: csv::Error| Failure::file(path, error);
-    let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-    let mut writer = csv::Writer::from_writer(file);
+    let mut writer = csv::Writer::from_writer(out);
     let tools = || recorder.rows().iter().filter_map(|row| row.tool.as_ref());
     let (has_tool, turns_hand) =
         (tools().next().is_some(), tools().any(|tool| tool.given.is_some()));
-    writer.write_record(header::<D>(has_tool, turns_hand)).map_err(wrong)?;
+    writer.write_record(header::<D>(has_tool, turns_hand))?;
     for row in recorder.rows() {
-        writer.write_record(fields(row)).map_err(wrong)?;
+        writer.write_record(fields(row))?;
     }
-    writer.flush().map_err(|error| Failure::file(path, error))
+    Ok(writer.flush()?)
 }

@@ -70,6 +70,8 @@ pub struct Evaluations {
 pub enum Ending {
     /// Its time was over.
     Finished,
+    /// The caller asked it to end before its time was over.
+    Interrupted,
     /// The device no longer answered.
     DeviceLost {
         /// What its transport said.

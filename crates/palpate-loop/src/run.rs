@@ -6,6 +6,7 @@
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, Progress, Servo, handoff, not_negative,
 };
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::clock::{Clock, WallClock};
@@ -40,13 +41,22 @@ pub struct RunOptions<'a, const D: usize> {
     pub recorder: Option<&'a mut Recorder<D>>,
     /// Called from a thread of its own every so often, and once at the end.
     pub watch: Option<(Duration, Watch<'a>)>,
+    /// Ends the run before its next tick once it is `true`, as a signal handler may set it.
+    pub interrupt: Option<&'a AtomicBool>,
 }
 
 impl<const D: usize> RunOptions<'_, D> {
     /// Runs for `duration` [s] in real time; rehearses, keeps and shows nothing.
     #[must_use]
     pub fn new(duration: f64) -> Self {
-        Self { duration, pace: Pace::RealTime, rehearses: false, recorder: None, watch: None }
+        Self {
+            duration,
+            pace: Pace::RealTime,
+            rehearses: false,
+            recorder: None,
+            watch: None,
+            interrupt: None,
+        }
     }
 }
 
@@ -58,6 +68,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("rehearses", &self.rehearses)
             .field("recorder", &self.recorder.is_some())
             .field("watch", &self.watch.as_ref().map(|(every, _)| every))
+            .field("interrupt", &self.interrupt)
             .finish()
     }
 }
@@ -141,8 +152,10 @@ pub fn run_on<const D: usize>(
         .then(|| handoff(&*servo, HandoffOptions { events: 0, bodies: 0 }))
         .unzip();
     servo.check_device(device)?;
-    let servo_loop =
-        ServoLoop::new(servo, device).recording(options.recorder).handing_off(end.as_mut());
+    let servo_loop = ServoLoop::new(servo, device)
+        .recording(options.recorder)
+        .interrupted_by(options.interrupt)
+        .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(match control.zip(options.watch) {
         None => run(),

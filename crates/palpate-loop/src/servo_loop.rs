@@ -8,6 +8,7 @@
 use palpate_haptics::{Device, DeviceLost, PointState, Servo, ServoEnd};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use palpate_field::Vector;
@@ -28,6 +29,7 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     device: &'a mut dyn Device<D>,
     recorder: Option<&'a mut Recorder<D>>,
     end: Option<&'a mut ServoEnd<D>>,
+    interrupt: Option<&'a AtomicBool>,
     states: Vec<PointState<D>>,
     /// What the next tick may read.
     expected: Vec<PointState<D>>,
@@ -57,6 +59,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             device,
             recorder: None,
             end: None,
+            interrupt: None,
             states: vec![PointState::at_rest(Vector::ZERO); points],
             expected: vec![PointState::at_rest(Vector::ZERO); points],
             no_forces: vec![Vector::ZERO; points],
@@ -75,11 +78,16 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
+    pub(crate) fn interrupted_by(mut self, interrupt: Option<&'a AtomicBool>) -> Self {
+        self.interrupt = interrupt;
+        self
+    }
+
     /// Runs, and whatever ends it, writes zero forces and no torque last.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
-            Ok(Ok(())) => Ending::Finished,
+            Ok(Ok(ending)) => ending,
             Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
             Err(panic) => Ending::Panicked { message: message_of(&*panic) },
         };
@@ -96,7 +104,11 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self.tally.report(ending, dropped, self.servo.safety())
     }
 
-    fn ticks(&mut self, clock: &mut dyn Clock, schedule: &Schedule) -> Result<(), DeviceLost> {
+    fn ticks(
+        &mut self,
+        clock: &mut dyn Clock,
+        schedule: &Schedule,
+    ) -> Result<Ending, DeviceLost> {
         let rate = self.servo.options().rate;
         let mut pacer = Pacer::new(clock, rate);
         for tick in 0..schedule.ticks {
@@ -115,10 +127,13 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             if self.end.as_ref().is_some_and(|end| end.is_to_end()) {
                 break;
             }
+            if self.interrupt.is_some_and(|asked| asked.load(Ordering::Relaxed)) {
+                return Ok(Ending::Interrupted);
+            }
             let cost_ns = self.tick(clock, time_s)?;
             self.account(TickTimes { time_s, cost_ns, lateness_ns });
         }
-        Ok(())
+        Ok(Ending::Finished)
     }
 
     /// Tries the tick to come: the sleep between ticks has let caches and predictors go cold,

@@ -12,7 +12,9 @@ use palpate::scene::{BuiltScene, World};
 
 use crate::arguments::ContactOptions;
 use crate::input;
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 
 use question::{Pair, Question};
 
@@ -22,22 +24,24 @@ pub(crate) use overlay::Touched;
 const FEW: usize = 12;
 
 /// Finds what touches; the answer is no if nothing does.
-pub(crate) fn run(options: &ContactOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
     match &named.world {
-        World::Planar(scene) => answer(options, scene),
-        World::Spatial(scene) => answer(options, scene),
+        World::Planar(scene) => answer(options, scene, interrupt),
+        World::Spatial(scene) => answer(options, scene, interrupt),
     }
 }
 
 fn answer<const D: usize>(
     options: &ContactOptions,
     scene: &BuiltScene<D>,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let question = Question::of(&options.question, scene)?;
     let mut pairs: Vec<Pair<D>> = question.near(scene)?;
     if options.all || scene.bodies.len() <= FEW {
-        pairs.extend(question.apart(scene, &pairs)?);
+        interrupt.heed();
+        pairs.extend(question.apart(scene, &pairs, interrupt)?);
     }
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let report = report::Report { question: &question, names: &names, pairs: &pairs };
@@ -45,6 +49,10 @@ fn answer<const D: usize>(
         report.print_json()?;
     } else {
         report.print()?;
+    }
+    if interrupt.is_asked() {
+        output::remark("interrupted: of some pairs that are apart no separation is told");
+        return Ok(Outcome::Interrupted);
     }
     let touch = pairs.iter().any(|pair| pair.verdict == Verdict::Touching);
     Ok(if touch { Outcome::Yes } else { Outcome::No })

@@ -11,6 +11,7 @@ use palpate::scene::BuiltScene;
 use super::FEW;
 use super::question::{Pair, Question};
 use crate::arguments::ContactQuestion;
+use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 use crate::picture::in_space;
 
@@ -32,7 +33,8 @@ impl<const D: usize> Touched<D> {
         let question = Question::of(asked, scene)?;
         let mut pairs = question.near(scene)?;
         if scene.bodies.len() <= FEW {
-            pairs.extend(question.apart(scene, &pairs)?);
+            // A picture of some pairs would be taken for one of all: it is whole or none.
+            pairs.extend(question.apart(scene, &pairs, &Interrupt::new())?);
         }
         let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
         let proofs = shown.map(|pair| question.proof(scene, pair.bodies));

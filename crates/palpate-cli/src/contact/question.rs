@@ -13,6 +13,7 @@ use palpate::query::{
 use palpate::scene::{BuiltBody, BuiltScene};
 
 use crate::arguments::ContactQuestion;
+use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 
 /// The settings of a question about a scene.
@@ -86,17 +87,22 @@ impl Question {
         Ok(pairs.collect())
     }
 
-    /// All pairs but those in `near`, with the separation that proves each apart.
+    /// All pairs but those in `near`, with the separation that proves each apart; fewer if
+    /// interrupted.
     pub(crate) fn apart<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
         near: &[Pair<D>],
+        interrupt: &Interrupt,
     ) -> Result<Vec<Pair<D>>, Failure> {
         let mut workspace = PairWorkspace::new();
         let near: BTreeSet<[usize; 2]> = near.iter().map(|pair| pair.bodies).collect();
         let mut apart = Vec::new();
         for k in 0..scene.bodies.len() {
             for i in (0..k).filter(|i| !near.contains(&[*i, k])) {
+                if interrupt.is_asked() {
+                    return Ok(apart);
+                }
                 let [a, b] = [i, k].map(|i| placed(&scene.bodies[i]));
                 let found = separation(a, b, &self.settings.limits, &mut workspace)
                     .map_err(Failure::input)?;

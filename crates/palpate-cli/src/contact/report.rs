@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
 use crate::outcome::Failure;
+use crate::output::{self, shown};
 
 /// The pairs of a scene, to be told of.
 pub(super) struct Report<'a, const D: usize> {
@@ -21,9 +22,9 @@ pub(super) struct Report<'a, const D: usize> {
 
 impl<const D: usize> Report<'_, D> {
     pub(super) fn print(&self) -> Result<(), Failure> {
-        let mut out = std::io::stdout().lock();
+        let mut out = output::answer();
         for pair in self.pairs {
-            let [a, b] = pair.bodies.map(|i| self.names[i]);
+            let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
             write!(out, "{a} – {b}: {}", word(pair.verdict))?;
             match &pair.separation {
                 Some(found) => writeln!(
@@ -83,7 +84,7 @@ impl<const D: usize> Report<'_, D> {
             "bodies": self.names,
             "pairs": pairs,
         });
-        writeln!(std::io::stdout().lock(), "{answer:#}")?;
+        output::answer().json(&answer)?;
         Ok(())
     }
 

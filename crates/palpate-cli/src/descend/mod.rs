@@ -20,7 +20,8 @@ use serde_json::{Value, json};
 use crate::arguments::DescendOptions;
 use crate::input::{self, joined, promise_in_words};
 use crate::outcome::{Failure, Outcome};
-use crate::picture::{self, Dimensions, Drawable, in_space};
+use crate::output::{self, Files};
+use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 use crate::plot::title;
 
 /// How far apart the bounds of the minimum are, as a part of the longest edge.
@@ -30,25 +31,29 @@ const TOLERANCE: f64 = 1e-4;
 const MARGIN: f64 = 0.35;
 
 pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
+    let mut files = Files::reading([options.scene.as_path()]);
+    let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
+    let picture = picture.transpose()?;
     match &input::scene(Some(&options.scene))?.world {
-        World::Planar(scene) => over_points(options, scene),
-        World::Spatial(scene) => over_points(options, scene),
+        World::Planar(scene) => over_points(options, scene, picture.as_ref()),
+        World::Spatial(scene) => over_points(options, scene, picture.as_ref()),
     }
 }
 
 fn over_points<const D: usize>(
     options: &DescendOptions,
     scene: &BuiltScene<D>,
+    picture: Option<&Picture>,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
 {
     if !options.start.is_empty() {
-        pair::between(options, scene)
+        pair::between(options, scene, picture)
     } else if options.triangle.is_empty() {
-        descend(options, scene, &element::<2, D>(&options.segment)?)
+        descend(options, scene, picture, &element::<2, D>(&options.segment)?)
     } else {
-        descend(options, scene, &element::<3, D>(&options.triangle)?)
+        descend(options, scene, picture, &element::<3, D>(&options.triangle)?)
     }
 }
 
@@ -72,6 +77,7 @@ struct Answer<const D: usize> {
 fn descend<const N: usize, const D: usize>(
     options: &DescendOptions,
     scene: &BuiltScene<D>,
+    picture: Option<&Picture>,
     element: &Element<N, D>,
 ) -> Result<Outcome, Failure>
 where
@@ -87,11 +93,11 @@ where
         found: method.descend(&scene.whole, element),
         certified: minimum(&scene.whole, element, &limits, &mut Workspace::new()),
     };
-    if let Some(path) = &options.plot {
-        let figure = figure(&scene.whole, element, &answer, &options.scene);
-        picture::save(&figure.map_err(Failure::input)?, path, picture::WIDTH)?;
-    }
     answer.print(options.json)?;
+    if let Some(picture) = picture {
+        let figure = figure(&scene.whole, element, &answer, &options.scene);
+        picture.save(&figure.map_err(Failure::input)?, picture::WIDTH)?;
+    }
     Ok(Outcome::Yes)
 }
 
@@ -146,7 +152,7 @@ impl<const D: usize> Answer<D> {
 
     fn print(&self, as_json: bool) -> Result<(), Failure> {
         let Self { method, found, certified } = self;
-        let mut out = std::io::stdout().lock();
+        let mut out = output::answer();
         if as_json {
             let mut answer = described(found);
             answer["method"] = method.name().into();
@@ -157,7 +163,7 @@ impl<const D: usize> Answer<D> {
                 "upper_m": certified.upper,
                 "evaluations": certified.evaluations,
             });
-            writeln!(out, "{answer:#}")?;
+            out.json(&answer)?;
             return Ok(());
         }
         writeln!(out, "method       {method}")?;

@@ -17,7 +17,8 @@ use super::{described, limits, method, written};
 use crate::arguments::DescendOptions;
 use crate::input::{self, joined};
 use crate::outcome::{Failure, Outcome};
-use crate::picture::{self, Dimensions, Drawable, in_space};
+use crate::output;
+use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 use crate::plot::title;
 
 /// What was found from each start, and what there is.
@@ -32,6 +33,7 @@ struct Answer<'a, const D: usize> {
 pub(super) fn between<const D: usize>(
     options: &DescendOptions,
     scene: &BuiltScene<D>,
+    picture: Option<&Picture>,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
@@ -57,18 +59,18 @@ where
     let certified = separation(&a.shape, &b.shape, &limits, &mut workspace);
     let certified = certified.map_err(Failure::input)?;
     let answer = Answer { method, bodies: [&a.name, &b.name], found, certified };
-    if let Some(path) = &options.plot {
-        let figure = answer.figure(scene, &bounds, &options.scene).map_err(Failure::input)?;
-        picture::save(&figure, path, picture::WIDTH)?;
-    }
     answer.print(options.json)?;
+    if let Some(picture) = picture {
+        let figure = answer.figure(scene, &bounds, &options.scene).map_err(Failure::input)?;
+        picture.save(&figure, picture::WIDTH)?;
+    }
     Ok(Outcome::Yes)
 }
 
 impl<const D: usize> Answer<'_, D> {
     fn print(&self, as_json: bool) -> Result<(), Failure> {
         let Self { method, bodies, found, certified } = self;
-        let mut out = std::io::stdout().lock();
+        let mut out = output::answer();
         if as_json {
             let answer = json!({
                 "method": method.name(),
@@ -81,7 +83,7 @@ impl<const D: usize> Answer<'_, D> {
                     "evaluations": certified.evaluations,
                 },
             });
-            writeln!(out, "{answer:#}")?;
+            out.json(&answer)?;
             return Ok(());
         }
         writeln!(out, "method       {method}, between {:?} and {:?}", bodies[0], bodies[1])?;

@@ -13,31 +13,40 @@ use palpate::scene::{BuiltScene, World};
 
 use crate::arguments::EvalOptions;
 use crate::input::{self, promise_in_words};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Destination, Files};
 
-pub(crate) fn run(options: &EvalOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
+    let destination = match &options.output {
+        Some(path) => Files::reading(inputs.into_iter().flatten()).output(path)?,
+        None => Destination::standard(),
+    };
     match &input::scene(Some(&options.scene))?.world {
-        World::Planar(scene) => evaluate(scene, options),
-        World::Spatial(scene) => evaluate(scene, options),
+        World::Planar(scene) => evaluate(scene, options, &destination, interrupt),
+        World::Spatial(scene) => evaluate(scene, options, &destination, interrupt),
     }
 }
 
 fn evaluate<const D: usize>(
     scene: &BuiltScene<D>,
     options: &EvalOptions,
+    destination: &Destination,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     if let Some(points) = &options.points {
-        return stream::run(&scene.whole, points, options);
+        return stream::run(&scene.whole, points, options, destination, interrupt);
     }
     let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
     let answer = query::point(&scene.whole, point).map_err(Failure::input)?;
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     let promise = promise_in_words(scene.whole.promise());
     if options.json {
         let mut object = answer::to_json(&answer);
         object["promise"] = promise.into();
         object["lipschitz"] = scene.whole.promise().lipschitz.into();
-        writeln!(out, "{object:#}")?;
+        out.json(&object)?;
     } else {
         writeln!(out, "distance       {} m", answer.distance)?;
         writeln!(out, "gradient       {}", input::joined(&answer.gradient.0))?;

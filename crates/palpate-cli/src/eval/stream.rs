@@ -3,8 +3,10 @@
 
 //! Many points from a file, in bounded memory and on all cores.
 
+use std::fmt;
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
+use std::num::NonZero;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -16,7 +18,9 @@ use rayon::prelude::*;
 use super::answer;
 use crate::arguments::EvalOptions;
 use crate::hand_csv::columns;
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Destination};
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
 /// enough to stay in their caches.
@@ -26,75 +30,119 @@ pub(crate) fn run<const D: usize>(
     shape: &Shape<D>,
     points: &Path,
     options: &EvalOptions,
+    destination: &Destination,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let threads = options.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options.threads)).build();
     let pool = pool.map_err(Failure::input)?;
-    match &options.output {
-        None => {
-            let out = io::stdout().lock();
-            evaluate(shape, points, (options.json, &pool), BufWriter::new(out))?;
-        }
-        Some(path) => {
-            let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-            evaluate(shape, points, (options.json, &pool), BufWriter::new(file))?;
-        }
-    }
-    Ok(Outcome::Yes)
+    let stream = Stream { shape, points, as_json: options.json, pool, interrupt };
+    destination.write(|out| stream.evaluate(out))
 }
 
-fn evaluate<const D: usize>(
-    shape: &Shape<D>,
-    path: &Path,
-    (as_json, pool): (bool, &rayon::ThreadPool),
-    mut out: impl Write,
-) -> Result<(), Failure> {
-    let file = File::open(path).map_err(|error| Failure::file(path, error))?;
-    let size = file.metadata().map(|m| m.len()).unwrap_or(0);
-    // Shown on a terminal alone; hidden where standard error is a file.
-    let bar = ProgressBar::new(size).with_style(
-        ProgressStyle::with_template("{bar:40} {percent} % of {total_bytes}, {eta} left")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-    let header = reader.headers().map_err(|error| Failure::file(path, error))?;
-    let columns = columns::<D>(header, "").map_err(|problem| Failure::file(path, problem))?;
-    if !as_json {
-        writeln!(out, "{}", answer::header::<D>().join(","))?;
+/// As many threads as are asked for, but no more than the machine runs at once: others would
+/// wait, each with a batch in memory. Zero stands for all.
+fn threads(asked: Option<usize>) -> usize {
+    let asked = asked.unwrap_or(0);
+    let most = std::thread::available_parallelism().map_or(1, NonZero::get);
+    if asked > most {
+        output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
     }
-    let mut record = StringRecord::new();
-    let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
-    loop {
+    asked.min(most)
+}
+
+/// Points of a file, and how they are evaluated.
+struct Stream<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    points: &'a Path,
+    as_json: bool,
+    pool: rayon::ThreadPool,
+    interrupt: &'a Interrupt,
+}
+
+/// Points as they are read.
+struct Rows<const D: usize> {
+    reader: csv::Reader<File>,
+    /// Where the coordinates are in a row.
+    columns: [usize; D],
+    record: StringRecord,
+}
+
+impl<const D: usize> Stream<'_, D> {
+    /// Writes the answers, batch by batch. One that is interrupted ends after a whole row.
+    fn evaluate(&self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let file = File::open(self.points).map_err(|error| self.wrong(error))?;
+        let bar = bar(file.metadata().map(|metadata| metadata.len()).unwrap_or(0));
+        let mut rows = self.rows(file)?;
+        self.interrupt.heed();
+        if !self.as_json {
+            writeln!(out, "{}", answer::header::<D>().join(","))?;
+        }
+        let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
+        let mut done = 0;
+        loop {
+            // Whoever reads a pipe sees what is done.
+            out.flush()?;
+            self.read(&mut rows, &mut batch)?;
+            if self.interrupt.is_asked() {
+                output::remark(format_args!("interrupted after {done} points"));
+                return Ok(Outcome::Interrupted);
+            }
+            if batch.is_empty() {
+                bar.finish_and_clear();
+                return Ok(Outcome::Yes);
+            }
+            let texts: Vec<String> = self.pool.install(|| {
+                let answers = |points| answers(self.shape, points, self.as_json);
+                batch.par_chunks(BLOCK).map(answers).collect()
+            });
+            for text in texts {
+                out.write_all(text.as_bytes())?;
+            }
+            done += batch.len();
+            bar.set_position(rows.reader.position().byte());
+        }
+    }
+
+    fn rows(&self, file: File) -> Result<Rows<D>, Failure> {
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+        let header = reader.headers().map_err(|error| self.wrong(error))?;
+        let columns = columns::<D>(header, "").map_err(|problem| self.wrong(problem))?;
+        Ok(Rows { reader, columns, record: StringRecord::new() })
+    }
+
+    /// Reads the next batch; fewer points at the end, and if interrupted.
+    fn read(&self, rows: &mut Rows<D>, batch: &mut Vec<Point<D>>) -> Result<(), Failure> {
+        let Rows { reader, columns, record } = rows;
         batch.clear();
         while batch.len() < BATCH
-            && reader.read_record(&mut record).map_err(|error| Failure::file(path, error))?
+            && !self.interrupt.is_asked()
+            && reader.read_record(record).map_err(|error| self.wrong(error))?
         {
             let line = record.position().map_or(0, csv::Position::line);
-            let point = columns.map(|column| number(&record, column));
+            let point = columns.map(|column| number(record, column));
             match point.iter().position(Option::is_none) {
                 None => batch.push(Vector(point.map(Option::unwrap_or_default))),
                 Some(axis) => {
                     let field = record.get(columns[axis]).unwrap_or_default();
-                    let problem =
-                        format!("line {line}: a finite number is needed, got {field:?}");
-                    return Err(Failure::file(path, problem));
+                    let rule = "a finite number is needed";
+                    return Err(self.wrong(format!("line {line}: {rule}, got {field:?}")));
                 }
             }
         }
-        if batch.is_empty() {
-            break;
-        }
-        let texts: Vec<String> = pool.install(|| {
-            batch.par_chunks(BLOCK).map(|points| answers(shape, points, as_json)).collect()
-        });
-        for text in texts {
-            out.write_all(text.as_bytes())?;
-        }
-        bar.set_position(reader.position().byte());
+        Ok(())
     }
-    bar.finish_and_clear();
-    out.flush()?;
-    Ok(())
+
+    fn wrong(&self, problem: impl fmt::Display) -> Failure {
+        Failure::file(self.points, problem)
+    }
+}
+
+/// Shown on a terminal alone; hidden where standard error is a file.
+fn bar(size: u64) -> ProgressBar {
+    ProgressBar::new(size).with_style(
+        ProgressStyle::with_template("{bar:40} {percent} % of {total_bytes}, {eta} left")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    )
 }
 
 /// A finite number of at most the size that shapes are made for.

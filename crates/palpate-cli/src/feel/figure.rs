@@ -4,21 +4,20 @@
 //! The picture of a run: the path, the proxy and the force over isolines on the slices
 //! where most was felt, and the force over time.
 
-use std::path::Path;
-
 use palpate::field::{Aabb, Point, Vector};
-use palpate::haptics::{Energy, HeldTool, Recorder, TraceRow};
+use palpate::haptics::{Energy, HeldTool};
 use palpate::plot::{
     Arrow, Arrows, Chart, Dash, Figure, Isolines, PlotError, Polyline, Quantity, Sampling,
     Series,
 };
 use palpate::scene::BuiltScene;
+use palpate::servo_loop::{Recorder, TraceRow};
 
 use super::nearness::{Pieces, Seen, Side, side, taken_apart};
 use super::slices::{FeltSlice, felt_slices};
 use crate::input::{self, promise_in_words};
 use crate::outcome::Failure;
-use crate::picture::{self, Dimensions, Drawable, in_space};
+use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 
 /// Points of a line at most: more than a picture has columns.
 const MOST_POINTS: usize = 2000;
@@ -37,13 +36,13 @@ pub(crate) fn draw<const D: usize>(
     scene: &BuiltScene<D>,
     recorder: &Recorder<D>,
     title: &str,
-    path: &Path,
+    picture: &Picture,
 ) -> Result<(), Failure>
 where
     Dimensions: Drawable<D>,
 {
     let figure = figure(scene, recorder, title).map_err(Failure::input)?;
-    picture::save(&figure, path, picture::WIDTH)
+    picture.save(&figure, picture::WIDTH)
 }
 
 fn figure<const D: usize>(

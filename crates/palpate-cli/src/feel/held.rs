@@ -4,7 +4,8 @@
 //! What the hand holds, and where its workspace lies.
 
 use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
-use palpate::haptics::{HandPath, HapticsError, Interpolation, WorkspaceMap};
+use palpate::devices::{HandPath, Interpolation};
+use palpate::haptics::{HapticsError, WorkspaceMap};
 use palpate::scene::BuiltScene;
 
 use super::tool::Held;

@@ -6,28 +6,33 @@
 mod figure;
 mod held;
 mod nearness;
+mod outputs;
 mod report;
 mod slices;
 mod tool;
 mod vibration;
 
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
 use palpate::devices::profile_named;
+use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::{Rotation, Vector};
 use palpate::haptics::{
-    Acceptance, Accepted, Bodies, Body, Ending, Guide, HandPath, HapticsError, Interpolation,
-    Pace, Probe, Progress, Protection, Recorder, RunOptions, ServoOptions, Surface, Tour,
-    UnprotectedServo, run as run_servo,
+    Acceptance, Accepted, Bodies, Body, Guide, HapticsError, Probe, Progress, Protection,
+    ServoOptions, Surface, UnprotectedServo,
 };
 use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
+use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
+use crate::hand_csv;
 use crate::input::{self, Named};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 use crate::picture::{Dimensions, Drawable};
-use crate::{hand_csv, trace};
+use outputs::Outputs;
 
 /// How long a scene is felt if no path and no duration say otherwise [s].
 const DURATION: f64 = 10.0;
@@ -54,11 +59,12 @@ const SHOWN: &str = "omega";
 /// How often the live line is renewed.
 const LIVE_EVERY: Duration = Duration::from_millis(100);
 
-pub(crate) fn run(options: &FeelOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &FeelOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let outputs = Outputs::of(options)?;
     let named = input::scene(options.scene.as_deref())?;
     match &named.world {
-        World::Planar(scene) => feel(&named, scene, options),
-        World::Spatial(scene) => feel(&named, scene, options),
+        World::Planar(scene) => feel(&named, scene, options, &outputs, interrupt),
+        World::Spatial(scene) => feel(&named, scene, options, &outputs, interrupt),
     }
 }
 
@@ -66,6 +72,8 @@ fn feel<const D: usize>(
     named: &Named,
     scene: &BuiltScene<D>,
     options: &FeelOptions,
+    outputs: &Outputs,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, Failure>
 where
     Dimensions: Drawable<D>,
@@ -118,7 +126,7 @@ where
     let accepted = servo.accepted().to_vec();
 
     let ticks = ticks(duration, options.rate)?;
-    let keeps_rows = options.trace.is_some() || options.plot.is_some() || options.wav.is_some();
+    let keeps_rows = outputs.keep_ticks();
     let rows = ticks * contacts as f64;
     if keeps_rows && rows > MOST_ROWS {
         let problem =
@@ -127,33 +135,30 @@ where
     }
     let mut recorder =
         Recorder::new(if keeps_rows { rows.max(0.0).ceil() as usize } else { 0 });
-    let shows_line = std::io::stderr().is_terminal();
-    let mut show = |progress: &Progress| {
-        // A line that cannot be shown is not missed.
-        let _ = write!(std::io::stderr(), "\r{}\x1b[K", report::live_line(progress));
-    };
+    let shows_line = io::stderr().is_terminal();
+    let mut show = |progress: &Progress| output::live(report::live_line(progress));
     let run_options = RunOptions {
         duration,
+        rehearses: true,
         pace: if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime },
         recorder: keeps_rows.then_some(&mut recorder),
         watch: if shows_line { Some((LIVE_EVERY, &mut show)) } else { None },
+        interrupt: Some(interrupt.flag()),
     };
+    interrupt.heed();
+    if !options.fast {
+        output::remark(format_args!(
+            "feeling {name} for {duration} s; Ctrl-C ends that, with the report"
+        ));
+    }
     let outcome =
         run_servo(&mut servo, device.as_mut(), run_options).map_err(Failure::input)?;
     if shows_line {
-        eprintln!();
+        output::remark("");
     }
 
-    if let Some(path) = &options.trace {
-        trace::write(&recorder, path)?;
-    }
-    if let Some(path) = &options.wav {
-        vibration::write(scene, &recorder, options.rate, path)?;
-    }
-    if let Some(path) = &options.plot {
-        figure::draw(scene, &recorder, &report::title(name, &outcome), path)?;
-    }
-    let mut out = std::io::stdout().lock();
+    let written = outputs.write(scene, &recorder, options.rate, &report::title(name, &outcome));
+    let mut out = output::answer();
     if options.json {
         let mut json = serde_json::to_value(&outcome)?;
         json["device"] = device.profile().name.as_ref().into();
@@ -165,11 +170,17 @@ where
         } else {
             json["bodies"] = accepted_as_json(scene, &accepted)?;
         }
-        writeln!(out, "{json:#}")?;
+        out.json(&json)?;
     } else {
         write!(out, "{}", report::text(name, &outcome, (&servo, device.profile(), &accepted)))?;
     }
-    Ok(if outcome.ending == Ending::Finished { Outcome::Yes } else { Outcome::No })
+    // Said after the report, which is whole whatever becomes of the files.
+    written?;
+    Ok(match outcome.ending {
+        Ending::Finished => Outcome::Yes,
+        Ending::Interrupted => Outcome::Interrupted,
+        Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
+    })
 }
 
 /// What became of the stiffness and damping of each body.

@@ -6,10 +6,12 @@
 use std::fmt::Write;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Ending, PassivityReport, Progress, Rule, RunReport,
-    SafetyReport, Servo, Surface, ToolReport, TurningReport,
+    Accepted, Body, DeviceProfile, PassivityReport, Progress, Rule, SafetyReport, Servo,
+    Surface, TurningReport,
 };
+use palpate::servo_loop::{Ending, RunReport, ToolReport};
 
+use crate::output::shown;
 use crate::times::{quantiles, write_histogram};
 
 /// What is shown while the servo runs.
@@ -56,6 +58,7 @@ fn write_report<const D: usize>(
     report: &RunReport,
     (servo, profile, accepted): (&Servo<D>, &DeviceProfile, &[Accepted]),
 ) -> std::fmt::Result {
+    let name = shown(name);
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     match &report.tool {
@@ -100,6 +103,9 @@ fn write_report<const D: usize>(
     }
     match &report.ending {
         Ending::Finished => {}
+        Ending::Interrupted => {
+            writeln!(out, "  interrupted: this is what was felt until then")?
+        }
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
         Ending::Panicked { message } => {
             writeln!(

@@ -4,8 +4,8 @@
 //! The slices of a scene in which most was felt.
 
 use palpate::field::{Aabb, Vector};
-use palpate::haptics::TraceRow;
 use palpate::plot::{PlotError, Slice};
+use palpate::servo_loop::TraceRow;
 
 /// What is near a slice, as a part of the scene's shortest edge: a slice shows what a body is
 /// like so far from it.

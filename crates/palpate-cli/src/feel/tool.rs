@@ -3,8 +3,9 @@
 
 //! The tool of a scene, if it has a shape, and where the built-in hand takes it.
 
+use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::{Aabb, Rotation, Shape, Vector};
-use palpate::haptics::{HandPath, HapticsError, Interpolation, Tool, Tour};
+use palpate::haptics::{HapticsError, Tool};
 use palpate::scene::BuiltScene;
 
 use crate::arguments::{DeviceChoice, FeelOptions};

@@ -3,17 +3,16 @@
 
 //! What a run vibrates like, as a WAV file: what fingers without force feedback are given.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::Cursor;
 
-use palpate::haptics::vibrotactile::{
+use palpate::scene::BuiltScene;
+use palpate::servo_loop::{Recorder, TraceRow};
+use palpate::vibration::{
     Cue, Mapping, MappingOptions, Sensation, Synthesiser, Tap, write_wav,
 };
-use palpate::haptics::{Recorder, TraceRow};
-use palpate::scene::BuiltScene;
 
 use crate::outcome::Failure;
+use crate::output::Destination;
 
 /// [Hz]; the skin feels nothing above 1 kHz.
 const SAMPLE_RATE: u32 = 8000;
@@ -23,7 +22,7 @@ pub(super) fn write<const D: usize>(
     scene: &BuiltScene<D>,
     recorder: &Recorder<D>,
     rate: f64,
-    path: &Path,
+    destination: &Destination,
 ) -> Result<(), Failure> {
     let points = recorder.rows().iter().map(|row| row.point).max().map_or(0, |last| last + 1);
     let points = points as usize;
@@ -45,9 +44,10 @@ pub(super) fn write<const D: usize>(
         synthesiser.render(&sensations, &mut samples[start..]);
         last = Some(tick);
     }
-    let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-    write_wav(BufWriter::new(file), SAMPLE_RATE, samples)
-        .map_err(|error| Failure::file(path, error))
+    // Its length goes into its header, before samples: a pipe cannot go back.
+    let mut wav = Cursor::new(Vec::new());
+    write_wav(&mut wav, SAMPLE_RATE, samples).map_err(Failure::input)?;
+    destination.write(|out| Ok(out.write_all(wav.get_ref())?))
 }
 
 /// What a contact point meets in a tick.

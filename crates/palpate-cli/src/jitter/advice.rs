@@ -3,7 +3,7 @@
 
 //! What the lateness of loops suggests.
 
-use palpate::haptics::{Distribution, Priority};
+use palpate::servo_loop::{Distribution, Priority};
 
 use super::{Measured, Waiting};
 use crate::times::microseconds;
@@ -140,7 +140,7 @@ fn about_priority(normal: &Ways<'_>, raised: Option<&Ways<'_>>, priority: &Prior
 
 #[cfg(test)]
 mod tests {
-    use palpate::haptics::Lateness;
+    use palpate::servo_loop::Lateness;
 
     use super::*;
 

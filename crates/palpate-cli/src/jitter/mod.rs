@@ -9,11 +9,13 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::time::Duration;
 
-use palpate::haptics::{HapticsError, Lateness, Priority, WallClock, positive, raise_priority};
+use palpate::haptics::{HapticsError, positive};
+use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde_json::{Value, json};
 
 use crate::arguments::JitterOptions;
 use crate::outcome::{Failure, Outcome};
+use crate::output;
 use crate::times::{quantiles, write_histogram};
 
 /// The fastest loop [Hz]: no servo is faster.
@@ -90,7 +92,7 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
         }
     }
     let advice = advice::advice(&measured, &priority, rate);
-    let mut out = std::io::stdout().lock();
+    let mut out = output::answer();
     if options.json {
         let described: Vec<_> = measured.iter().map(described).collect();
         let answer = json!({
@@ -100,7 +102,7 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
             "loops": described,
             "advice": advice,
         });
-        writeln!(out, "{answer:#}")?;
+        out.json(&answer)?;
     } else {
         write!(out, "{}", text(&measured, &priority, &advice, rate))?;
     }

@@ -4,6 +4,7 @@
 //! Whole runs of the servo, on clocks that tests move.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::{ball, cuboid, half_space, protected, without_limits};
@@ -263,4 +264,42 @@ fn what_cannot_run_is_refused() {
     assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
     assert!(run(&mut servo, &mut Watched::new(), fast(f64::NAN)).is_err());
     assert!(RecordedDevice::<2>::new(vec![]).is_err());
+}
+
+/// A device whose user leaves as soon as a force is felt.
+struct Leaving<'a> {
+    device: Watched,
+    left: &'a AtomicBool,
+}
+
+impl Device<2> for Leaving<'_> {
+    fn points(&self) -> usize {
+        self.device.points()
+    }
+    fn profile(&self) -> &DeviceProfile {
+        self.device.profile()
+    }
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+        self.device.read(time, points)
+    }
+    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+        if forces[0].norm() > 0.0 {
+            self.left.store(true, Ordering::Relaxed);
+        }
+        self.device.write(forces)
+    }
+}
+
+#[test]
+fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
+    let left = AtomicBool::new(false);
+    let mut servo = wall_servo(ServoOptions::default());
+    let mut device = Leaving { device: Watched::new(), left: &left };
+    let options = RunOptions { interrupt: Some(&left), ..fast(4.0) };
+    let report = run(&mut servo, &mut device, options).unwrap();
+    assert_eq!(report.ending, Ending::Interrupted);
+    // The hand is at the wall after half a second, and below it in the tick after.
+    assert_eq!(report.ticks, 502);
+    assert!(report.largest_force > 0.0);
+    assert_eq!(device.device.written, Some(Vector::ZERO));
 }

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The program as its users run it.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod common;
-mod pictures;
-
-use common::{Folder, errors, json, palpate, status, text};
-use pictures::words;
+use crate::common::{Folder, errors, json, palpate, status, text};
+use crate::pictures::words;
 use serde_json::Value;
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
@@ -158,7 +154,7 @@ fn a_mesh_is_good_if_it_is_watertight() {
 
 #[test]
 fn the_schema_is_the_committed_one() {
-    let committed = include_str!("../../palpate-scene/schema/scene.schema.json");
+    let committed = include_str!("../../../palpate-scene/schema/scene.schema.json");
     assert_eq!(text(&palpate(&["schema"])), committed);
 }
 
@@ -424,7 +420,7 @@ fn descend_between_bodies_finds_what_is_near_its_start() {
 #[test]
 fn descents_of_the_guide_run() {
     let folder = Folder::new();
-    let guide = include_str!("../../../docs/guide/memoir.md");
+    let guide = include_str!("../../../../docs/guide/memoir.md");
     let commands = guide.lines().filter_map(|line| line.strip_prefix("palpate descend "));
     let mut count = 0;
     for command in commands {

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! `palpate feel`, `devices` and `jitter`.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod common;
-mod pictures;
-
-use common::{Folder, errors, json, palpate, status, text};
-use pictures::words;
+use crate::common::{Folder, errors, json, palpate, status, text};
+use crate::pictures::words;
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;

@@ -8,13 +8,16 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-pub(crate) fn palpate(arguments: &[&str]) -> Output {
+/// The program in the root of the repository, about to start.
+pub(crate) fn program(arguments: &[&str]) -> Command {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    Command::new(env!("CARGO_BIN_EXE_palpate"))
-        .args(arguments)
-        .current_dir(repository)
-        .output()
-        .unwrap()
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    command.args(arguments).current_dir(repository);
+    command
+}
+
+pub(crate) fn palpate(arguments: &[&str]) -> Output {
+    program(arguments).output().unwrap()
 }
 
 pub(crate) fn status(output: &Output) -> i32 {
@@ -49,6 +52,11 @@ impl Folder {
 
     pub(crate) fn name(&self, name: &str) -> String {
         self.path(name).to_str().unwrap().to_owned()
+    }
+
+    /// Runs the program in the folder.
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
+        program(arguments).current_dir(self.0.path()).output().unwrap()
     }
 
     pub(crate) fn write(&self, name: &str, text: &str) -> String {

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! `palpate contact`, and contacts in pictures.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod common;
-
-use common::{Folder, errors, json, palpate, status, text};
+use crate::common::{Folder, errors, json, palpate, status, text};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {

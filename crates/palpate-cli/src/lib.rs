@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The palpate program as a function: signed distance functions that can be touched.
+//!
+//! [`run`] does what `palpate` does with a command line, on the standard output and error of the
+//! process. The allocator and the handling of signals are the caller's.
+
+mod arguments;
+mod check;
+mod contact;
+mod descend;
+mod devices;
+mod eval;
+mod feel;
+mod gallery;
+mod hand_csv;
+mod input;
+mod interrupt;
+mod jitter;
+mod mass;
+mod mesh;
+mod outcome;
+mod output;
+mod picture;
+mod plot;
+mod schema;
+mod shapes;
+mod times;
+mod trace;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use outcome::{Failure, Outcome};
+
+pub use interrupt::Interrupt;
+
+/// Runs a command line, the program's name first, and returns the exit status: 0 if the answer
+/// is yes, 1 if it is no, 2 if the input cannot be used.
+///
+/// # Examples
+///
+/// ```
+/// assert_eq!(palpate_cli::run(["palpate", "shapes", "--dimension", "2"]), 0);
+/// assert_eq!(palpate_cli::run(["palpate", "check", "no/such/scene.json"]), 2);
+/// ```
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
+    run_until(arguments, &Interrupt::new())
+}
+
+/// As [`run`], until `interrupt` asks for an end: what was done until then is written and
+/// reported, and the status is 130.
+///
+/// # Examples
+///
+/// ```
+/// use std::sync::atomic::Ordering;
+///
+/// let interrupt = palpate_cli::Interrupt::new();
+/// interrupt.asked().store(true, Ordering::Relaxed);
+/// let status = palpate_cli::run_until(["palpate", "feel", "--fast"], &interrupt);
+/// assert_eq!(status, 130);
+/// ```
+pub fn run_until(
+    arguments: impl IntoIterator<Item = impl Into<OsString>>,
+    interrupt: &Interrupt,
+) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments.into_iter().map(Into::into)) {
+        Ok(arguments) => arguments,
+        Err(refused) => return output::usage(&refused),
+    };
+    let command = arguments.command.unwrap_or_default();
+    match obey(&command, interrupt).and_then(output::ended) {
+        Ok(outcome) => outcome.status(),
+        Err(failure) if failure.is_closed_pipe() => Outcome::Yes.status(),
+        Err(failure) => {
+            output::complain(&failure);
+            Failure::STATUS
+        }
+    }
+}
+
+fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    match command {
+        Command::Feel(options) => feel::run(options, interrupt),
+        Command::Eval(options) => eval::run(options, interrupt),
+        Command::Contact(options) => contact::run(options, interrupt),
+        Command::Descend(options) => descend::run(options),
+        Command::Plot(options) => plot::run(options),
+        Command::Gallery(options) => gallery::run(options, interrupt),
+        Command::Check(options) => check::run(options),
+        Command::Mass(options) => mass::run(options, interrupt),
+        Command::Mesh(options) => mesh::run(options),
+        Command::Schema => schema::run(),
+        Command::Shapes(options) => shapes::run(options),
+        Command::Devices(options) => devices::run(options),
+        Command::Jitter(options) => jitter::run(options),
+    }
+}

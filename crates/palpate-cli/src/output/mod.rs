@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! All output of the program: files, standard output, messages.
+//!
+//! A run names the files that it reads and writes to [`Files`] before it begins. What would
+//! overwrite an input, or another output, is refused there. A [`Destination`] is written beside
+//! its place and renamed when it is whole, so that a run that fails leaves the old file.
+
+mod escape;
+mod files;
+mod terminal;
+
+use std::fs::{self, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::outcome::Failure;
+
+pub(crate) use escape::shown;
+pub(crate) use files::Files;
+pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
+
+/// Where an output goes.
+#[derive(Debug)]
+pub(crate) struct Destination {
+    /// As the command line names it; empty for standard output.
+    name: PathBuf,
+    target: Target,
+}
+
+/// How an output gets to its place.
+#[derive(Debug)]
+enum Target {
+    /// Written to standard output.
+    Standard,
+    /// Written straight away: a device or a pipe cannot be replaced.
+    Direct,
+    /// Written beside this place, then renamed to it. Links are resolved.
+    Replaced(PathBuf),
+}
+
+impl Destination {
+    /// Standard output.
+    pub(crate) fn standard() -> Self {
+        Self { name: PathBuf::new(), target: Target::Standard }
+    }
+
+    /// The path that the command line gave.
+    pub(crate) fn name(&self) -> &Path {
+        &self.name
+    }
+
+    /// Writes what `fill` writes. If that fails, a file that was there before stays as it was.
+    pub(crate) fn write<T>(
+        &self,
+        fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        match &self.target {
+            Target::Standard => filled(io::stdout().lock(), fill),
+            Target::Direct => {
+                // Appended: behind a path such as /dev/stdout may be a file that others write.
+                let file = OpenOptions::new().append(true).open(&self.name);
+                file.map_err(Failure::from).and_then(|file| filled(file, fill))
+            }
+            Target::Replaced(place) => replaced(place, fill),
+        }
+        .map_err(|failure| match failure {
+            Failure::Output(error) if !self.name.as_os_str().is_empty() => {
+                Failure::file(&self.name, error)
+            }
+            other => other,
+        })
+    }
+}
+
+/// Has `fill` write to `out`, to the last byte.
+fn filled<T>(
+    out: impl Write,
+    fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let mut out = BufWriter::new(out);
+    let answer = fill(&mut out)?;
+    out.flush()?;
+    Ok(answer)
+}
+
+/// Has `fill` write a file beside `place`, which then takes that place.
+fn replaced<T>(
+    place: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let file = beside(place)?;
+    let answer = filled(file.as_file(), fill)?;
+    if let Ok(old) = fs::metadata(place) {
+        file.as_file().set_permissions(old.permissions())?;
+        // The old file goes once the new one is on the disk.
+        file.as_file().sync_data()?;
+    }
+    file.persist(place).map_err(|refused| refused.error)?;
+    Ok(answer)
+}
+
+/// Makes a folder for outputs, and those above it, if need be.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|error| Failure::file(path, error))
+}
+
+/// A new file in the folder of `place`, removed unless it is renamed.
+fn beside(place: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".palpate-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the user's mask takes away from it.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder(place))
+}
+
+/// The folder that `place` is in.
+fn folder(place: &Path) -> &Path {
+    match place.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn destination(path: &Path) -> Destination {
+        Files::default().output(path).unwrap()
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> =
+            entries.map(|entry| name(entry).into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_failure_in_the_middle_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("out.csv");
+        fs::write(&place, "old").unwrap();
+        let failed: Result<(), Failure> = destination(&place).write(|out| {
+            out.write_all(&[b'x'; 100_000])?;
+            Err(Failure::input("a bad row"))
+        });
+        assert_eq!(failed.unwrap_err().to_string(), "a bad row");
+        assert_eq!(fs::read(&place).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["out.csv"]);
+        destination(&place).write(|out| Ok(out.write_all(b"new")?)).unwrap();
+        assert_eq!(fs::read(&place).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["out.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_of_a_replaced_file_and_links_to_it_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (place, link) = (folder.path().join("out.csv"), folder.path().join("link"));
+        fs::write(&place, "old").unwrap();
+        fs::set_permissions(&place, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink("out.csv", &link).unwrap();
+        destination(&link).write(|out| Ok(out.write_all(b"new")?)).unwrap();
+        assert_eq!(fs::read(&place).unwrap(), b"new");
+        assert_eq!(fs::metadata(&place).unwrap().permissions().mode() & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).unwrap().file_type().is_symlink());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_new_file_is_as_readable_as_any_other() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [usual, ours] = ["usual", "ours"].map(|name| folder.path().join(name));
+        fs::write(&usual, "").unwrap();
+        destination(&ours).write(|_| Ok(())).unwrap();
+        let mode = |path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&usual));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_an_error_that_names_the_output() {
+        let full = Path::new("/dev/full");
+        let failed = destination(full).write(|out| Ok(out.write_all(b"x")?));
+        let said = failed.unwrap_err().to_string();
+        assert!(said.starts_with("/dev/full: No space left"), "{said}");
+    }
+}

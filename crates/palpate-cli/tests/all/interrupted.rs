@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Ctrl-C and SIGTERM: what was done is written and reported.
+#![cfg(unix)]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, Stdio};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use crate::common::{Folder, program};
+
+const INTERRUPTED: Option<i32> = Some(130);
+
+/// A run of the program that is talked to.
+struct Run(Child);
+
+impl Run {
+    fn start(arguments: &[&str]) -> Self {
+        let mut command = program(arguments);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        Self(command.spawn().unwrap())
+    }
+
+    fn signal(&self, signal: i32) {
+        let signal = rustix::process::Signal::from_named_raw(signal).unwrap();
+        let child = rustix::process::Pid::from_child(&self.0);
+        rustix::process::kill_process(child, signal).unwrap();
+    }
+}
+
+/// A run that a failed test leaves behind ends with it.
+impl Drop for Run {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The next line of `pipe`.
+fn line(pipe: &mut impl BufRead) -> String {
+    let mut line = String::new();
+    pipe.read_line(&mut line).unwrap();
+    line
+}
+
+#[test]
+fn feel_ends_with_trace_picture_and_report() {
+    for signal in [SIGINT, SIGTERM] {
+        let folder = Folder::new();
+        let (trace, plot) = (folder.name("trace.csv"), folder.name("touch.svg"));
+        let mut run = Run::start(&[
+            "feel",
+            "scenes/cup.json",
+            "--duration",
+            "600",
+            "--rate",
+            "500",
+            "--json",
+            "--trace",
+            &trace,
+            "--plot",
+            &plot,
+        ]);
+        let mut errors = BufReader::new(run.0.stderr.take().unwrap());
+        assert!(line(&mut errors).contains("Ctrl-C ends"));
+        run.signal(signal);
+        let mut report = String::new();
+        run.0.stdout.take().unwrap().read_to_string(&mut report).unwrap();
+        assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["ending"]["kind"], "interrupted");
+        let ticks = report["ticks"].as_u64().unwrap();
+        assert!(ticks < 300_000, "{ticks}");
+        let rows = fs::read_to_string(trace).unwrap().lines().count() as u64;
+        assert_eq!(rows, 1 + ticks);
+        assert!(fs::read_to_string(plot).unwrap().starts_with("<svg"));
+    }
+}
+
+#[test]
+fn eval_ends_after_whole_rows() {
+    let mut run = Run::start(&["eval", "scenes/s1.json", "--points", "/dev/stdin"]);
+    let mut points = run.0.stdin.take().unwrap();
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    // More than a batch; none of it fits into a pipe unless it is read.
+    let writer = std::thread::spawn(move || {
+        writeln!(points, "x_m,y_m,z_m").unwrap();
+        points.write_all("0.1,0.2,0.3\n".repeat(70_000).as_bytes()).unwrap();
+        points
+    });
+    assert!(line(&mut answers).starts_with("x_m,"));
+    let first = line(&mut answers);
+    assert!(first.starts_with("0.1,0.2,0.3,"), "{first}");
+    let reader = std::thread::spawn(move || answers.lines().map(Result::unwrap).collect());
+    let mut points = writer.join().unwrap();
+    run.signal(SIGINT);
+    // It ends at one of the next points.
+    while writeln!(points, "0.1,0.2,0.3").is_ok() {}
+    let rest: Vec<String> = reader.join().unwrap();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert_eq!((1 + rest.len()) % 65_536, 0);
+    assert!(rest.iter().all(|line| *line == first.trim_end()));
+}
+
+#[test]
+fn a_second_signal_ends_at_once_and_leaves_the_old_output() {
+    let folder = Folder::new();
+    let output = folder.write("distances.csv", "the old distances");
+    let mut run = Run::start(&[
+        "eval",
+        "scenes/s1.json",
+        "--points",
+        "/dev/stdin",
+        "--output",
+        &output,
+        "--threads",
+        "100000",
+    ]);
+    // Said before the points are read; the input stays open.
+    let mut errors = BufReader::new(run.0.stderr.take().unwrap());
+    assert!(line(&mut errors).contains("this machine runs"));
+    run.signal(SIGINT);
+    run.signal(SIGTERM);
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert_eq!(fs::read_to_string(output).unwrap(), "the old distances");
+}
+
+#[test]
+fn the_gallery_ends_with_whole_sheets() {
+    let folder = Folder::new();
+    let output = folder.name("pictures");
+    let mut run = Run::start(&["gallery", "--output", &output, "--format", "svg"]);
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    let first = line(&mut answers);
+    assert!(first.contains("shapes-of-the-plane.svg: "), "{first}");
+    run.signal(SIGINT);
+    let rest: Vec<String> = answers.lines().map(Result::unwrap).collect();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert!(rest.len() < 4, "all sheets were drawn: {rest:?}");
+    let sheets = fs::read_dir(&output).unwrap().count();
+    assert_eq!(sheets, 1 + rest.len());
+    for sheet in fs::read_dir(&output).unwrap() {
+        let svg = fs::read_to_string(sheet.unwrap().path()).unwrap();
+        assert!(svg.trim_end().ends_with("</svg>"));
+    }
+}
+
+/// A thousand bodies are not weighed between one line and the next.
+#[test]
+fn mass_tells_of_the_bodies_that_it_has_weighed() {
+    let folder = Folder::new();
+    let body = |i: u32| {
+        let shape = r#"{ "torus": { "ring_radius": 0.5, "radius": 0.2 } }"#;
+        format!(r#"{{ "name": "body {i}", "shape": {shape} }}"#)
+    };
+    let bodies: Vec<_> = (0..1000).map(body).collect();
+    let bodies = bodies.join(", ");
+    let scene = format!(r#"{{ "palpate": 1, "dimension": 3, "bodies": [{bodies}] }}"#);
+    let scene = folder.write("many.json", &scene);
+    let mut run = Run::start(&["mass", &scene, "--tolerance", "0.002"]);
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    assert!(line(&mut answers).starts_with("body 0, "));
+    run.signal(SIGINT);
+    let told = answers.lines().map(Result::unwrap);
+    let told = told.filter(|line| line.starts_with("body ")).count();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert!(told < 999, "all bodies were weighed");
+}

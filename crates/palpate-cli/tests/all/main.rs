@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The program as its users run it. One test program, so that it is linked once.
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
+mod common;
+mod contact;
+mod interrupted;
+mod outputs;
+mod pictures;
+mod program;
+mod touch;

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Rules on what crates need: they compile without a system beneath them, and pull few others.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use crate::command::{Failure, cargo, cargo_command, output, root};
+
+/// A target without a system.
+const WASM: &str = "wasm32-unknown-unknown";
+
+/// Crates that compile for it without their default features.
+const FOR_WASM: &[&str] = &["palpate-field", "palpate-query"];
+
+/// Crates, and how many crates they and what they need are at most, without default features.
+const MOST_CRATES: &[(&str, usize)] = &[("palpate-haptics", 78)];
+
+/// Compiles what has to compile for [`WASM`].
+pub(crate) fn wasm() -> Result<(), Failure> {
+    add_target()?;
+    for name in FOR_WASM {
+        cargo(&["check", "-p", name, "--no-default-features", "--locked", "--target", WASM])?;
+    }
+    Ok(())
+}
+
+/// Adds the target to the toolchain that compiles here, if it is missing.
+fn add_target() -> Result<(), Failure> {
+    let libraries = output(Command::new("rustc").current_dir(root()).args([
+        "--print",
+        "target-libdir",
+        "--target",
+        WASM,
+    ]))?;
+    if std::path::Path::new(libraries.trim()).is_dir() {
+        return Ok(());
+    }
+    let line = format!("rustup target add {WASM}");
+    output(Command::new("rustup").current_dir(root()).args(["target", "add", WASM])).map_err(
+        |failure| Failure(format!("run `{line}`, which does not work here: {}", failure.0)),
+    )?;
+    Ok(())
+}
+
+/// Counts what crates need.
+pub(crate) fn count() -> Result<(), Failure> {
+    let mut wrong = Vec::new();
+    for (name, most) in MOST_CRATES {
+        let mut tree =
+            cargo_command(&["tree", "--locked", "-p", name, "--no-default-features"]);
+        tree.args(["--edges", "normal", "--prefix", "none"]);
+        wrong.extend(too_many(name, &output(&mut tree)?, *most));
+    }
+    Failure::any(wrong)
+}
+
+/// Says if a tree has too many different lines.
+fn too_many(name: &str, tree: &str, most: usize) -> Option<String> {
+    let count = tree.lines().collect::<BTreeSet<_>>().len();
+    println!("{name} is {count} crates with what it needs, {most} at most");
+    (count > most)
+        .then(|| format!("{name} is {count} crates with what it needs, {most} at most"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crate_that_needs_too_many_others_is_refused() {
+        let tree = "a v1\nb v1\nc v1\nb v1\n";
+        assert_eq!(too_many("a", tree, 3), None);
+        let said = too_many("a", tree, 2).unwrap();
+        assert_eq!(said, "a is 3 crates with what it needs, 2 at most");
+    }
+}
