@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the top layer to the bottom.
-const LAYERS: [&str; 11] = [
+const LAYERS: [&str; 13] = [
     "palpate-field",
     "palpate-scene",
     "palpate-mesh",
