@@ -33,6 +33,15 @@ impl Exponent {
         }
     }
 
+    /// The number that names it.
+    pub(crate) fn number(self) -> u32 {
+        match self {
+            Self::Four => 4,
+            Self::Six => 6,
+            Self::Eight => 8,
+        }
+    }
+
     fn named(exponent: u32) -> Option<Self> {
         match exponent {
             4 => Some(Self::Four),

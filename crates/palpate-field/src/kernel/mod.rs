@@ -93,22 +93,22 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     fn promise(&self) -> Promise<D>;
 }
 
-/// Makes a newtype the kernel that is in it: what differs are the parameters.
+/// Makes a type the kernel in its field: the two differ in their parameters alone.
 macro_rules! answered_by_inner {
-    ($kernel:ty, $dimension:literal) => {
+    ($kernel:ident.$field:tt, $dimension:literal) => {
         impl Kernel<$dimension> for $kernel {
             #[inline(always)]
             fn distance<S: Scalar>(&self, p: Vector<S, $dimension>) -> S {
-                self.0.distance(p)
+                self.$field.distance(p)
             }
 
             #[inline(always)]
             fn model(&self, cell: Vector<Model, $dimension>) -> Model {
-                self.0.model(cell)
+                self.$field.model(cell)
             }
 
             fn promise(&self) -> Promise<$dimension> {
-                self.0.promise()
+                self.$field.promise()
             }
         }
     };

@@ -101,6 +101,10 @@ pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     /// If an argument is of the wrong kind or breaks the parameter's rule.
     fn from_arguments(arguments: &[Argument]) -> Result<Self, ShapeError>;
 
+    /// The arguments that it was made from, in the order of the parameters: those given to
+    /// [`from_arguments`](Self::from_arguments) to the bit.
+    fn arguments(&self) -> Vec<Argument>;
+
     /// One of about 1 m, without symmetry where it can be helped, for tests and
     /// pictures.
     ///
@@ -166,6 +170,42 @@ impl<const D: usize> Entry<D> {
     /// None in practice.
     pub fn example(&self) -> Result<Shape<D>, ShapeError> {
         (self.example)()
+    }
+}
+
+/// What an accessor gives back as an [`Argument`].
+pub(crate) trait ToArgument {
+    fn to_argument(&self) -> Argument;
+}
+
+impl ToArgument for f64 {
+    fn to_argument(&self) -> Argument {
+        Argument::Number(*self)
+    }
+}
+
+impl ToArgument for u32 {
+    fn to_argument(&self) -> Argument {
+        Argument::Count(*self)
+    }
+}
+
+impl<const D: usize> ToArgument for Vector<f64, D> {
+    fn to_argument(&self) -> Argument {
+        Argument::Vector(self.0.to_vec())
+    }
+}
+
+impl<const D: usize> ToArgument for &[Vector<f64, D>] {
+    fn to_argument(&self) -> Argument {
+        Argument::Points(self.iter().map(|point| point.0.to_vec()).collect())
+    }
+}
+
+impl<const D: usize> ToArgument for &[Vec<Vector<f64, D>>] {
+    fn to_argument(&self) -> Argument {
+        let ring = |ring: &Vec<Vector<f64, D>>| ring.iter().map(|p| p.0.to_vec()).collect();
+        Argument::Rings(self.iter().map(ring).collect())
     }
 }
 
@@ -257,33 +297,117 @@ pub(crate) fn check_count(
     })
 }
 
+/// The type of a parameter, as its accessor gives it: of its kind, in `$dimension`
+/// dimensions.
+macro_rules! parameter_type {
+    (Count, $dimension:tt) => { u32 };
+    (Vector, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
+    (Direction, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
+    (Points, $dimension:tt) => { &[$crate::vector::Point<$dimension>] };
+    (Rings, $dimension:tt) => { &[Vec<$crate::vector::Point<$dimension>>] };
+    ($number:ident, $dimension:tt) => { f64 };
+}
+
+/// What follows a parameter of a kind in its documentation: the unit.
+macro_rules! parameter_unit {
+    (Angle) => {
+        " [rad]"
+    };
+    (Count) => {
+        ""
+    };
+    (Direction) => {
+        ""
+    };
+    ($length:ident) => {
+        " [m]"
+    };
+}
+
+/// The value of a parameter, of the field that has its name or as the declaration says.
+macro_rules! parameter_value {
+    ($kernel:ident, $parameter:ident, Points) => {
+        &$kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, Rings) => {
+        &$kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, $kind:ident) => {
+        $kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, $kind:ident, $given:expr) => {{
+        let given: fn(&Self) -> _ = $given;
+        given($kernel)
+    }};
+}
+
 /// Declares a kernel as a primitive: its name, what it is, its parameters in the
 /// order of `new`, how it bounds cells, and an example.
+///
+/// A parameter is kept in the field of its name; where there is none, `=> |kernel| …`
+/// gives it. Each gets an accessor of its name.
 macro_rules! primitive {
     (
-        $kernel:ty, $name:literal, $dimension:tt,
+        $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
         about: $about:literal,
         model: $model:ident,
-        parameters: { $($parameter:ident: $kind:ident = $what:literal),* $(,)? },
+        parameters: {
+            $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* $(,)?
+        },
         example: ($($example:expr),* $(,)?) $(,)?
     ) => {
-        primitive!(@impl $dimension, $kernel, $name, $about, $model,
+        primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
+            { $($parameter: $kind = $what $(=> $given)?),* });
+        primitive!(@declare $dimension, $kernel $(<$argument>)?, $name, $about, $model,
             { $($parameter: $kind = $what),* }, ($($example),*));
     };
-    (@impl any, $kernel:ty, $($rest:tt)*) => {
-        primitive!(@body [const D: usize], D, $kernel, $($rest)*);
+    (@accessors [D] any, $kernel:ty, $parameters:tt) => {
+        primitive!(@methods [const D: usize], D, $kernel, $parameters);
     };
-    (@impl $dimension:literal, $kernel:ty, $($rest:tt)*) => {
-        primitive!(@body [], $dimension, $kernel, $($rest)*);
+    (@accessors [] any, $kernel:ty, $parameters:tt) => {
+        // Numbers alone: a kernel that is the same in any dimension has no vector.
+        primitive!(@methods [], 0, $kernel, $parameters);
+    };
+    (@accessors [$($argument:tt)?] $dimension:literal, $kernel:ty, $parameters:tt) => {
+        primitive!(@methods [], $dimension, $kernel, $parameters);
     };
     (
-        @body [$($generics:tt)*], $dimension:tt, $kernel:ty,
-        $name:literal, $about:literal, $model:ident,
+        @methods [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        { $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* }
+    ) => {
+        impl<$($generics)*> $kernel {
+            $(
+                #[doc = concat!(
+                    "The parameter `", stringify!($parameter), "`: ", $what,
+                    $crate::kernel::primitive::parameter_unit!($kind), ".",
+                )]
+                #[must_use]
+                #[inline]
+                pub fn $parameter(
+                    &self,
+                ) -> $crate::kernel::primitive::parameter_type!($kind, $dimension) {
+                    let kernel = self;
+                    $crate::kernel::primitive::parameter_value!(
+                        kernel, $parameter, $kind $(, $given)?
+                    )
+                }
+            )*
+        }
+    };
+    (@declare any, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@primitive [const D: usize], D, $kernel, $($rest)*);
+    };
+    (@declare $dimension:literal, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@primitive [], $dimension, $kernel, $($rest)*);
+    };
+    (
+        @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        $name:ident, $about:literal, $model:ident,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
         impl<$($generics)*> $crate::kernel::Primitive<$dimension> for $kernel {
-            const NAME: &'static str = $name;
+            const NAME: &'static str = stringify!($name);
             const ABOUT: &'static str = $about;
             const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
                 $($crate::kernel::Parameter {
@@ -297,12 +421,13 @@ macro_rules! primitive {
             fn from_arguments(
                 arguments: &[$crate::kernel::Argument],
             ) -> Result<Self, $crate::error::ShapeError> {
+                let name = stringify!($name);
                 let parameters =
                     <Self as $crate::kernel::Primitive<$dimension>>::PARAMETERS;
-                $crate::kernel::primitive::check_count($name, parameters, arguments)?;
+                $crate::kernel::primitive::check_count(name, parameters, arguments)?;
                 let mut pairs = parameters.iter().zip(arguments);
                 let mut next = || pairs.next().ok_or($crate::error::ShapeError::Count {
-                    parameter: $name.into(),
+                    parameter: name.into(),
                     rule: "all arguments".into(),
                     count: arguments.len(),
                 });
@@ -315,6 +440,12 @@ macro_rules! primitive {
                 Self::new($($parameter),*)
             }
 
+            fn arguments(&self) -> Vec<$crate::kernel::Argument> {
+                vec![$(
+                    $crate::kernel::primitive::ToArgument::to_argument(&self.$parameter())
+                ),*]
+            }
+
             fn example() -> Result<Self, $crate::error::ShapeError> {
                 Self::new($($example),*)
             }
@@ -322,4 +453,4 @@ macro_rules! primitive {
     };
 }
 
-pub(crate) use primitive;
+pub(crate) use {parameter_type, parameter_unit, parameter_value, primitive};

@@ -36,6 +36,7 @@ const OPERATIONS: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub struct Arc {
     ring_radius: f64,
+    angle: f64,
     radius: f64,
     half: Curve,
 }
@@ -50,7 +51,7 @@ impl Arc {
     /// not in (0, 2π].
     pub fn new(ring_radius: f64, angle: f64, radius: f64) -> Result<Self, ShapeError> {
         let half = Curve::of_tube(ring_radius, angle, radius)?;
-        Ok(Self { ring_radius, radius, half })
+        Ok(Self { ring_radius, angle, radius, half })
     }
 }
 
@@ -88,7 +89,7 @@ impl Kernel<2> for Arc {
 }
 
 primitive! {
-    Arc, "arc", 2,
+    Arc, arc, 2,
     about: "All points within a radius of an arc of a circle, open downwards.",
     model: ClosedForm,
     parameters: {

@@ -87,7 +87,7 @@ impl Kernel<2> for CutDisk {
 }
 
 primitive! {
-    CutDisk, "cut_disk", 2,
+    CutDisk, cut_disk, 2,
     about: "What is above a line of a disc.",
     model: Tangent,
     parameters: {
@@ -176,13 +176,15 @@ impl Kernel<2> for Moon {
 }
 
 primitive! {
-    Moon, "moon", 2,
+    Moon, moon, 2,
     about: "A disc without a second one above it: a crescent with its horns up.",
     model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the disc",
-        cut_radius: Length = "the radius of the disc that is taken off",
-        distance: Length = "how far above the disc's centre the other's is",
+        cut_radius: Length = "the radius of the disc that is taken off"
+            => |kernel| kernel.half.cut_radius,
+        distance: Length = "how far above the disc's centre the other's is"
+            => |kernel| kernel.half.distance,
     },
     example: (0.9, 0.7, 0.45),
 }

@@ -108,7 +108,7 @@ impl Kernel<2> for Egg {
 }
 
 primitive! {
-    Egg, "egg", 2,
+    Egg, egg, 2,
     about: "An egg of four arcs, its thin end up.",
     model: Tangent,
     parameters: {

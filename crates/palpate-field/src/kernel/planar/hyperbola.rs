@@ -159,9 +159,11 @@ impl Kernel<2> for Hyperbola {
 }
 
 primitive! {
-    Hyperbola, "hyperbola", 2,
+    Hyperbola, hyperbola, 2,
     about: "What is beyond the upper branch of a hyperbola.",
     model: Tangent,
-    parameters: { radii: Vector = "the semi-axes along x and y" },
+    parameters: {
+        radii: Vector = "the semi-axes along x and y" => |kernel| Vector(kernel.radii),
+    },
     example: (Vector([0.45, 0.31])),
 }

@@ -90,7 +90,7 @@ fn unfolded<T: Float>(x: T, [across, up]: [T; 2]) -> Vector<T, 2> {
 }
 
 primitive! {
-    Parabola, "parabola", 2,
+    Parabola, parabola, 2,
     about: "What is above a parabola.",
     model: Tangent,
     parameters: { focal_length: Length = "from the vertex to the focus" },
@@ -211,11 +211,11 @@ impl Kernel<2> for ParabolaSegment {
 }
 
 primitive! {
-    ParabolaSegment, "parabola_segment", 2,
+    ParabolaSegment, parabola_segment, 2,
     about: "What is under a parabolic arch and above its chord.",
     model: Tangent,
     parameters: {
-        width: Length = "the length of the chord",
+        width: Length = "the length of the chord" => |kernel| 2.0 * kernel.half_width,
         height: Length = "the full height",
     },
     example: (1.3, 1.7),

@@ -67,6 +67,11 @@ impl Wedge {
         self.half_angle <= std::f64::consts::FRAC_PI_2
     }
 
+    /// The full angle, to both sides of the axis [rad].
+    pub(in crate::kernel) fn angle(&self) -> f64 {
+        2.0 * self.half_angle
+    }
+
     /// Sine and cosine of the angle from the axis to the ray.
     pub(in crate::kernel) fn end(&self) -> [f64; 2] {
         self.end

@@ -121,9 +121,12 @@ impl Kernel<3> for Pyramid {
 }
 
 primitive! {
-    Pyramid, "pyramid", 3,
+    Pyramid, pyramid, 3,
     about: "A pyramid on a square, its tip up along y.",
     model: Tangent,
-    parameters: { side: Length = "the edge of the base", height: Length = "the full height" },
+    parameters: {
+        side: Length = "the edge of the base" => |kernel| 2.0 * kernel.half_side,
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
     example: (1.0, 0.9),
 }
