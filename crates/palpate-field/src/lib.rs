@@ -5,11 +5,13 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod bounds;
+pub mod catalogue;
 mod error;
 pub mod field;
 pub mod kernel;
 mod machine;
 mod mass;
+pub mod node;
 pub mod operator;
 mod pose;
 mod promise;
@@ -20,12 +22,14 @@ mod vector;
 pub use bounds::{Aabb, BoundingBall, Bounds};
 pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit};
 pub use field::CustomField;
+pub use field::MAX_DEPTH;
 pub use kernel::Kernel;
 pub use machine::{
     BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, SHORT,
 };
 pub use mass::{Mass, MassLimits};
+pub use node::Node;
 pub use pose::{Pose, Rotation};
 pub use promise::{Promise, Quality, Rounding};
-pub use shape::{MAX_DEPTH, Shape};
+pub use shape::Shape;
 pub use vector::{Point, Vector};

@@ -3,9 +3,13 @@
 
 //! The catalogue: every primitive gives back what it was made from.
 
-use palpate_field::ShapeError;
-use palpate_field::kernel::{Argument, CappedTorus, Primitive, Segment, TriangularPrism};
-use palpate_testkit::kernels::{Dimension, Space, Visit};
+use palpate_field::catalogue::{ALIASES, Entry};
+use palpate_field::kernel::{
+    Argument, CappedTorus, Cuboid, Polygon, Primitive, RegularStar, Segment, Simplex,
+    TriangularPrism,
+};
+use palpate_field::{Node, Shape, ShapeError, Vector};
+use palpate_testkit::kernels::{Dimension, IntoShape, Space, Visit};
 use palpate_testkit::{arbitrary as draw, cases};
 
 /// The arguments that a kernel gives back, by its accessors.
@@ -65,6 +69,60 @@ fn every_kernel_gives_back_its_arguments_to_the_bit() {
     primitives_give_back::<3>(|name, a| {
         <Space as Dimension<3>>::with_kernel(name, a, Arguments)
     });
+}
+
+/// The arguments that the node of a shape gives back.
+fn arguments_of_node<const D: usize>(
+    name: &'static str,
+    arguments: &[Argument],
+) -> Result<Vec<Argument>, ShapeError>
+where
+    Space: Dimension<D>,
+{
+    let shape = <Space as Dimension<D>>::with_kernel(name, arguments, IntoShape)?;
+    let Node::Primitive(primitive) = shape.node() else { panic!("{name} is opaque") };
+    assert_eq!((primitive.name(), &shape), (name, &Shape::from_node(shape.node().clone())?));
+    Ok(primitive.arguments().to_vec())
+}
+
+#[test]
+fn the_node_of_every_kernel_has_its_arguments_to_the_bit() {
+    primitives_give_back::<2>(arguments_of_node::<2>);
+    primitives_give_back::<3>(arguments_of_node::<3>);
+}
+
+#[test]
+fn constructors_make_the_shapes_of_kernels() -> Result<(), ShapeError> {
+    let of = |kernel: Cuboid<3>| Shape::from_kernel(kernel);
+    assert_eq!(Shape::cuboid([0.1, 0.2, 0.3])?, of(Cuboid::new(Vector([0.1, 0.2, 0.3]))?));
+    let star = Shape::regular_star(5, 0.3, 0.1)?;
+    assert_eq!(star, Shape::from_kernel(RegularStar::new(5, 0.3, 0.1)?));
+    let corners = [[0.0, 0.0], [0.4, 0.0], [0.0, 0.3]];
+    let triangle = Simplex::new(corners.map(Vector).to_vec())?;
+    assert_eq!(Shape::triangle(corners)?, Shape::from_kernel(triangle));
+    let polygon = Polygon::new(vec![corners.map(Vector).to_vec()])?;
+    assert_eq!(Shape::polygon([corners])?, Shape::from_kernel(polygon));
+    let half_plane = Shape::half_space([0.0, 2.0], 0.1)?;
+    assert_eq!(half_plane.to_string(), "half_space([0.0, 2.0], 0.1)");
+    assert_eq!(Shape::sphere(0.3)?, Shape::<3>::ball(0.3)?);
+    assert!(Shape::torus(0.1, 0.2).is_err());
+    Ok(())
+}
+
+#[test]
+fn aliases_name_primitives_that_are_there() {
+    for alias in ALIASES {
+        let (found, taken) = match alias.dimension {
+            2 => (Entry::<2>::find(alias.name).map(|e| e.name), named::<2>(alias.name)),
+            _ => (Entry::<3>::find(alias.name).map(|e| e.name), named::<3>(alias.name)),
+        };
+        assert_eq!(found, Some(alias.of), "{alias:?}");
+        assert!(!taken, "{alias:?} hides a primitive");
+    }
+}
+
+fn named<const D: usize>(name: &str) -> bool {
+    Entry::<D>::all().iter().any(|entry| entry.name == name)
 }
 
 #[test]

@@ -151,6 +151,10 @@ impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
         self.0.promise()
     }
 
+    fn depth(&self) -> usize {
+        1
+    }
+
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {
         Err(self)
     }

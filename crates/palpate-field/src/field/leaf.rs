@@ -10,64 +10,10 @@ use crate::kernel::Kernel;
 use crate::machine::{
     Block, Boxes, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point,
 };
-use crate::pose::Pose;
+use crate::pose::{Placement, Pose};
 use crate::promise::Promise;
-use crate::scalar::{Float, Scalar, TurnedBoxes};
-use crate::shape::Shape;
-use crate::vector::{Vector, array};
-
-/// The change of coordinates from the world to a placed body.
-#[derive(Clone, Copy, Debug)]
-pub struct Placement<const D: usize> {
-    /// The pose it was made from.
-    pub world_from_body: Pose<D>,
-    /// The same numbers in single precision.
-    single: Single<D>,
-}
-
-/// A pose in single precision.
-#[derive(Clone, Copy, Debug)]
-struct Single<const D: usize> {
-    translation: [f32; D],
-    rows: [[f32; D]; D],
-}
-
-/// A column of a matrix, of its rows.
-#[inline(always)]
-fn column<S: Float, const D: usize>(rows: &[[S; D]; D], k: usize) -> [S; D] {
-    array!(i < D => rows[i][k])
-}
-
-impl<const D: usize> Placement<D> {
-    /// The change of coordinates to a body at `world_from_body`.
-    #[must_use]
-    pub fn new(world_from_body: Pose<D>) -> Self {
-        let mut rows = [[0.0; D]; D];
-        for (single, row) in rows.iter_mut().zip(world_from_body.rotation.matrix()) {
-            *single = array!(i < D => row[i] as f32);
-        }
-        let translation = array!(i < D => world_from_body.translation[i] as f32);
-        Self { world_from_body, single: Single { translation, rows } }
-    }
-
-    /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
-    #[inline(always)]
-    pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        let Pose { rotation, translation } = &self.world_from_body;
-        let single = &self.single;
-        let q = array!(i < D => p.0[i].minus_stored(translation[i], single.translation[i]));
-        Vector(array!(k < D => {
-            S::stored_sum(q, &column(rotation.matrix(), k), &column(&single.rows, k))
-        }))
-    }
-
-    /// `R·v`: a gradient in the body's frame, back in the world's.
-    #[inline(always)]
-    pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
-        let rows = self.world_from_body.rotation.matrix();
-        Vector(array!(i < D => T::stored_sum(v.0, &rows[i], &self.single.rows[i])))
-    }
-}
+use crate::scalar::{Float, TurnedBoxes};
+use crate::vector::Vector;
 
 /// A kernel as a field.
 #[derive(Clone, Debug)]
@@ -81,13 +27,6 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
     pub(crate) fn new(kernel: K) -> Self {
         let promise = kernel.promise();
         Self { kernel, placement: None, promise }
-    }
-
-    /// The promise is made and moved in registers: all of it is inlined.
-    #[inline(always)]
-    pub(crate) fn at(kernel: K, world_from_body: &Pose<D>) -> Self {
-        let promise = kernel.promise().placed(world_from_body);
-        Self { kernel, placement: Some(Placement::new(*world_from_body)), promise }
     }
 }
 
@@ -240,22 +179,23 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         &self.promise
     }
 
+    fn depth(&self) -> usize {
+        1
+    }
+
     fn unplaced(&self) -> usize {
         usize::from(self.placement.is_none())
     }
 
-    fn placed(mut self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
-        let leaf = Arc::make_mut(&mut self);
-        let world_from_body = match &leaf.placement {
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let world_from_body = match &self.placement {
             None => *pose,
-            Some(placement) => {
-                // From the kernel's promise, so that boxes do not grow twice.
-                leaf.promise = leaf.kernel.promise();
-                *pose * placement.world_from_body
-            }
+            Some(placement) => *pose * placement.world_from_body,
         };
-        leaf.promise = leaf.promise.placed(&world_from_body);
-        leaf.placement = Some(Placement::new(world_from_body));
-        Ok(Shape::from_node(self))
+        let kernel = self.kernel.clone();
+        // From the kernel's promise, so that boxes do not grow twice.
+        let promise = kernel.promise().placed(&world_from_body);
+        let placement = Some(Placement::new(world_from_body));
+        Ok(Arc::new(Self { kernel, placement, promise }))
     }
 }

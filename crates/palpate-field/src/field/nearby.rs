@@ -7,11 +7,11 @@
 //! Single precision is enough: what it rounds is part of the slack that the union
 //! gives.
 
+use super::SharedField;
 use crate::bounds::{Aabb, BoundingBall};
 use crate::machine::{BLOCK, Block, Column, Job, run};
 use crate::promise::Quality;
 use crate::scalar::Scalar;
-use crate::shape::Shape;
 use crate::vector::Vector;
 
 /// Below this many members, asking all is faster than choosing.
@@ -73,7 +73,7 @@ impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
 
 /// The ball that a member's values are nowhere below the signed distance to; of
 /// infinite radius if it has none, so that it is always near.
-fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
+fn ball_of<const D: usize>(member: &SharedField<D>) -> BoundingBall<D> {
     let promise = member.promise();
     let skippable = promise.above_bounds && promise.inside != Quality::Lipschitz;
     match &promise.bounds {
@@ -83,7 +83,7 @@ fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
 }
 
 /// A ball around the balls of a line, about the centre of their box.
-fn ball_around<const D: usize>(line: &[Shape<D>]) -> BoundingBall<D> {
+fn ball_around<const D: usize>(line: &[SharedField<D>]) -> BoundingBall<D> {
     let boxes = line.iter().map(|member| {
         let BoundingBall { centre, radius } = ball_of(member);
         Aabb { min: centre, max: centre }.grown(radius)
@@ -104,11 +104,11 @@ fn ball_around<const D: usize>(line: &[Shape<D>]) -> BoundingBall<D> {
 
 /// Sorts members so that each line of them is close together: halves of whole lines
 /// along the longest side of the box of their centres, again and again.
-fn gather<const D: usize>(members: &mut [Shape<D>]) {
+fn gather<const D: usize>(members: &mut [SharedField<D>]) {
     if members.len() <= LINE {
         return;
     }
-    let centre = |member: &Shape<D>| ball_of(member).centre;
+    let centre = |member: &SharedField<D>| ball_of(member).centre;
     let Some(spread) = Aabb::around(members.iter().map(centre)) else { return };
     let sides = spread.half_extents();
     let longest =
@@ -126,7 +126,7 @@ impl<const D: usize> Nearby<D> {
     /// What finds the `members` that are near; `None` where asking all is faster.
     ///
     /// Where there are many, they are sorted so that neighbours come together.
-    pub(super) fn new(members: &mut [Shape<D>]) -> Option<Self> {
+    pub(super) fn new(members: &mut [SharedField<D>]) -> Option<Self> {
         if members.len() < WORTH_CHOOSING {
             return None;
         }
@@ -137,7 +137,7 @@ impl<const D: usize> Nearby<D> {
         members.sort_by_key(|member| ball_of(member).radius.is_finite());
         let endless = members.iter().take_while(|m| !ball_of(m).radius.is_finite()).count();
         gather(&mut members[endless..]);
-        let lines: Vec<&[Shape<D>]> = members.chunks(LINE).collect();
+        let lines: Vec<&[SharedField<D>]> = members.chunks(LINE).collect();
         let around = lines
             .chunks(BLOCK)
             .map(|lines| Balls::new(lines.iter().map(|line| ball_around(line))));

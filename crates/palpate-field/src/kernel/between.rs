@@ -4,8 +4,7 @@
 //! The frame of what stands between two points.
 
 use crate::error::{ShapeError, Unit, finite, positive};
-use crate::field::Placement;
-use crate::pose::{Pose, Rotation};
+use crate::pose::{Placement, Pose, Rotation};
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
 

@@ -5,8 +5,6 @@
 
 use crate::error::{ShapeError, Unit};
 use crate::kernel::Kernel;
-use crate::pose::Pose;
-use crate::shape::Shape;
 use crate::vector::Vector;
 
 /// What a parameter is.
@@ -112,65 +110,6 @@ pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     ///
     /// None in practice.
     fn example() -> Result<Self, ShapeError>;
-}
-
-/// A primitive in the catalogue.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry<const D: usize> {
-    /// The name in scene files.
-    pub name: &'static str,
-    /// What it is, in one sentence.
-    pub about: &'static str,
-    /// What it is made from.
-    pub parameters: &'static [Parameter],
-    /// How it bounds its values over a cell.
-    pub model: ModelRule,
-    build: fn(&[Argument], &Pose<D>) -> Result<Shape<D>, ShapeError>,
-    example: fn() -> Result<Shape<D>, ShapeError>,
-}
-
-impl<const D: usize> Entry<D> {
-    pub(crate) const fn of<K: Primitive<D>>() -> Self {
-        Self {
-            name: K::NAME,
-            about: K::ABOUT,
-            parameters: K::PARAMETERS,
-            model: K::MODEL,
-            build: |arguments, pose| Shape::from_kernel_at(K::from_arguments(arguments)?, pose),
-            example: || K::example().map(Shape::from_kernel),
-        }
-    }
-
-    /// Makes the primitive from one argument for each parameter, in their order.
-    ///
-    /// # Errors
-    ///
-    /// If an argument is of the wrong kind or breaks the parameter's rule.
-    pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
-        self.build_at(arguments, &Pose::identity())
-    }
-
-    /// As [`build`](Self::build), moved by `world_from_body`.
-    ///
-    /// # Errors
-    ///
-    /// As [`build`](Self::build), or if a number of the pose is not finite.
-    pub fn build_at(
-        &self,
-        arguments: &[Argument],
-        world_from_body: &Pose<D>,
-    ) -> Result<Shape<D>, ShapeError> {
-        (self.build)(arguments, world_from_body)
-    }
-
-    /// The example of the primitive, of about 1 m.
-    ///
-    /// # Errors
-    ///
-    /// None in practice.
-    pub fn example(&self) -> Result<Shape<D>, ShapeError> {
-        (self.example)()
-    }
 }
 
 /// What an accessor gives back as an [`Argument`].
@@ -341,11 +280,67 @@ macro_rules! parameter_value {
     }};
 }
 
+/// The type that a constructor of shapes takes for a parameter.
+macro_rules! accepted_type {
+    (Count, $dimension:tt) => { u32 };
+    (Vector, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
+    (Direction, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
+    (Points, $dimension:tt) => {
+        impl IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>
+    };
+    (Rings, $dimension:tt) => {
+        impl IntoIterator<Item: IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>>
+    };
+    ($number:ident, $dimension:tt) => { f64 };
+}
+
+/// The argument for what a constructor of shapes took.
+macro_rules! accepted {
+    (Count, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Count($value)
+    };
+    (Vector, $dimension:tt, $value:ident) => {
+        $crate::kernel::primitive::vector_argument::<$dimension>($value)
+    };
+    (Direction, $dimension:tt, $value:ident) => {
+        $crate::kernel::primitive::vector_argument::<$dimension>($value)
+    };
+    (Points, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Points($crate::kernel::primitive::positions::<$dimension>(
+            $value,
+        ))
+    };
+    (Rings, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Rings(
+            $value
+                .into_iter()
+                .map($crate::kernel::primitive::positions::<$dimension>)
+                .collect(),
+        )
+    };
+    ($number:ident, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Number($value)
+    };
+}
+
+/// A vector as an argument.
+pub(crate) fn vector_argument<const D: usize>(vector: impl Into<Vector<f64, D>>) -> Argument {
+    vector.into().to_argument()
+}
+
+/// Positions as part of an argument.
+pub(crate) fn positions<const D: usize>(
+    points: impl IntoIterator<Item: Into<Vector<f64, D>>>,
+) -> Vec<Vec<f64>> {
+    points.into_iter().map(|point| point.into().0.to_vec()).collect()
+}
+
 /// Declares a kernel as a primitive: its name, what it is, its parameters in the
 /// order of `new`, how it bounds cells, and an example.
 ///
 /// A parameter is kept in the field of its name; where there is none, `=> |kernel| …`
-/// gives it. Each gets an accessor of its name.
+/// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor
+/// of the primitive's name.
 macro_rules! primitive {
     (
         $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
@@ -396,9 +391,44 @@ macro_rules! primitive {
     };
     (@declare any, $kernel:ty, $($rest:tt)*) => {
         primitive!(@primitive [const D: usize], D, $kernel, $($rest)*);
+        primitive!(@constructor [const D: usize], D, $kernel, $($rest)*);
     };
     (@declare $dimension:literal, $kernel:ty, $($rest:tt)*) => {
         primitive!(@primitive [], $dimension, $kernel, $($rest)*);
+        primitive!(@constructor [], $dimension, $kernel, $($rest)*);
+    };
+    (
+        @constructor [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        $name:ident, $about:literal, $model:ident,
+        { $($parameter:ident: $kind:ident = $what:literal),* },
+        $example:tt
+    ) => {
+        impl<$($generics)*> $crate::shape::Shape<$dimension> {
+            #[doc = concat!(
+                $about, "\n\nThe constructor of [`kernel::", stringify!($kernel),
+                "`](struct@", stringify!($kernel),
+                "), which has the formula and an example. Parameters:\n\n",
+            )]
+            $(
+                #[doc = concat!(
+                    "- `", stringify!($parameter), "`: ", $what,
+                    $crate::kernel::primitive::parameter_unit!($kind),
+                )]
+            )*
+            #[doc = "\n# Errors\n\nIf a parameter breaks the rule of the kernel's `new`."]
+            pub fn $name(
+                $(
+                    $parameter: $crate::kernel::primitive::accepted_type!($kind, $dimension)
+                ),*
+            ) -> Result<Self, $crate::error::ShapeError> {
+                let arguments = vec![$(
+                    $crate::kernel::primitive::accepted!($kind, $dimension, $parameter)
+                ),*];
+                let primitive =
+                    $crate::node::Primitive::new(stringify!($name), arguments)?;
+                Self::from_node($crate::node::Node::Primitive(primitive))
+            }
+        }
     };
     (
         @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
@@ -453,4 +483,6 @@ macro_rules! primitive {
     };
 }
 
-pub(crate) use {parameter_type, parameter_unit, parameter_value, primitive};
+pub(crate) use {
+    accepted, accepted_type, parameter_type, parameter_unit, parameter_value, primitive,
+};

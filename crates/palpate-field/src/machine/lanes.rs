@@ -6,9 +6,8 @@
 use std::fmt;
 use std::mem::MaybeUninit;
 
-use crate::field::Placement;
 use crate::kernel::Kernel;
-use crate::pose::Pose;
+use crate::pose::{Placement, Pose};
 use crate::scalar::{Float, Model, Scalar, TurnedBoxes};
 use crate::vector::Vector;
 

@@ -17,10 +17,9 @@
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
-use crate::field::{Warp, Warped};
+use crate::field::{SharedField, Warp, Warped};
 use crate::promise::{Promise, Quality, Rounding};
 use crate::scalar::{Float, Scalar};
-use crate::shape::Shape;
 use crate::vector::{Vector, array};
 
 /// The largest angle of a distortion [rad]: sines of larger angles lose digits.
@@ -247,62 +246,17 @@ impl Turning {
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The shape bent: turned in the plane of x and y by `rate` · x [rad/m].
-    ///
-    /// Distances are no bounds, but no steeper than the promise says; see the
-    /// derivation in the source. Only a shape with bounds can be bent.
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.02]))?);
-    /// let bow = bar.bent(2.0)?;
-    /// assert_eq!(bow.distance(Vector([0.0, 0.0])), -0.01);
-    /// // At x = 0.1 the bar has turned by 0.2 rad.
-    /// let on_bow = Vector([0.1, 0.1 * 0.2_f64.tan()]);
-    /// assert!((bow.distance(on_bow) + 0.01).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the rate turns the shape by more than 10⁴ rad, the shape has no bounds or a
-    /// steepness that is known in part of space alone, or shapes are nested too deeply.
-    pub fn bent(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) = Turning::BEND.of(self.promise(), rate)?;
-        let depth = self.depth() + 1;
-        Self::from_operator(Warped { map: Bend { rate, room }, child: self, promise }, depth)
-    }
+/// The `child` turned in the plane of x and y by `rate` · x.
+pub(crate) fn bent<const D: usize>(
+    child: SharedField<D>,
+    rate: f64,
+) -> Result<SharedField<D>, ShapeError> {
+    let (room, promise) = Turning::BEND.of(child.promise(), rate)?;
+    Warped::shared(Bend { rate, room }, child, promise)
 }
 
-impl Shape<3> {
-    /// The shape twisted: turned about y by `rate` · y [rad/m], from z towards x.
-    ///
-    /// Promises and errors as of [`bent`](Self::bent).
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.02, 0.4, 0.1]))?);
-    /// let quarter_turn = std::f64::consts::FRAC_PI_2 / 0.1;
-    /// let screw = bar.twisted(quarter_turn)?;
-    /// assert!((screw.distance(Vector([0.0, 0.0, 0.05]))).abs() < 1e-15);
-    /// // 0.1 m up, the long side has turned from z to x.
-    /// assert!((screw.distance(Vector([0.05, 0.1, 0.0]))).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// As [`bent`](Self::bent).
-    pub fn twisted(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) = Turning::TWIST.of(self.promise(), rate)?;
-        let depth = self.depth() + 1;
-        Self::from_operator(Warped { map: Twist { rate, room }, child: self, promise }, depth)
-    }
+/// The `child` turned about y by `rate` · y.
+pub(crate) fn twisted(child: SharedField<3>, rate: f64) -> Result<SharedField<3>, ShapeError> {
+    let (room, promise) = Turning::TWIST.of(child.promise(), rate)?;
+    Warped::shared(Twist { rate, room }, child, promise)
 }

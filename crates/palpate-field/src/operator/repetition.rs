@@ -18,13 +18,14 @@
 //! taken. It equals the field on the wall, and both vary by at most the Lipschitz
 //! constant, so it is wrong by twice that times the depth beyond the wall at most.
 
+use std::sync::Arc;
+
+use super::guard::guarded;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{LARGEST_LENGTH, ShapeError, Unit, positive};
-use crate::field::{Combined, Remap, Remapped, Warp, Warped};
-use crate::operator::boolean::Smaller;
+use crate::field::{Combined, Minimum, Remap, Remapped, SharedField, Warp, Warped};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::{Float, Scalar};
-use crate::shape::Shape;
 use crate::vector::{Vector, array, unrolled};
 
 /// How many copies there are to either side if there is no end [1].
@@ -251,7 +252,7 @@ impl<const D: usize> Remap<D> for Clearance<D> {
     }
 }
 
-/// What copies promise of which the nearest is asked.
+/// The promise of copies of which only the nearest is evaluated.
 fn promise_of_tiles<const D: usize>(
     child: &Promise<D>,
     grid: &Grid<D>,
@@ -274,95 +275,65 @@ fn promise_of_tiles<const D: usize>(
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// Copies of the shape on a grid: for each axis, how many and how far apart.
-    ///
-    /// Along an axis in which the shape is symmetric and no wider than the spacing,
-    /// one copy is asked, and every promise outside is kept. Along others the copies
-    /// to both sides are asked too, three times as many for each, and distances are
-    /// bounds.
-    ///
-    /// ```
-    /// use palpate_field::operator::Copies;
-    /// use palpate_field::{Shape, Vector, kernel::Ball};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bead = Shape::from_kernel(Ball::new(0.1)?);
-    /// let row = Copies::Between { spacing: 0.5, first: 0, last: 3 };
-    /// let beads = bead.clone().repeated([row, Copies::One])?;
-    /// assert_eq!(beads.distance(Vector([1.0, 0.2])), 0.1);
-    /// assert_eq!(beads.distance(Vector([2.0, 0.0])), 0.4);
-    ///
-    /// let floor = bead.repeated([Copies::Endless { spacing: 0.25 }, Copies::One])?;
-    /// assert!((floor.distance(Vector([-1000.0, 0.3])) - 0.2).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the shape has no bounds or a steepness that is known in part of space alone,
-    /// a spacing is not positive or less than half the width of the shape, the first
-    /// number is larger than the last, or shapes are nested too deeply.
-    pub fn repeated(self, copies: [Copies; D]) -> Result<Self, ShapeError> {
-        let child = *self.promise();
-        let needs = |needs: &'static str| ShapeError::Unsuitable {
-            operator: "repeat",
-            needs: needs.into(),
-        };
-        let copy = child.bounds.ok_or_else(|| needs("a shape with bounds"))?.aabb;
-        if child.region.is_some() {
-            return Err(needs("a shape whose steepness is known everywhere"));
-        }
-        let mut rows = Vec::with_capacity(D);
-        for (i, copies) in copies.into_iter().enumerate() {
-            rows.push(Row::new(copies, copy.min[i], copy.max[i], child.symmetric[i])?);
-        }
-        let rows = std::array::from_fn(|i| rows[i]);
-        let grid = Grid { rows, lipschitz: child.lipschitz.max(1.0) };
-        let promise = promise_of_tiles(&child, &grid, &copy);
-        if rows.iter().any(|row| row.neighbours) {
-            return self.with_neighbours(grid, &grid.aabb(&copy), &promise);
-        }
-        let depth = self.depth() + 1;
-        let map = Tile { grid, beside: [0.0; D], alone: true };
-        Self::from_operator(Warped { map, child: self, promise }, depth)
+/// Copies of `child` on a grid.
+pub(crate) fn repeated<const D: usize>(
+    child: SharedField<D>,
+    copies: [Copies; D],
+) -> Result<SharedField<D>, ShapeError> {
+    let of = *child.promise();
+    let needs = |needs: &'static str| ShapeError::Unsuitable {
+        operator: "repeat",
+        needs: needs.into(),
+    };
+    let copy = of.bounds.ok_or_else(|| needs("a shape with bounds"))?.aabb;
+    if of.region.is_some() {
+        return Err(needs("a shape whose steepness is known everywhere"));
     }
+    let mut rows = Vec::with_capacity(D);
+    for (i, copies) in copies.into_iter().enumerate() {
+        rows.push(Row::new(copies, copy.min[i], copy.max[i], of.symmetric[i])?);
+    }
+    let rows = std::array::from_fn(|i| rows[i]);
+    let grid = Grid { rows, lipschitz: of.lipschitz.max(1.0) };
+    let promise = promise_of_tiles(&of, &grid, &copy);
+    if rows.iter().any(|row| row.neighbours) {
+        return with_neighbours(child, grid, &grid.aabb(&copy), &promise);
+    }
+    let map = Tile { grid, beside: [0.0; D], alone: true };
+    Warped::shared(map, child, promise)
+}
 
-    /// The copies of a point's tile and of those beside it, and the clearance.
-    fn with_neighbours(
-        self,
-        grid: Grid<D>,
-        all: &Aabb<D>,
-        alone: &Promise<D>,
-    ) -> Result<Self, ShapeError> {
-        let promise = Promise { above_bounds: true, ..alone.bound() };
-        let child = self.guarded()?;
-        let depth = child.depth() + 1;
-        let mut besides = vec![[0.0; D]];
-        for (i, row) in grid.rows.iter().enumerate() {
-            if row.neighbours {
-                let here = besides.clone();
-                for step in [-1.0, 1.0] {
-                    besides.extend(here.iter().map(|beside| {
-                        let mut beside = *beside;
-                        beside[i] = step;
-                        beside
-                    }));
-                }
+/// The copies of a point's tile and of those beside it, and the clearance.
+fn with_neighbours<const D: usize>(
+    child: SharedField<D>,
+    grid: Grid<D>,
+    all: &Aabb<D>,
+    alone: &Promise<D>,
+) -> Result<SharedField<D>, ShapeError> {
+    let promise = Promise { above_bounds: true, ..alone.bound() };
+    let child = guarded(child)?;
+    let mut besides = vec![[0.0; D]];
+    for (i, row) in grid.rows.iter().enumerate() {
+        if row.neighbours {
+            let here = besides.clone();
+            for step in [-1.0, 1.0] {
+                besides.extend(here.iter().map(|beside| {
+                    let mut beside = *beside;
+                    beside[i] = step;
+                    beside
+                }));
             }
         }
-        let tiles: Result<Vec<_>, _> = besides
-            .into_iter()
-            .map(|beside| {
-                let map = Tile { grid, beside, alone: false };
-                Self::from_operator(Warped { map, child: child.clone(), promise }, depth)
-            })
-            .collect();
-        let nearest = Combined { operation: Smaller, children: tiles?, promise };
-        let nearest = Self::from_operator(nearest, depth + 1)?;
-        let (centre, half_extents) = (all.centre().0, all.half_extents().0);
-        let map = Clearance { grid, centre, half_extents };
-        Self::from_operator(Remapped { map, child: nearest, promise }, depth + 2)
     }
+    let tiles: Result<Vec<_>, _> = besides
+        .into_iter()
+        .map(|beside| {
+            let map = Tile { grid, beside, alone: false };
+            Warped::shared(map, Arc::clone(&child), promise)
+        })
+        .collect();
+    let nearest = Combined::shared(Minimum, tiles?, promise)?;
+    let (centre, half_extents) = (all.centre().0, all.half_extents().0);
+    let map = Clearance { grid, centre, half_extents };
+    Remapped::shared(map, nearest, promise)
 }
