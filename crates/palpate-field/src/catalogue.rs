@@ -19,11 +19,11 @@ use crate::shape::Shape;
 pub struct Entry<const D: usize> {
     /// The name in scene files, and of the constructor of [`Shape`].
     pub name: &'static str,
-    /// What it is, in one sentence.
+    /// The primitive described in one sentence.
     pub about: &'static str,
-    /// What it is made from.
+    /// The parameters, in the order of the arguments.
     pub parameters: &'static [Parameter],
-    /// How it bounds its values over a cell.
+    /// The rule that bounds its values over a cell.
     pub model: ModelRule,
     kernel: TypeId,
     build: fn(&[Argument]) -> Result<SharedField<D>, ShapeError>,

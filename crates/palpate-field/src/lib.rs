@@ -6,6 +6,7 @@
 
 mod bounds;
 pub mod catalogue;
+mod convert;
 mod error;
 pub mod field;
 pub mod kernel;
@@ -17,10 +18,11 @@ mod pose;
 mod promise;
 pub mod scalar;
 mod shape;
+mod strided;
 mod vector;
 
 pub use bounds::{Aabb, BoundingBall, Bounds};
-pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit};
+pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, ShapeErrorKind, Unit};
 pub use field::CustomField;
 pub use field::MAX_DEPTH;
 pub use kernel::Kernel;
@@ -32,4 +34,5 @@ pub use node::Node;
 pub use pose::{Pose, Rotation};
 pub use promise::{Promise, Quality, Rounding};
 pub use shape::Shape;
+pub use strided::{Layout, Strided, StridedMut};
 pub use vector::{Point, Vector};

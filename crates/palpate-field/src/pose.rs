@@ -12,8 +12,8 @@ use crate::error::{ShapeError, Unit, finite};
 use crate::scalar::{Float, Scalar};
 use crate::vector::{Point, Vector, array};
 
-/// How far the columns of a matrix may be from orthonormal to be taken as a
-/// rotation: what remains of numbers written with seven digits.
+/// The largest deviation from orthonormal at which a matrix is accepted as a rotation:
+/// the rounding of numbers written with seven digits.
 const ORTHONORMAL_TOLERANCE: f64 = 1e-6;
 
 /// A rotation about the origin.
@@ -64,6 +64,17 @@ impl<const D: usize> Rotation<D> {
         }
         let determinant = determinant(&matrix);
         if determinant > 0.0 { Ok(Self { matrix }) } else { Err(wrong(determinant)) }
+    }
+
+    /// The rotation whose matrix has exactly these rows: those of another rotation, which
+    /// [`matrix`](Self::matrix) gave.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_matrix`](Self::from_matrix), which makes rows orthonormal that are not.
+    pub fn from_rows(rows: [[f64; D]; D]) -> Result<Self, ShapeError> {
+        Self::from_matrix(rows)?;
+        Ok(Self { matrix: rows })
     }
 
     /// The rotation that undoes this one.
@@ -214,6 +225,7 @@ impl Rotation<3> {
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<const D: usize> {
     /// The rotation, applied first.
     pub rotation: Rotation<D>,
@@ -246,14 +258,14 @@ impl<const D: usize> Pose<D> {
         Self::new(rotation, Vector::ZERO)
     }
 
-    /// Where the motion takes a point.
+    /// The image of a point.
     #[inline]
     #[must_use]
     pub fn transform_point(&self, point: Point<D>) -> Point<D> {
         self.rotation.rotate(point) + self.translation
     }
 
-    /// Where the motion takes a direction: the rotation alone.
+    /// The image of a direction: rotated, not moved.
     #[inline]
     #[must_use]
     pub fn transform_vector(&self, vector: Vector<f64, D>) -> Vector<f64, D> {
@@ -350,59 +362,6 @@ impl<const D: usize> Placement<D> {
     }
 }
 
-impl From<glam::DAffine2> for Pose<2> {
-    /// Takes the angle of the matrix: scale and shear are dropped.
-    fn from(affine: glam::DAffine2) -> Self {
-        let (_, angle, translation) = affine.to_scale_angle_translation();
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let rotation = Rotation { matrix: [[cos, -sin], [sin, cos]] };
-        Self::new(rotation, translation.into())
-    }
-}
-
-impl From<Pose<2>> for glam::DAffine2 {
-    fn from(pose: Pose<2>) -> Self {
-        Self::from_angle_translation(pose.rotation.angle(), pose.translation.into())
-    }
-}
-
-impl From<Pose<3>> for glam::DAffine3 {
-    fn from(pose: Pose<3>) -> Self {
-        Self::from_rotation_translation(pose.rotation.into(), pose.translation.into())
-    }
-}
-
-impl TryFrom<glam::DAffine3> for Pose<3> {
-    type Error = ShapeError;
-
-    /// The matrix must be a rotation: scale and shear are refused.
-    fn try_from(affine: glam::DAffine3) -> Result<Self, ShapeError> {
-        Ok(Self::new(affine.matrix3.try_into()?, affine.translation.into()))
-    }
-}
-
-impl From<Rotation<3>> for glam::DQuat {
-    fn from(rotation: Rotation<3>) -> Self {
-        Self::from_array(rotation.quaternion())
-    }
-}
-
-impl TryFrom<glam::DQuat> for Rotation<3> {
-    type Error = ShapeError;
-
-    fn try_from(quaternion: glam::DQuat) -> Result<Self, ShapeError> {
-        Self::from_quaternion(quaternion.to_array())
-    }
-}
-
-impl TryFrom<glam::DMat3> for Rotation<3> {
-    type Error = ShapeError;
-
-    fn try_from(matrix: glam::DMat3) -> Result<Self, ShapeError> {
-        Self::from_matrix(matrix.transpose().to_cols_array_2d())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -425,17 +384,21 @@ mod tests {
         ] {
             let rotation = Rotation::from_quaternion(q).unwrap();
             let again = Rotation::from_quaternion(rotation.quaternion()).unwrap();
-            let pose = Pose::new(rotation, Vector([1.0, 2.0, 3.0]));
-            let from_glam = Pose::try_from(glam::DAffine3::from(pose)).unwrap();
-            assert_eq!(from_glam.translation, pose.translation);
-            let from_glam = from_glam.rotation;
             for i in 0..3 {
                 for k in 0..3 {
                     assert!((rotation.matrix[i][k] - again.matrix[i][k]).abs() < 1e-15);
-                    assert!((rotation.matrix[i][k] - from_glam.matrix[i][k]).abs() < 1e-15);
                 }
             }
         }
+    }
+
+    #[test]
+    fn rows_are_kept_to_the_bit() {
+        let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.8).unwrap();
+        let turn = turn * turn * turn;
+        assert_eq!(Rotation::from_rows(*turn.matrix()), Ok(turn));
+        assert!(Rotation::from_rows([[1.0, 0.1], [0.0, 1.0]]).is_err());
+        assert!(Rotation::from_rows([[f64::NAN, 0.0], [0.0, 1.0]]).is_err());
     }
 
     #[test]

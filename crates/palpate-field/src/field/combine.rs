@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that fold an operation over their children's answers.
+//! Fields that fold an operation over their children's answers.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// An operation on two answers.
@@ -272,6 +272,15 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
 
     fn unplaced(&self) -> usize {
         self.children.iter().map(|child| child.unplaced()).sum()
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let (first, others) = self.children.split_first()?;
+        let mut distance = first.record(p)?;
+        for child in others {
+            distance = self.operation.combine(distance, child.record(p)?);
+        }
+        Some(distance)
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -12,7 +12,7 @@ use crate::machine::{
 };
 use crate::pose::{Placement, Pose};
 use crate::promise::Promise;
-use crate::scalar::{Float, TurnedBoxes};
+use crate::scalar::{Float, Model, Recorded, TurnedBoxes};
 use crate::vector::Vector;
 
 /// A kernel as a field.
@@ -30,9 +30,32 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
     }
 }
 
+/// A number with which leaves are evaluated, by the best rule that a kernel has for it.
+trait Evaluate: Lane {
+    /// `kernel` at `p`.
+    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
+}
+
+macro_rules! evaluate {
+    ($($number:ty, $rule:ident;)*) => {
+        $(impl Evaluate for $number {
+            #[inline(always)]
+            fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
+                kernel.$rule(p)
+            }
+        })*
+    };
+}
+
+evaluate! {
+    f64, distance;
+    f32, distance;
+    Model, model;
+}
+
 struct Values<'a, K>(&'a K);
 
-impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
+impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
     #[inline(always)]
     fn lane(&self, p: Vector<S, D>, (): ()) -> S {
         S::evaluate(self.0, p)
@@ -53,7 +76,7 @@ impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T,
 /// A kernel where it is placed.
 struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
 
-impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
+impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
     #[inline(always)]
     fn lane(&self, p: Vector<S, D>, (): ()) -> S {
         S::evaluate(self.0, self.1.to_body(p))
@@ -131,7 +154,7 @@ impl<T: Float, K: Kernel<D>, const D: usize> PointJob<T, Vector<T, D>> for Leaf<
     }
 }
 
-impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
+impl<S: Evaluate, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
     for Leaf<K, D>
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
@@ -185,6 +208,11 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
 
     fn unplaced(&self) -> usize {
         usize::from(self.placement.is_none())
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
+        Some(self.kernel.distance(p))
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the engine calls: fields as objects.
+//! Fields as the searches and the servo evaluate them.
 //!
 //! A [`Field`] answers for one point, for a block of points with and without
 //! gradients, and for a block of cells. Leaves hold a
-//! [`Kernel`](crate::kernel::Kernel); operators are nodes that loop over their
-//! children's blocks. Nothing here allocates.
+//! [`Kernel`](crate::kernel::Kernel); operators loop over their children's
+//! blocks. Nothing here allocates.
 
 mod combine;
 mod custom;
@@ -24,7 +24,7 @@ use crate::error::ShapeError;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Model};
+use crate::scalar::{Float, Model, Recorded};
 use crate::vector::Vector;
 
 pub use crate::pose::Placement;
@@ -98,9 +98,9 @@ pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
 /// A field after a motion that went into it, or the same field, if it takes none.
 pub type Moved<const D: usize> = Result<SharedField<D>, SharedField<D>>;
 
-/// A signed distance field, as the engine sees it.
+/// A signed distance field as an object.
 ///
-/// Implemented by the nodes of this crate; what users write is a
+/// Implemented by this crate alone; users write a
 /// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Scalar calls, blocks
 /// and instruction sets agree bit for bit within a number type.
 pub trait Field<const D: usize>:
@@ -117,12 +117,15 @@ pub trait Field<const D: usize>:
     + Send
     + Sync
 {
-    /// What the values promise.
+    /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
 
     /// How many operators are nested in the field, with the leaf; at most
     /// [`MAX_DEPTH`].
     fn depth(&self) -> usize;
+
+    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded>;
 
     /// The field moved by `pose`, if the motion can go into it at no cost.
     ///

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that change their child's answer in place: offset, shell, guard.
+//! Fields that change their child's answer at the same point: offset, shell, guard.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// A function of the point and the child's answer there.
 pub(crate) trait Remap<const D: usize>: Debug + Send + Sync + 'static {
-    /// What becomes of the child's answer.
+    /// The node's answer from the child's.
     fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S;
 }
 
@@ -133,6 +133,10 @@ impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
 
     fn depth(&self) -> usize {
         self.depth
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        Some(self.map.value(p, self.child.record(p)?))
     }
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {

@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use super::combine::{GradientFold, Minimum, ValueFold, placed_children};
+use super::combine::{Combine, GradientFold, Minimum, ValueFold, placed_children};
 use super::nearby::Nearby;
 use super::{
     DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
@@ -18,7 +18,7 @@ use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Scalar};
+use crate::scalar::{Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits
@@ -29,15 +29,15 @@ const FAR: f64 = 1e15;
 #[derive(Debug)]
 pub(crate) struct Union<const D: usize> {
     members: Vec<SharedField<D>>,
-    /// None where asking all is faster than choosing.
+    /// `None` where evaluating all members is faster than searching.
     nearby: Option<Nearby<D>>,
     slack: Slack,
     promise: Promise<D>,
     depth: usize,
 }
 
-/// How much smaller than its ball's distance a member's value may come out: the
-/// rounding of the balls, and of the members themselves in single precision.
+/// How far rounding may bring a member's value below the distance to its ball: that of
+/// the balls, and of the members in single precision.
 #[derive(Clone, Copy, Debug)]
 struct Slack {
     constant: f64,
@@ -71,7 +71,7 @@ impl<const D: usize> Union<D> {
         Ok(Arc::new(Self { members, nearby, slack, promise, depth }))
     }
 
-    /// How many members a block is likely to need.
+    /// The number of members that a block is likely to evaluate.
     fn expected(&self) -> usize {
         if self.nearby.is_none() { self.members.len() } else { 1 }
     }
@@ -223,6 +223,13 @@ impl<const D: usize> Field<D> for Union<D> {
 
     fn unplaced(&self) -> usize {
         self.members.iter().map(|member| member.unplaced()).sum()
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let (first, others) = self.members.split_first()?;
+        others.iter().try_fold(first.record(p)?, |least, member| {
+            Some(Minimum.combine(least, member.record(p)?))
+        })
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
+//! Fields that evaluate their child at another point: transforms, mirrors, extrusion.
 
 use super::{
     DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
@@ -10,7 +10,7 @@ use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::{Vector, unrolled};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
     /// `true` for rigid motions, which take another motion into themselves.
     const IS_MOTION: bool = false;
 
-    /// Where the child is asked.
+    /// The point at which the child is evaluated.
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, E>;
 
-    /// What becomes of the child's answer.
+    /// The node's answer from the child's.
     #[inline(always)]
     fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
         child
@@ -39,8 +39,8 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
         None
     }
 
-    /// The node's answer and gradient from the child's: by duals, unless the map
-    /// knows better.
+    /// The node's answer and gradient from the child's: by duals, unless the map has
+    /// something cheaper.
     #[inline(always)]
     fn gradient<T: Float>(
         &self,
@@ -191,6 +191,10 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
 
     fn unplaced(&self) -> usize {
         usize::from(!M::IS_MOTION)
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        Some(self.map.value(p, self.child.record(self.map.point(p))?))
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {

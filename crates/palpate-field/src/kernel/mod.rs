@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Closed formulas: what a leaf evaluates.
+//! Kernels: the closed formulas that leaves evaluate.
 
 mod primitive;
 
@@ -90,7 +90,7 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
         self.distance(cell)
     }
 
-    /// What the distance promises.
+    /// The promise of the distance.
     fn promise(&self) -> Promise<D>;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The one declaration of each primitive, and the catalogue of all.
+//! The one declaration of each primitive.
 
 use crate::error::{ShapeError, Unit};
 use crate::kernel::Kernel;
 use crate::vector::Vector;
 
-/// What a parameter is.
+/// The kind of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {
     /// A positive length [m].
@@ -42,14 +42,14 @@ impl ParameterKind {
     }
 }
 
-/// One of the numbers or lists that a primitive is made from.
+/// A number or list that a primitive is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Its name, as in scene files (where angles add `_degrees`).
     pub name: &'static str,
-    /// What it is.
+    /// Its kind.
     pub kind: ParameterKind,
-    /// What it means, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
@@ -68,7 +68,7 @@ pub enum Argument {
     Rings(Vec<Vec<Vec<f64>>>),
 }
 
-/// How a primitive bounds its values over a cell.
+/// The rule by which a primitive bounds its values over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelRule {
     /// Its formula, evaluated with models.
@@ -85,11 +85,11 @@ pub enum ModelRule {
 pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     /// The name in scene files.
     const NAME: &'static str;
-    /// What it is, in one sentence.
+    /// The primitive described in one sentence.
     const ABOUT: &'static str;
-    /// What it is made from.
+    /// The parameters, in the order of `new`.
     const PARAMETERS: &'static [Parameter];
-    /// How it bounds its values over a cell.
+    /// The rule that bounds its values over a cell.
     const MODEL: ModelRule;
 
     /// Makes it from one argument for each parameter, in their order.
@@ -112,7 +112,7 @@ pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     fn example() -> Result<Self, ShapeError>;
 }
 
-/// What an accessor gives back as an [`Argument`].
+/// A parameter's value that becomes an [`Argument`].
 pub(crate) trait ToArgument {
     fn to_argument(&self) -> Argument;
 }
@@ -148,7 +148,7 @@ impl<const D: usize> ToArgument for &[Vec<Vector<f64, D>>] {
     }
 }
 
-/// What a constructor takes from an [`Argument`].
+/// A constructor's value that is taken from an [`Argument`].
 pub(crate) trait FromArgument: Sized {
     fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError>;
 }
@@ -247,7 +247,7 @@ macro_rules! parameter_type {
     ($number:ident, $dimension:tt) => { f64 };
 }
 
-/// What follows a parameter of a kind in its documentation: the unit.
+/// The unit of a parameter, as its documentation ends.
 macro_rules! parameter_unit {
     (Angle) => {
         " [rad]"

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 18.0;
 
 /// The convex hull of `D + 1` points: a solid triangle in 2D, a tetrahedron in

@@ -42,14 +42,15 @@ impl Combine for ExclusiveOr {
     }
 }
 
-/// What every operator on two fields has in common; quality is left as of `a`.
+/// The parts of a promise that every operator on two fields joins alike; the qualities
+/// are those of `a`.
 pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
     let mut both = *a;
     join(&mut both, b);
     both
 }
 
-/// As [`joined`], in place: a union of many copies no promise.
+/// As [`joined`], in place, so that a union of many members copies no promise.
 fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
     a.lipschitz = Scalar::max(a.lipschitz, b.lipschitz);
     if b.region.is_some() {

@@ -10,9 +10,9 @@
 //! derivative is `I + k·p⊥·eᵀ`: the point, turned by a right angle, times the axis. At
 //! a distance `r` from the axis of the rotation `k·p⊥` is `kr` long. For a twist it is
 //! at right angles to `e`, a shear, and lengths grow by at most its largest singular
-//! value, `½(kr + √(k²r² + 4))`; for a bend, by at most `1 + kr`. That grows without end, so a distorted shape is
-//! asked in its own box alone, the room: elsewhere at the nearest point of the room,
-//! with the distance to the room added. Both parts vary in directions at right
+//! value, `½(kr + √(k²r² + 4))`; for a bend, by at most `1 + kr`. Both grow without end, so
+//! the child is evaluated inside its swept box alone, the room: elsewhere at the nearest
+//! point of the room, with the distance to the room added. Both parts vary in directions at right
 //! angles to each other, so the sum is as steep as `√(L² + 1)`.
 
 use crate::bounds::{Aabb, Bounds};
@@ -25,7 +25,7 @@ use crate::vector::{Vector, array};
 /// The largest angle of a distortion [rad]: sines of larger angles lose digits.
 const MOST_TURN: f64 = 1e4;
 
-/// A box outside which a field is not asked.
+/// The box outside which the child is not evaluated.
 #[derive(Clone, Copy, Debug)]
 struct Room<const D: usize> {
     centre: [f64; D],
@@ -48,7 +48,7 @@ impl<const D: usize> Room<D> {
         }))
     }
 
-    /// How far `p` is from the room; zero inside.
+    /// The distance from `p` to the room; zero inside.
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
         // From the nearest point itself: on a wall, either it moves with `p` or the
@@ -179,8 +179,8 @@ fn swept<const D: usize>(aabb: &Aabb<D>, [u, v]: [usize; 2]) -> (Aabb<D>, f64) {
     (swept, radius * std::f64::consts::SQRT_2 * (1.0 + f64::EPSILON))
 }
 
-/// What a shape promises whose points were turned by up to `turn` [rad], and the
-/// distances between them stretched by up to `stretch`.
+/// The promise of a shape whose points are turned by up to `turn` [rad] and whose
+/// lengths are stretched by up to `stretch`.
 fn distorted<const D: usize>(
     child: &Promise<D>,
     room: &Aabb<D>,
@@ -216,7 +216,7 @@ impl Turning {
     const BEND: Self = Self { operator: "bend", plane: [0, 1], along: 0 };
     const TWIST: Self = Self { operator: "twist", plane: [2, 0], along: 1 };
 
-    /// How much longer lengths become at most, for the rate times the radius.
+    /// The largest stretch of a length, for the rate times the radius.
     fn stretch(&self, kr: f64) -> f64 {
         if self.plane.contains(&self.along) { 1.0 + kr } else { 0.5 * (kr + kr.hypot(2.0)) }
     }

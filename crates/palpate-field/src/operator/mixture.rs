@@ -36,7 +36,7 @@ impl Combine for Morph {
     }
 }
 
-/// As steep as both together; the surface moves by at most the height.
+/// The steepness is the sum of both; the surface moves by at most the height.
 fn promise_of_displacement<const D: usize>(
     a: &Promise<D>,
     b: &Promise<D>,

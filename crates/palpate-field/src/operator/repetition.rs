@@ -28,10 +28,10 @@ use crate::promise::{Promise, Rounding};
 use crate::scalar::{Float, Scalar};
 use crate::vector::{Vector, array, unrolled};
 
-/// How many copies there are to either side if there is no end [1].
+/// The number of copies to either side where a row has no end.
 const ENDLESS: i32 = 1_000_000;
 
-/// How often a shape is repeated along an axis.
+/// The copies of a shape along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Copies {
     /// Once, where it is.
@@ -109,13 +109,13 @@ impl Row {
         self.first == 0.0 && self.last == 0.0
     }
 
-    /// Where the copy is that `x` is nearest to, from copy zero.
+    /// The place of the copy nearest to `x`, relative to copy zero.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S) -> S {
         (x - S::constant(self.centre)).nearest_multiple(self.spacing, self.first, self.last)
     }
 
-    /// How far `x` is beyond the wall to a next tile; negative within.
+    /// The depth of `x` beyond the wall to the next tile; zero within its own.
     #[inline(always)]
     fn beyond<S: Scalar>(&self, x: S) -> S {
         let place = self.nearest(x);
@@ -129,10 +129,11 @@ impl Row {
         none.max(above.max(below))
     }
 
-    /// How far `x` is at least from the copies that are not asked, along the axis.
+    /// A lower bound of the distance from `x` to the copies that are not evaluated, along
+    /// the axis.
     ///
-    /// Also from those next after the ends, as if they were there: where a point comes
-    /// into the last tile, the copy that it leaves behind must not limit it at once.
+    /// A row counts as one copy longer at each end: otherwise the bound would jump where
+    /// a point enters the last tile and the copy two tiles behind it is skipped.
     #[inline(always)]
     fn clearance<S: Scalar>(&self, x: S) -> S {
         let place = self.nearest(x);
@@ -146,7 +147,7 @@ impl Row {
     }
 }
 
-/// Copies along all axes.
+/// The rows of copies along all axes.
 #[derive(Clone, Copy, Debug)]
 struct Grid<const D: usize> {
     rows: [Row; D],
@@ -155,7 +156,7 @@ struct Grid<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// How wrong the formula of one tile may be in the whole of a cell.
+    /// A bound of the error over a cell where only the formula of one tile is evaluated.
     #[inline(always)]
     fn across_walls<S: Scalar>(&self, p: Vector<S, D>) -> S {
         let mut sum = S::constant(0.0);
@@ -189,9 +190,9 @@ impl<const D: usize> Grid<D> {
 #[derive(Debug)]
 pub(crate) struct Tile<const D: usize> {
     grid: Grid<D>,
-    /// How many tiles further, for each axis.
+    /// The offset from the point's own tile, in tiles along each axis.
     beside: [f64; D],
-    /// No other copy is asked.
+    /// `true` if no other copy is evaluated.
     alone: bool,
 }
 
@@ -221,7 +222,8 @@ impl<const D: usize> Warp<D, D> for Tile<D> {
     }
 }
 
-/// `min(f, clearance)`: how far the copies are that were not asked.
+/// `min(f, clearance)`, with the clearance a bound of the distance to the copies that
+/// were not evaluated.
 #[derive(Debug)]
 pub(crate) struct Clearance<const D: usize> {
     grid: Grid<D>,

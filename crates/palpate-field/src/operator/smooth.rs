@@ -110,8 +110,8 @@ impl Combine for Round {
     }
 }
 
-/// What blending adds to the promise of a sharp boolean: a bound on both sides, as any
-/// field with Lipschitz constant 1 is one, with the roundings of the fill.
+/// The promise of a smooth boolean from that of the sharp one. Any field with Lipschitz
+/// constant 1 is a bound on both sides; the fill adds its rounding.
 fn blended<const D: usize>(sharp: Promise<D>, reach: f64, unit: f64) -> Promise<D> {
     let fill = Rounding::of_operations(16.0, unit);
     Promise {
@@ -122,7 +122,7 @@ fn blended<const D: usize>(sharp: Promise<D>, reach: f64, unit: f64) -> Promise<
     }
 }
 
-/// What the geometrical circle adds: it is √2 times as steep.
+/// The promise with the geometrical circle, which is √2 times as steep.
 fn steeper<const D: usize>(promise: Promise<D>) -> Promise<D> {
     Promise {
         outside: Quality::Lipschitz,

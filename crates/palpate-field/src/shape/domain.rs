@@ -43,9 +43,8 @@ impl<const D: usize> Shape<D> {
     /// Copies of the shape on a grid: for each axis, how many and how far apart.
     ///
     /// Along an axis in which the shape is symmetric and no wider than the spacing,
-    /// one copy is asked, and every promise outside is kept. Along others the copies
-    /// to both sides are asked too, three times as many for each, and distances are
-    /// bounds.
+    /// one copy is evaluated, and every promise outside is kept. Along another axis the
+    /// copies to both sides are evaluated too, three in all, and distances are bounds.
     ///
     /// ```
     /// use palpate_field::operator::Copies;
@@ -77,8 +76,8 @@ impl<const D: usize> Shape<D> {
 impl<const D: usize> Shape<D> {
     /// The shape bent: turned in the plane of x and y by `rate` · x [rad/m].
     ///
-    /// Distances are no bounds, but no steeper than the promise says; see the
-    /// derivation in the source. Only a shape with bounds can be bent.
+    /// Distances are no bounds, but no steeper than the promise says. Only a shape with
+    /// bounds can be bent.
     ///
     /// ```
     /// use palpate_field::{Shape, Vector, kernel::Cuboid};

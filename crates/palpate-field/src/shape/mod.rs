@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a user builds.
+//! Shapes: built from kernels, closures and operators, evaluated at points.
 
 mod boolean;
 mod domain;
 mod short;
+mod slices;
 mod surface;
 mod transform;
 
@@ -17,11 +18,11 @@ use crate::field::{
     SharedField,
 };
 use crate::kernel::Kernel;
-use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
+use crate::machine::{Block, Column, Gradients, Lane};
 use crate::node::{self, Node, Opaque, Primitive};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float};
+use crate::scalar::{Dual, Expression, Float};
 use crate::vector::{Point, Vector};
 
 /// A signed distance field in `D` dimensions, cheap to clone.
@@ -86,7 +87,7 @@ impl<const D: usize> Shape<D> {
         Self::from_kernel(kernel).placed(world_from_body)
     }
 
-    /// A field that is no formula as a shape.
+    /// A [`CustomField`] as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
         let kind = std::any::type_name_of_val(&field);
         Self::opaque(kind, Arc::new(Custom(field)))
@@ -158,6 +159,25 @@ impl<const D: usize> Shape<D> {
         &self.field
     }
 
+    /// The formula of the distance, recorded through every operator and kernel; `None`
+    /// where a [`CustomField`] or a closure is part of the shape.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let ring = Shape::circle(0.5)? - Shape::circle(0.25)?;
+    /// let formula = ring.formula().unwrap();
+    /// assert_eq!(formula.to_string(), "let v0 = norm(x, y)\nmax(v0 - 0.5, -(v0 - 0.25))");
+    /// assert_eq!(formula.evaluate(&[3.0, 4.0]), ring.distance([3.0, 4.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn formula(&self) -> Option<Expression> {
+        Expression::record(|p| self.field.record(p))
+    }
+
     /// How many operators are nested in the shape, with the leaf; at most
     /// [`MAX_DEPTH`].
     #[must_use]
@@ -165,7 +185,7 @@ impl<const D: usize> Shape<D> {
         self.field.depth()
     }
 
-    /// What the distances promise.
+    /// The promise of the distances.
     #[must_use]
     pub fn promise(&self) -> &Promise<D> {
         self.field.promise()
@@ -187,31 +207,6 @@ impl<const D: usize> Shape<D> {
         let (x, y, z) = p.into().coordinates();
         let distance = self.field.distance_gradient(x, y, z, &mut gradient);
         (distance, gradient)
-    }
-
-    /// The signed distances at `points` [m], with their gradients if `gradients`
-    /// has room for them.
-    ///
-    /// Points are evaluated in blocks; the bits are those of
-    /// [`distance`](Self::distance) and
-    /// [`distance_gradient`](Self::distance_gradient).
-    ///
-    /// # Panics
-    ///
-    /// If `distances` is not as long as `points`.
-    pub fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
-        assert_eq!(points.len(), distances.len(), "one distance for each point");
-        let mut block = Block::<f64, D, BLOCK>::zero();
-        let mut column = Column::<f64, BLOCK>::zero();
-        for (points, distances) in points.chunks(BLOCK).zip(distances.chunks_mut(BLOCK)) {
-            for (i, p) in points.iter().enumerate() {
-                block.set(i, *p);
-            }
-            self.block_distances(&block, points.len(), &mut column);
-            for (i, distance) in distances.iter_mut().enumerate() {
-                *distance = column.get(i);
-            }
-        }
     }
 
     /// The distances in the first `count` lanes of a block [m]; the other lanes

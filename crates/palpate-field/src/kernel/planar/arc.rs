@@ -11,7 +11,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// All points within `radius` of an arc of a circle about the origin, open

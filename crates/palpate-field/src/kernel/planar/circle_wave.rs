@@ -18,7 +18,7 @@ const FOLDS: i32 = 54;
 /// The largest opening of an arc: at more, neighbours would cross.
 const LARGEST_ANGLE: f64 = 5.0 / 3.0 * PI;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
 /// All points within `radius` of an endless line of equal arcs, up and down in turn,

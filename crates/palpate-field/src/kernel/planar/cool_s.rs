@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 24.0;
 
 /// The S that every pupil draws: fourteen strokes, two fifths as wide as high.

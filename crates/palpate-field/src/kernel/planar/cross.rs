@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distances take at most.
+/// The largest number of rounded operations of the distances.
 const OPERATIONS: f64 = 6.0;
 
 /// A point folded to `x ≥ y ≥ 0`: by the axes and the diagonal.

@@ -12,10 +12,10 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a cut disc takes at most.
+/// The largest number of rounded operations of the distance of a cut disc.
 const OPERATIONS: f64 = 6.0;
 
-/// What is above a line of a disc about the origin. Exact.
+/// The part of a disc about the origin above a line. Exact.
 ///
 /// Folded to `x ≥ 0`, it is the profile that a [`CutBall`](crate::kernel::CutBall)
 /// turns.
@@ -97,7 +97,7 @@ primitive! {
     example: (0.9, -0.3),
 }
 
-/// How many rounded operations the distance of a moon takes at most.
+/// The largest number of rounded operations of the distance of a moon.
 const MOON_OPERATIONS: f64 = 6.0;
 
 /// A disc about the origin without a second disc above it on the y axis: a crescent

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// A band along an arc about the origin and its tangents at both ends, with flat

@@ -11,13 +11,13 @@ use crate::promise::Promise;
 use crate::scalar::{Float, Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance from a parabola takes at most.
+/// The largest number of rounded operations of the distance from a parabola.
 const OPERATIONS: f64 = 5.0;
 
 /// The same of a segment.
 const SEGMENT_OPERATIONS: f64 = 5.0;
 
-/// What is above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
+/// The region above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
 /// bounds.
 ///
 /// The nearest point is a zero of a cubic, which Newton's method finds from above;
@@ -97,7 +97,7 @@ primitive! {
     example: (0.2),
 }
 
-/// What is under a parabolic arch and above its chord, centred at half its height.
+/// The region between a parabolic arch and its chord, centred at half its height.
 /// Exact.
 ///
 /// # Derivation

@@ -13,7 +13,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{Float, Model, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance of a quadratic circle takes at most.
+/// The largest number of rounded operations of the distance of a quadratic circle.
 const CIRCLE_OPERATIONS: f64 = 5.0;
 
 /// The same of a cross.

@@ -20,7 +20,7 @@ const MOST_EDGES: usize = 100_000;
 /// point is inside and on which side of the edge it lies may disagree.
 const ON_EDGE: f64 = 64.0;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 16.0;
 
 /// The inside of closed rings of straight edges, by the even-odd rule. Exact.

@@ -24,7 +24,7 @@ const MOST_OFF: f64 = 0.25;
 /// Less bent than this many roundings, a curve is a straight line.
 const STRAIGHT: f64 = 8.0;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// All points within `radius` of a quadratic Bézier curve, that from `from` to `to`

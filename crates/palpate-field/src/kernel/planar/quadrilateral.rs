@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distances take at most.
+/// The largest number of rounded operations of the distances.
 const OPERATIONS: f64 = 6.0;
 
 /// A rhombus about the origin, its diagonals along the axes. Exact.

@@ -132,7 +132,7 @@ primitive! {
     example: (Vector([1.6, 1.0]), 0.6, 0.2, 0.0, 0.35),
 }
 
-/// How many rounded operations the distance of a chamfered rectangle takes at most.
+/// The largest number of rounded operations of the distance of a chamfered rectangle.
 const CHAMFERED_OPERATIONS: f64 = 6.0;
 
 /// A rectangle along the axes with its corners cut off at 45°. Exact.

@@ -18,7 +18,7 @@ const MOST_BRANCHES: u32 = 256;
 /// first, which folds left onto right.
 const FOLDS: usize = 8;
 
-/// How many rounded operations the distance of a polygon takes at most: few of the
+/// The largest number of rounded operations of the distance of a polygon: few of the
 /// reflections move a point.
 const POLYGON_OPERATIONS: f64 = 18.0;
 

@@ -16,7 +16,7 @@ const MOST_STEPS: u32 = 256;
 /// Halvings that find one of [`MOST_STEPS`] steps.
 const HALVINGS: usize = 8;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// A solid staircase that rises to the right, centred at the origin. Exact.

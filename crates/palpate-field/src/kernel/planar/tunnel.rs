@@ -87,7 +87,7 @@ primitive! {
     example: (1.1, 1.5),
 }
 
-/// How many rounded operations the distance of an uneven capsule takes at most.
+/// The largest number of rounded operations of the distance of an uneven capsule.
 const CAPSULE_OPERATIONS: f64 = 6.0;
 
 /// Two discs on the y axis and all between their common tangents, centred between

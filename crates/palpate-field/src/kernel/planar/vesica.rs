@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// A lens about the origin, bounded by two equal arcs that meet in tips on the y

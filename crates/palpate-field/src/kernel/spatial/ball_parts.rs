@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a part takes at most.
+/// The largest number of rounded operations of the distance of a part.
 const OPERATIONS: f64 = 8.0;
 
 /// The part of a ball about the origin in a cone about the +y axis: a cone with a round
@@ -111,7 +111,7 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
     Err(ShapeError::number("cut_height", rule, height, Unit::Metre))
 }
 
-/// What is left of a ball about the origin when all below a height is cut off. Exact.
+/// The part of a ball about the origin above a height. Exact.
 ///
 /// A disc cut by a line, turned.
 ///

@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// The twelve edges of a box as bars with a square section, within the box. Exact.

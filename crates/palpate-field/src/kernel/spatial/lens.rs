@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// A spindle between two points: an arc from one to the other, turned about the line

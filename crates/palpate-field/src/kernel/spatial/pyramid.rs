@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 18.0;
 
 /// A pyramid on a square in x and z, its tip up along y, centred at half its

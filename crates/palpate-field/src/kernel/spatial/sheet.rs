@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{Model, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
 /// A corner that is no farther from the line of its neighbours than this part of the

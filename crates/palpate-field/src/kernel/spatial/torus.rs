@@ -12,7 +12,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{Model, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a capped torus takes at most.
+/// The largest number of rounded operations of the distance of a capped torus.
 const CAPPED_OPERATIONS: f64 = 10.0;
 
 /// The same of a link.
