@@ -91,7 +91,7 @@ fn every_primitive_comes_back_as_the_same_field() {
         let World::Planar(world) = scene.build().unwrap() else { panic!("not planar") };
         let shape: Shape<2> = entry.build(&known.arguments).unwrap();
         let at =
-            |shape: &Shape<2>, i: usize| shape.distance([samples[i][0], samples[i][1]].into());
+            |shape: &Shape<2>, i: usize| shape.distance([samples[i][0], samples[i][1]]);
         check(known.name, &|i| at(&world.whole, i), &|i| at(&shape, i));
     }
     for (entry, known) in Entry::<3>::ALL.iter().zip(known(Entry::<3>::ALL)) {
@@ -116,7 +116,7 @@ fn the_scenes_are_finite_everywhere_on_a_grid() {
                 let extent = bounds.max[axis] - bounds.min[axis];
                 bounds.min[axis] + extent * (1.5 * step - 0.25)
             });
-            let (distance, gradient) = whole.distance_gradient(point.into());
+            let (distance, gradient) = whole.distance_gradient(point);
             assert!(distance.is_finite() && gradient.is_finite(), "{name} at {point:?}");
             inside += usize::from(distance < 0.0);
         }
