@@ -285,14 +285,7 @@ impl<const D: usize> Search<'_, D> {
         let distance = away.norm();
         let is_far = distance > self.geometry;
         let direction = is_far.then(|| away * (self.sign / distance)).or(self.fallback)?;
-        Some(Contact {
-            point_a: surface,
-            point_b: self.centre - direction * self.radius,
-            normal: direction,
-            gap: self.sign * distance - self.radius,
-            // A ball has one contact.
-            id: 0,
-        })
+        Some(Contact::new(surface, self.centre - direction * self.radius, direction))
     }
 
     /// What the field may be off by at a point [m].

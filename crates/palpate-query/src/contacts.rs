@@ -31,13 +31,29 @@ const FEW_CELLS: usize = 64;
 const DIRECTION: f64 = 1e-9;
 
 /// All contacts of one element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElementContacts<'a, const D: usize> {
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ElementContacts<const D: usize> {
     /// The contacts, the deepest first, in the shape's coordinates.
-    pub contacts: &'a [Contact<D>],
-    /// The field's least value on the element, as of [`minimum`](crate::minimum) if the
-    /// element comes within the gap, which it is proven not to do if `lower` is above it.
+    pub contacts: Vec<Contact<D>>,
+    /// The field's least value on the element. If the element comes within the gap, it is
+    /// what [`minimum`](crate::minimum) finds; if `lower` exceeds the gap, the element is
+    /// proven to stay out of it, and the search stopped there.
     pub least: Certified<Point<D>>,
+}
+
+impl<const D: usize> ElementContacts<D> {
+    /// Room for `count` contacts of an element of which nothing is known.
+    pub(crate) fn with_capacity(count: usize) -> Self {
+        let least = Certified {
+            best: Vector::ZERO,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            stop: Stop::BudgetSpent,
+            evaluations: 0,
+        };
+        Self { contacts: Vec::with_capacity(count), least }
+    }
 }
 
 /// All contacts of a shape on an element, up to a gap [m], in the shape's coordinates.
@@ -61,8 +77,7 @@ pub struct ElementContacts<'a, const D: usize> {
 ///
 /// A contact's normal points from the shape to the element. Its gap is the way to the
 /// surface point that Newton's method finds, the nearest one where the field is exact. It
-/// may exceed `gap` by the tolerance, and more where the field is a bound. Its `id` counts
-/// the contacts of the element.
+/// may exceed `gap` by the tolerance, and more where the field is a bound.
 ///
 /// # Errors
 ///
@@ -78,7 +93,7 @@ pub struct ElementContacts<'a, const D: usize> {
 /// let segment = Element::new([Vector([-3.0, 0.8]), Vector([3.0, 0.9])])?;
 /// let mut workspace = Workspace::new();
 /// let touching = contacts(&bumps, &segment, 0.0, &Limits::default(), &mut workspace)?;
-/// let [left, right] = touching.contacts else { panic!("two contacts") };
+/// let [left, right] = touching.contacts.as_slice() else { panic!("two contacts") };
 /// assert!(left.point_b[0] < 0.0 && right.point_b[0] > 0.0 && left.gap < right.gap);
 /// # Ok(())
 /// # }
@@ -89,18 +104,15 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut Workspace<N, D>,
-) -> Result<ElementContacts<'w, D>, QueryError> {
+) -> Result<&'w ElementContacts<D>, QueryError> {
     let terms = Terms {
         goal: Goal::least(limits.tolerance),
         budget: limits.budget,
         level: level(shape, gap)?,
         reach: 0.0,
     };
-    let mut contacts = std::mem::take(&mut workspace.contacts);
-    contacts.clear();
-    let least = append(shape, element, &terms, workspace, &mut contacts);
-    workspace.contacts = contacts;
-    Ok(ElementContacts { contacts: &workspace.contacts, least })
+    find(shape, element, &terms, workspace);
+    Ok(&workspace.found)
 }
 
 /// What values are compared with for a gap [m].
@@ -111,28 +123,29 @@ pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, Q
     Ok(gap * shape.promise().lipschitz.max(1.0))
 }
 
-/// Appends the contacts on an element, and says what is known of its minimum.
-pub(crate) fn append<const N: usize, const D: usize>(
+/// Finds the contacts on an element, and writes them into the workspace.
+pub(crate) fn find<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
-    out: &mut Vec<Contact<D>>,
-) -> Certified<Point<D>> {
-    let first = out.len();
-    let Workspace { cells, samples, patches, .. } = workspace;
+) {
+    let Workspace { cells, samples, patches, found } = workspace;
+    let ElementContacts { contacts, least } = found;
+    contacts.clear();
     let tolerance = terms.goal.tolerance;
     let mut search = Search::new(shape, element, terms, samples);
     let answer = search.patches(element, patches, cells, |answer| {
         if answer.lower <= 0.0 && answer.upper <= tolerance.max(0.0) {
-            out.push(at(shape, answer.best));
+            contacts.push(at(shape, answer.best));
         }
     });
-    out[first..].sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
-    for (id, contact) in out[first..].iter_mut().enumerate() {
+    contacts.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+    for (id, contact) in contacts.iter_mut().enumerate() {
         contact.id = id as u64;
     }
-    Certified { lower: answer.lower + terms.level, upper: answer.upper + terms.level, ..answer }
+    let (lower, upper) = (answer.lower + terms.level, answer.upper + terms.level);
+    *least = Certified { lower, upper, ..answer };
 }
 
 impl<const N: usize, const D: usize> Search<'_, N, D> {
@@ -245,7 +258,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     }
 }
 
-/// The contact of a shape at a point of something else; its id is still to be given.
+/// The contact of a shape with a point `p` of an element; the caller gives the id.
 pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
     let (value, gradient) = shape.distance_gradient(p);
     let sign = if value < 0.0 { -1.0 } else { 1.0 };
@@ -261,6 +274,5 @@ pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
         let there = direction(shape.distance_gradient(surface).1);
         there.or(direction(gradient)).unwrap_or(Vector::unit(D - 1))
     };
-    let gap = (p - surface).dot(normal);
-    Contact { point_a: surface, point_b: p, normal, gap, id: 0 }
+    Contact::new(surface, p, normal)
 }

@@ -67,7 +67,8 @@ pub use element::Element;
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{
-    MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
+    MeshContact, MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts,
+    mesh_hits,
 };
 pub use pair::{
     Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,

@@ -26,7 +26,7 @@
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::contact::Contact;
+use crate::contacts::ElementContacts;
 use crate::element::{Element, parts_of_one};
 use crate::goal::Goal;
 use crate::larger::larger;
@@ -89,7 +89,7 @@ pub struct Workspace<const N: usize, const D: usize> {
     pub(crate) cells: Vec<Cell<N, D>>,
     pub(crate) samples: Samples<D>,
     pub(crate) patches: Patches<N, D>,
-    pub(crate) contacts: Vec<Contact<D>>,
+    pub(crate) found: ElementContacts<D>,
 }
 
 impl<const N: usize, const D: usize> Workspace<N, D> {
@@ -100,7 +100,7 @@ impl<const N: usize, const D: usize> Workspace<N, D> {
             cells: Vec::with_capacity(ROOM),
             samples: Samples::new(),
             patches: Patches::new(),
-            contacts: Vec::with_capacity(MOST_CELLS),
+            found: ElementContacts::with_capacity(MOST_CELLS),
         }
     }
 }

@@ -185,13 +185,9 @@ fn an_exact_field_is_asked_once_and_gives_the_witness() -> Outcome {
     let mut workspace = BallWorkspace::new();
     let limits = Limits::default();
     let answer = ball(&floor, Vector([3.0, 0.25, -2.0]), 0.5, &limits, &mut workspace)?;
-    let expected = Contact {
-        point_a: Vector([3.0, 0.0, -2.0]),
-        point_b: Vector([3.0, -0.25, -2.0]),
-        normal: Vector([0.0, 1.0, 0.0]),
-        gap: -0.25,
-        id: 0,
-    };
+    let (on_floor, on_ball) = (Vector([3.0, 0.0, -2.0]), Vector([3.0, -0.25, -2.0]));
+    let expected = Contact::new(on_floor, on_ball, Vector([0.0, 1.0, 0.0]));
+    assert_eq!(expected.gap, -0.25);
     assert_eq!((answer.best, answer.evaluations), (Some(expected), 2));
     // From below the floor too.
     let answer = ball(&floor, Vector([3.0, -0.25, -2.0]), 0.5, &limits, &mut workspace)?;

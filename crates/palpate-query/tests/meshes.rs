@@ -11,8 +11,8 @@ use palpate_field::scalar::Scalar;
 use palpate_field::{Point, Pose, Promise, Shape, ShapeError, Vector};
 use palpate_mesh::{Mesh, MeshError, Outline, TriangleMesh};
 use palpate_query::{
-    Contact, Element, Limits, MeshContacts, MeshWorkspace, Placed, PlacedMesh, QueryError,
-    Stop, Workspace, contacts, mesh_contacts, mesh_hits, minimum, touches,
+    Contact, Element, Limits, MeshContact, MeshContacts, MeshWorkspace, Placed, PlacedMesh,
+    QueryError, Stop, Workspace, contacts, mesh_contacts, mesh_hits, minimum, touches,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -96,7 +96,7 @@ where
         // Ten evaluations prove little, and nothing that is wrong.
         let hasty = Limits { budget: 10, ..limits };
         let answer = mesh_hits(&shape, placed, gap, &hasty, &mut workspace).unwrap();
-        for hit in answer.hits {
+        for hit in &answer.hits {
             if hits.binary_search(hit).is_err() && undecided.iter().all(|o| o.element != *hit) {
                 return Ok(Err(format!("{hit} touches in haste alone\n  {tree:?}")));
             }
@@ -124,15 +124,18 @@ fn contacts_are_right<const N: usize, const D: usize>(
     let (mut workspace, mut alone) = (MeshWorkspace::new(), Workspace::new());
     let placed = PlacedMesh::new(mesh, pose);
     let all = mesh_contacts(shape, placed, gap, limits, &mut workspace).unwrap();
-    if !all.contacts.is_sorted_by_key(|contact| contact.id) {
+    let is_named = |(i, touch): (usize, &MeshContact<D>)| touch.contact.id == i as u64;
+    if !all.contacts.is_sorted_by_key(|touch| touch.element)
+        || !all.contacts.iter().enumerate().all(is_named)
+    {
         return Err("contacts are out of order".to_owned());
     }
-    for &hit in all.hits {
+    for &hit in &all.hits {
         let corners = mesh.corners(hit as usize).map(|corner| pose.transform_point(corner));
         let element = Element::new(corners).unwrap();
         let least = minimum(shape, &element, limits, &mut alone);
         let here = contacts(shape, &element, gap, limits, &mut alone).unwrap();
-        let of_hit = all.contacts.iter().filter(|contact| contact.id >> 32 == u64::from(hit));
+        let of_hit = all.contacts.iter().filter(|touch| touch.element == hit);
         if of_hit.clone().count() != here.contacts.len().max(1) {
             return Err(format!("{:?} of {hit} are not {here:?}", of_hit.collect::<Vec<_>>()));
         }
@@ -143,7 +146,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
                 }
             }
         }
-        let values = of_hit.map(|contact| shape.distance(contact.point_b));
+        let values = of_hit.map(|touch| shape.distance(touch.contact.point_b));
         let deepest = values.fold(f64::INFINITY, f64::min);
         let is_known = here.least.stop == Stop::Converged;
         if is_known && deepest > least.upper + limits.tolerance {
@@ -153,7 +156,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
             return Err(format!("{:?} is not {least:?}", here.least));
         }
     }
-    for contact in all.contacts {
+    for MeshContact { contact, .. } in &all.contacts {
         let along = (contact.point_b - contact.point_a).dot(contact.normal);
         if (contact.normal.norm() - 1.0).abs() > 1e-9 || (along - contact.gap).abs() > 1e-9 {
             return Err(format!("{contact:?} does not agree with itself"));
@@ -291,7 +294,7 @@ fn the_field_and_the_mesh_may_both_be_moved() -> Result<(), Box<dyn std::error::
         mesh_contacts(field, mesh, 0.0999, &limits, &mut workspace)?;
     assert!(none.is_empty());
     let near = mesh_contacts(field, mesh, 0.1001, &limits, &mut workspace)?;
-    let [contact] = near.contacts else { panic!("{near:?}") };
+    let [MeshContact { contact, .. }] = near.contacts.as_slice() else { panic!("{near:?}") };
     assert!((contact.gap - 0.1).abs() < 1e-8);
     assert!((contact.normal - Vector([0.0, 1.0])).norm() < 1e-6);
     assert!((contact.point_a[1] - 3.0).abs() < 1e-8 && contact.point_a[0] > 9.0);
@@ -306,7 +309,7 @@ fn elements_without_an_extent_are_points() -> Result<(), Box<dyn std::error::Err
     let mut workspace = MeshWorkspace::new();
     let all = mesh_contacts(&ball, &mesh, 0.0, &Limits::default(), &mut workspace)?;
     assert_eq!(all.hits, [0, 2, 3]);
-    let gaps: Vec<f64> = all.contacts.iter().map(|contact| contact.gap).collect();
+    let gaps: Vec<f64> = all.contacts.iter().map(|touch| touch.contact.gap).collect();
     assert!((gaps[0] + 0.1).abs() < 1e-9 && (gaps[1] + 0.1).abs() < 1e-4 && gaps[2] == -1.0);
     Ok(())
 }

@@ -89,7 +89,7 @@ pub struct Manifold<const D: usize> {
 /// The separation is found to `limits.tolerance` first; once it is proven to be more than
 /// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
 /// other parts of the region are found is not, if they are smaller than the spacing.
-/// Contacts are numbered from 0; [`Track::manifold`](crate::Track::manifold) names them.
+/// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Cuboid};
@@ -180,7 +180,7 @@ fn spanning<const D: usize>(
         if let Some(count) = found.groups.last_mut() {
             *count += 1;
         }
-        found.contacts.push(Contact { id: i as u64, ..*contact });
+        found.contacts.push(contact.with_id(i as u64));
     }
     found.separation.evaluations += patches.couple.evaluations;
     found
@@ -263,14 +263,7 @@ impl<const D: usize> Touch<D> {
             found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
         };
         let pose = &couple.world_from_frame;
-        let (point_a, point_b) = (on(0, -1.0), on(1, 1.0));
-        Contact {
-            point_a: pose.transform_point(point_a),
-            point_b: pose.transform_point(point_b),
-            normal: pose.transform_vector(self.normal),
-            gap: (point_b - point_a).dot(self.normal),
-            id: 0,
-        }
+        Contact::new(on(0, -1.0), on(1, 1.0), self.normal).placed(pose)
     }
 }
 

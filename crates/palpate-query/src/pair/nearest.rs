@@ -49,7 +49,6 @@ impl<const D: usize> Nearest<D> {
             Some(pose.transform_point(placed.shape.surface_point(local)?))
         };
         let (point_a, point_b) = (surface(a.into())?, surface(b.into())?);
-        let gap = (point_b - point_a).dot(normal);
-        Some(Contact { point_a, point_b, normal, gap, id: 0 })
+        Some(Contact::new(point_a, point_b, normal))
     }
 }
