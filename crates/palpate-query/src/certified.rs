@@ -1,28 +1,28 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Answers with their proof.
+//! Answers with their bounds.
 
 use crate::error::{QueryError, check_length};
 
-/// The answer of a search: the truth lies in `[lower, upper]`, rounding included.
+/// The answer of a search: the true value lies in `[lower, upper]`, rounding included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<T> {
-    /// The best that was found; `upper` is its value.
+    /// The best point or contact that was found.
     pub best: T,
-    /// Nothing is less [m].
+    /// Proven lower bound [m].
     pub lower: f64,
-    /// Something is no more [m].
+    /// Upper bound, attained at `best` [m].
     pub upper: f64,
     /// Why the search stopped.
     pub stop: Stop,
-    /// How often the field was asked; a gradient counts twice.
+    /// How often fields were evaluated; a gradient counts twice.
     pub evaluations: u32,
 }
 
 impl<T> Certified<T> {
-    /// `true` if it is proven that something is at most zero, `false` if nothing is;
-    /// `None` if the search stopped before either was known.
+    /// `true` if the value is proven to be at most zero, `false` if it is proven to be
+    /// positive; `None` if the search stopped before either was proven.
     #[must_use]
     pub fn is_hit(&self) -> Option<bool> {
         if self.upper <= 0.0 {
@@ -38,11 +38,11 @@ impl<T> Certified<T> {
 /// Why a search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// The bounds are no further apart than the tolerance.
+    /// The bounds are no farther apart than the tolerance.
     Converged,
-    /// It is proven whether anything is at most zero, or at most what counts as touching.
+    /// The sign of the value is proven, or that it exceeds the largest value asked for.
     SignKnown,
-    /// The budget of evaluations, or the room of the workspace, came to its end first.
+    /// The budget of evaluations or the room of the workspace ended first.
     BudgetSpent,
 }
 

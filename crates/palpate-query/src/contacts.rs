@@ -12,11 +12,12 @@ use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::element::Element;
+use crate::element_search::{ElementCell, ElementSearch, Terms, Workspace};
+use crate::engine::{self, Frontier};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{normal as direction, unit};
-use crate::search::{Cell, Search, Terms, Workspace};
 
 /// Heights over and under the centre of an element from which it is seen to be plain, in
 /// radii: half a block each.
@@ -130,12 +131,12 @@ pub(crate) fn find<const N: usize, const D: usize>(
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
 ) {
-    let Workspace { cells, samples, patches, found } = workspace;
+    let Workspace { frontier, samples, patches, found } = workspace;
     let ElementContacts { contacts, least } = found;
     contacts.clear();
     let tolerance = terms.goal.tolerance;
-    let mut search = Search::new(shape, element, terms, samples);
-    let answer = search.patches(element, patches, cells, |answer| {
+    let mut search = ElementSearch::new(shape, element, terms, samples);
+    let answer = search.patches(element, patches, frontier, |answer| {
         if answer.lower <= 0.0 && answer.upper <= tolerance.max(0.0) {
             contacts.push(at(shape, answer.best));
         }
@@ -148,13 +149,13 @@ pub(crate) fn find<const N: usize, const D: usize>(
     *least = Certified { lower, upper, ..answer };
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D> {
+impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
     /// Tells what is known of each patch of an element, and returns what is known of all.
     fn patches(
         &mut self,
         element: &Element<N, D>,
         patches: &mut Patches<N, D>,
-        cells: &mut Vec<Cell<N, D>>,
+        frontier: &mut Frontier<Vec<ElementCell<N, D>>>,
         mut tell: impl FnMut(&Certified<Point<D>>),
     ) -> Certified<Point<D>> {
         let tolerance = self.goal.tolerance;
@@ -171,7 +172,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         patches.radius = self.radius;
         if !self.sampler.is_convex() && !self.is_plain(&whole, tolerance) {
             self.keeps_all = true;
-            self.refine(tolerance, patches);
+            self.refine(tolerance, patches, &mut frontier.round);
             self.keeps_all = false;
         }
         if patches.cells.is_empty() {
@@ -180,13 +181,13 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
         let mut all = self.answer(self.dropped, Stop::Converged);
         for patch in 0..patches.divide(&self.weights, tolerance, |cell| cell.lower) {
-            let deepest = patches.copy(patch, cells);
+            let deepest = patches.copy(patch, &mut frontier.queue);
             self.dropped = f64::INFINITY;
             if !is_whole {
                 // What was found is at the centre.
                 (self.upper, self.best) = (deepest.upper, deepest.element.at(&self.weights));
             }
-            let answer = self.finish(cells);
+            let answer = self.finish(frontier);
             tell(&answer);
             if answer.upper < all.upper {
                 (all.upper, all.best) = (answer.upper, answer.best);
@@ -201,7 +202,12 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
 
     /// Halves all cells until there are as many patches as their values let expect, or as
     /// many cells as are looked at together.
-    fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
+    fn refine(
+        &mut self,
+        tolerance: f64,
+        patches: &mut Patches<N, D>,
+        round: &mut Vec<ElementCell<N, D>>,
+    ) {
         let parts = self.parts;
         let mut cells_of_whole = 1;
         while !patches.cells.is_empty()
@@ -212,11 +218,12 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
             for parents in cells.chunks(SHORT / parts) {
-                let first = halves.len();
+                round.clear();
                 for parent in parents {
-                    parent.halve_into(parts, halves);
+                    parent.halve_into(parts, round);
                 }
-                self.look_at(halves, first, first);
+                self.bound_parts(round);
+                engine::keep(self, round, halves);
             }
             std::mem::swap(cells, halves);
             patches.radius *= 0.5;
@@ -237,7 +244,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// under the centre. The second is convex: from any point to a lower one a straight
     /// path on the cell does not climb. So where both differ by at most the tolerance, it
     /// climbs by no more in the field. Their difference is convex, and largest at a vertex.
-    fn is_plain(&mut self, cell: &Cell<N, D>, tolerance: f64) -> bool {
+    fn is_plain(&mut self, cell: &ElementCell<N, D>, tolerance: f64) -> bool {
         let centre = cell.element.at(&self.weights);
         let mut points = [centre; SHORT];
         for (k, height) in HEIGHTS.iter().enumerate() {

@@ -44,6 +44,8 @@ mod contact;
 mod contacts;
 mod cut_box;
 mod element;
+mod element_search;
+mod engine;
 mod error;
 mod goal;
 mod larger;
@@ -56,7 +58,6 @@ mod placed;
 mod point;
 mod ray;
 mod sampler;
-mod search;
 mod world;
 
 pub use ball::{BallWorkspace, ball, ball_touches};
@@ -64,6 +65,7 @@ pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
+pub use element_search::{Workspace, minimum, touches};
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{
@@ -77,5 +79,4 @@ pub use pair::{
 pub use placed::Placed;
 pub use point::{AtPoint, point};
 pub use ray::{Ray, RayHit, ray};
-pub use search::{Workspace, minimum, touches};
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

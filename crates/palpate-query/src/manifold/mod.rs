@@ -24,11 +24,12 @@ use crate::contact::Contact;
 use crate::error::{QueryError, check_length};
 use crate::goal::Goal;
 use crate::pair::couple::Couple;
-use crate::pair::search::Search;
+use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
 use grid::distance;
 use patch::Patches;
+use region::Region;
 
 pub(crate) use names::Names;
 
@@ -126,7 +127,7 @@ pub fn manifold<'a, const D: usize>(
     settings.check()?;
     let couple = Couple::new(a.into(), b.into())?;
     let goal = settings.goal(limits);
-    let mut search = Search::new(couple, goal, limits)?;
+    let mut search = PairSearch::new(couple, goal, limits)?;
     let separation = search.run(workspace);
     let budget = limits.budget;
     Ok(spanning(couple, (search.best, separation), settings, budget, workspace))
@@ -150,10 +151,10 @@ fn spanning<const D: usize>(
     if separation.lower > settings.margin {
         return found;
     }
-    let mut candidates = vec![Touch::at(&mut couple, best)];
-    let mut middles = Vec::new();
-    let into = (&mut candidates, &mut middles);
-    found.is_whole = region::find(&mut couple, settings, budget, workspace, into);
+    let first = Touch::at(&mut couple, best);
+    let Region { candidates, mut middles, is_whole } =
+        region::find(&mut couple, settings, budget, workspace, first);
+    found.is_whole = is_whole;
     let mut patches = Patches { couple, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     patches.fill(&mut middles, &mut touches);

@@ -8,10 +8,10 @@ use super::placed::PlacedMesh;
 use crate::certified::Limits;
 use crate::contact::Contact;
 use crate::contacts::{self, ElementContacts, level};
+use crate::element_search::Terms;
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
-use crate::search::Terms;
 
 /// A contact of an element of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

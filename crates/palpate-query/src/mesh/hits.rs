@@ -12,7 +12,7 @@
 //! ```
 //!
 //! What is left of the elements is looked at 64 at a time: a point lifted off the centre
-//! along the gradient frees most (see [`search`](crate::search)), the lowest corner of the
+//! along the gradient frees most (see [`search`](crate::element_search)), the lowest corner of the
 //! linear model hits most. Those that stay open are halved twice and looked at again. Few
 //! remain to be searched one by one.
 
@@ -24,11 +24,11 @@ use super::placed::{PlacedMesh, View};
 use crate::certified::Limits;
 use crate::contacts::level;
 use crate::element::{Element, parts_of_one};
+use crate::element_search::{Terms, Workspace, search};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
 use crate::sampler::{Steepness, unit};
-use crate::search::{Terms, Workspace, search};
 
 /// How high points are lifted off elements, in radii.
 const HEIGHT: f64 = 4.0;

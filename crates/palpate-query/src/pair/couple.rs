@@ -7,7 +7,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 
 use super::body::Body;
-use super::cell::Cell;
+use super::cell::BoxCell;
 use crate::error::QueryError;
 use crate::placed::{Placed, check_pose};
 
@@ -111,7 +111,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn values(
         &mut self,
         body: usize,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         memory: &mut Memory<D>,
         values: &mut [f64; BLOCK],
     ) {
@@ -165,7 +165,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     /// which both fields are known to be as steep as promised.
     pub(crate) fn keep_known(
         &self,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         open: &mut Vec<usize>,
         memory: &Memory<D>,
     ) {
@@ -181,7 +181,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn models(
         &mut self,
         body: usize,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         open: &[usize],
         memory: &mut Memory<D>,
     ) {

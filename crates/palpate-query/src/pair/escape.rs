@@ -86,7 +86,7 @@ pub fn escape<'a, const D: usize>(
         let bounds = body.shape.promise().bounds;
         bounds.map_or(0.0, |bounds| 2.0 * bounds.aabb.half_extents().norm())
     };
-    let mut search = Search {
+    let mut search = WaysOut {
         bodies: [a, b],
         limits: Limits { tolerance: 0.5 * limits.tolerance, ..*limits },
         workspace,
@@ -112,7 +112,7 @@ pub fn escape<'a, const D: usize>(
 }
 
 /// A search under way.
-struct Search<'a, 'w, const D: usize> {
+struct WaysOut<'a, 'w, const D: usize> {
     bodies: [Placed<'a, D>; 2],
     limits: Limits,
     workspace: &'w mut PairWorkspace<D>,
@@ -121,7 +121,7 @@ struct Search<'a, 'w, const D: usize> {
     evaluations: u32,
 }
 
-impl<const D: usize> Search<'_, '_, D> {
+impl<const D: usize> WaysOut<'_, '_, D> {
     /// The separation after the second body has moved.
     fn at(
         &mut self,

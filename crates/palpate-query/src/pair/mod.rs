@@ -27,7 +27,6 @@ pub(crate) mod cell;
 pub(crate) mod couple;
 pub(crate) mod descent;
 mod escape;
-pub(crate) mod frontier;
 mod nearest;
 mod proof;
 mod rates;
@@ -39,7 +38,7 @@ use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
 use couple::Couple;
-use search::Search;
+use search::PairSearch;
 
 pub use escape::{Escape, escape};
 pub use nearest::Nearest;
@@ -74,7 +73,7 @@ pub fn separation<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::least(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }
 
 /// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
@@ -92,5 +91,5 @@ pub fn overlap<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::sign(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }

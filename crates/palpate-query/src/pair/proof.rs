@@ -6,9 +6,10 @@
 use palpate_field::{Aabb, Pose};
 
 use super::couple::Couple;
-use super::search::Search;
+use super::search::PairSearch;
 use super::{Nearest, PairWorkspace};
 use crate::certified::{Certified, Limits};
+use crate::engine::Frontier;
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
@@ -48,10 +49,11 @@ pub fn proof<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
     let couple = Couple::new(a.into(), b.into())?;
-    let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
+    let mut search = PairSearch::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_all = true;
     let (answer, _) = search.run_within(0.0, workspace);
-    let known = workspace.pending.drain(..).chain(workspace.cells.drain());
+    let Frontier { queue, pending, .. } = &mut workspace.frontier;
+    let known = pending.drain(..).chain(queue.drain());
     let boxes = known.map(|cell| ProofBox {
         aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
         lower: 2.0 * cell.lower,

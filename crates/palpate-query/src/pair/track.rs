@@ -7,11 +7,11 @@ use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
 use super::Nearest;
 use super::body::Body;
-use super::cell::reach;
+use super::cell::{BoxCell, reach};
 use super::couple::Couple;
-use super::frontier::Frontier;
-use super::search::{PairWorkspace, ROOM, Search};
+use super::search::{PairSearch, PairWorkspace, ROOM};
 use crate::certified::{Certified, Limits};
+use crate::engine::{Frontier, Heap, Queue};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::manifold::Names;
@@ -62,7 +62,7 @@ pub struct Track<const D: usize> {
 /// may be found, and what was known of them when the bodies were at a pose.
 #[derive(Clone, Debug)]
 struct Cover<const D: usize> {
-    cells: Frontier<D>,
+    cells: Heap<BoxCell<D>>,
     root: Aabb<D>,
     best: Point<D>,
     second_from_frame: Pose<D>,
@@ -114,7 +114,7 @@ impl<const D: usize> Track<D> {
     ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
         let [a, b] = &self.shapes;
         let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let mut search = Search::new(couple, goal, limits)?;
+        let mut search = PairSearch::new(couple, goal, limits)?;
         if let Some(answer) = search.told_by_boxes() {
             return Ok((answer, search.best));
         }
@@ -126,20 +126,18 @@ impl<const D: usize> Track<D> {
             _ => {
                 let size = couple.root(0.0).half_extents().norm();
                 let (answer, root) = search.run_within(MARGIN * size, workspace);
-                let first = workspace.cells.len() + workspace.pending.len();
+                let first = workspace.frontier.queue.len() + workspace.frontier.pending.len();
                 let (best, second_from_frame) = (search.best, couple.second_from_frame);
-                let cells =
-                    cover.take().map_or_else(|| Frontier::new(ROOM, first), |c| c.cells);
+                let cells = cover.take().map_or_else(|| Heap::new(ROOM, first), |c| c.cells);
                 cover = Some(Cover { cells, root, best, second_from_frame, first });
                 answer
             }
         };
         if let Some(cover) = &mut cover {
             (cover.best, cover.second_from_frame) = (search.best, couple.second_from_frame);
-            for cell in workspace.pending.drain(..) {
-                workspace.cells.push(cell);
-            }
-            std::mem::swap(&mut cover.cells, &mut workspace.cells);
+            let Frontier { queue, pending, .. } = &mut workspace.frontier;
+            pending.drain(..).for_each(|cell| queue.push(&cell));
+            std::mem::swap(&mut cover.cells, queue);
         }
         self.cover = cover;
         Ok((answer, search.best))
@@ -149,7 +147,11 @@ impl<const D: usize> Track<D> {
 impl<const D: usize> Cover<D> {
     /// Puts into `workspace` what is still known now that the bodies have moved; `false`
     /// if they moved too far.
-    fn resume(&mut self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
+    fn resume(
+        &mut self,
+        search: &mut PairSearch<'_, D>,
+        workspace: &mut PairWorkspace<D>,
+    ) -> bool {
         // What a body knows in a part of space alone moves with it.
         let is_known = search.couple.bodies.iter().all(Body::is_known_everywhere);
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
@@ -165,7 +167,7 @@ impl<const D: usize> Cover<D> {
         let moved = self.displacement(&search.couple.second_from_frame) + slack;
         self.cells.lower_all(moved);
         search.reserve = RESERVE * moved;
-        std::mem::swap(&mut self.cells, &mut workspace.cells);
+        std::mem::swap(&mut self.cells, &mut workspace.frontier.queue);
         search.resume(&self.root, workspace);
         true
     }
