@@ -82,7 +82,7 @@ impl<const D: usize> ElementContacts<D> {
 ///
 /// # Errors
 ///
-/// If `gap` is negative, too large or no number.
+/// If `gap` or the tolerance is negative, NaN or too large.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
@@ -93,7 +93,7 @@ impl<const D: usize> ElementContacts<D> {
 /// let bumps = Shape::union([bump(-2.0)?, bump(2.0)?])?;
 /// let segment = Element::new([Vector([-3.0, 0.8]), Vector([3.0, 0.9])])?;
 /// let mut workspace = Workspace::new();
-/// let touching = contacts(&bumps, &segment, 0.0, &Limits::default(), &mut workspace)?;
+/// let touching = contacts(&bumps, &segment, 0.0, &Limits::new(1e-4), &mut workspace)?;
 /// let [left, right] = touching.contacts.as_slice() else { panic!("two contacts") };
 /// assert!(left.point_b[0] < 0.0 && right.point_b[0] > 0.0 && left.gap < right.gap);
 /// # Ok(())
@@ -106,6 +106,7 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     limits: &Limits,
     workspace: &'w mut Workspace<N, D>,
 ) -> Result<&'w ElementContacts<D>, QueryError> {
+    limits.check()?;
     let terms = Terms {
         goal: Goal::least(limits.tolerance),
         budget: limits.budget,

@@ -29,6 +29,7 @@ use crate::certified::{Certified, Limits, Stop};
 use crate::contacts::ElementContacts;
 use crate::element::{Element, parts_of_one};
 use crate::engine::{self, Bounded, Frontier, Problem};
+use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::larger::larger;
 use crate::patches::{MOST_CELLS, Patches};
@@ -125,15 +126,20 @@ impl<const N: usize, const D: usize> Default for Workspace<N, D> {
 
 /// The least value of a field over an element, between bounds [m], and where it is.
 ///
-/// Stops when the bounds are no further apart than the tolerance.
+/// Stops when the bounds are no farther apart than the tolerance.
+///
+/// # Errors
+///
+/// If the tolerance is negative, NaN or too large.
 pub fn minimum<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>> {
+) -> Result<Certified<Point<D>>, QueryError> {
+    limits.check()?;
     let goal = Goal::least(limits.tolerance);
-    search(shape, element, &Terms::new(goal, limits.budget), workspace)
+    Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
 /// Whether a field is at most zero anywhere on an element.
@@ -141,14 +147,19 @@ pub fn minimum<const N: usize, const D: usize>(
 /// Stops as soon as that is known, in [`Certified::is_hit`]. A touch that is neither
 /// deeper nor further off than rounding stays unknown, and `limits.tolerance` says up to
 /// which clearance it is to be looked for.
+///
+/// # Errors
+///
+/// If the tolerance is negative, NaN or too large.
 pub fn touches<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>> {
+) -> Result<Certified<Point<D>>, QueryError> {
+    limits.check()?;
     let goal = Goal::sign(limits.tolerance);
-    search(shape, element, &Terms::new(goal, limits.budget), workspace)
+    Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
 /// What is asked of a search.

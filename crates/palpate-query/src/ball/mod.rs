@@ -92,13 +92,13 @@ impl<const D: usize> Default for BallWorkspace<D> {
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-/// use palpate_query::{Limits, BallWorkspace, Stop, ball};
+/// use palpate_query::{Limits, BallWorkspace, Stop, contact_ball};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let mut workspace = BallWorkspace::new();
 /// let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
 /// let centre = Vector([1.3, 0.9]);
-/// let answer = ball(&square, centre, 0.75, &Limits::default(), &mut workspace)?;
+/// let answer = contact_ball(&square, centre, 0.75, &Limits::new(1e-4), &mut workspace)?;
 /// // Exact, and so known at once: the corner is 0.5 m from the centre.
 /// assert_eq!((answer.evaluations, answer.stop), (2, Stop::Converged));
 /// let contact = answer.best.ok_or("there is a contact")?;
@@ -109,7 +109,7 @@ impl<const D: usize> Default for BallWorkspace<D> {
 ///
 /// // A bound, a quarter of the distance here, needs a search.
 /// let ellipse = square.stretched([1.0, 4.0])?;
-/// let answer = ball(&ellipse, Vector([0.3, 6.0]), 1.0, &Limits::default(), &mut workspace)?;
+/// let answer = contact_ball(&ellipse, Vector([0.3, 6.0]), 1.0, &Limits::new(1e-4), &mut workspace)?;
 /// assert!(answer.lower <= 3.0 && 3.0 <= answer.upper && answer.upper < 3.0 + 1e-4);
 /// # Ok(())
 /// # }
@@ -118,7 +118,7 @@ impl<const D: usize> Default for BallWorkspace<D> {
 /// # Errors
 ///
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
-pub fn ball<const D: usize>(
+pub fn contact_ball<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
     radius: f64,
@@ -130,7 +130,7 @@ pub fn ball<const D: usize>(
 }
 
 /// Whether a ball and a shape touch, in [`Certified::is_hit`]; arguments and errors as of
-/// [`ball`].
+/// [`contact_ball`].
 ///
 /// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
 /// One evaluation decides where the field is exact, where it is a bound above the radius,
@@ -139,7 +139,7 @@ pub fn ball<const D: usize>(
 /// # Errors
 ///
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
-pub fn ball_touches<const D: usize>(
+pub fn touches_ball<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
     radius: f64,

@@ -11,8 +11,8 @@ use super::{ManifoldSettings, Touch};
 use crate::certified::Stop;
 use crate::engine::{self, End, Frontier, Heap, Problem};
 use crate::pair::PairWorkspace;
+use crate::pair::body_pair::{BodyPair, Memory};
 use crate::pair::cell::{BoxCell, least_of_larger, reach};
-use crate::pair::couple::{Couple, Memory};
 use crate::pair::search::ROOM;
 
 /// Steps to the surface between at most.
@@ -38,19 +38,19 @@ pub(super) struct Region<const D: usize> {
 
 /// Finds the region in which two bodies touch; `first` is the first candidate.
 pub(super) fn find<const D: usize>(
-    couple: &mut Couple<'_, D>,
+    pair: &mut BodyPair<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
     first: Touch<D>,
 ) -> Region<D> {
-    let root = couple.root(0.5 * settings.margin);
-    let slack = couple.slack(reach(&root));
+    let root = pair.root(0.5 * settings.margin);
+    let slack = pair.slack(reach(&root));
     let PairWorkspace { frontier, open, memory, .. } = workspace;
     frontier.queue.clear();
     BoxCell::unknown(&root).grid(&mut frontier.pending);
     let mut search = RegionSearch {
-        couple,
+        pair,
         settings,
         budget,
         slack,
@@ -60,10 +60,10 @@ pub(super) fn find<const D: usize>(
         middles: vec![],
     };
     let is_whole = engine::search(&mut search, frontier) == End::Exhausted;
-    let RegionSearch { couple, small, middles, memory, .. } = search;
+    let RegionSearch { pair, small, middles, memory, .. } = search;
     let mut candidates = vec![first];
     for cells in small.chunks(BLOCK) {
-        settle(couple, cells, settings, memory, &mut candidates);
+        settle(pair, cells, settings, memory, &mut candidates);
     }
     Region { candidates, middles, is_whole }
 }
@@ -71,7 +71,7 @@ pub(super) fn find<const D: usize>(
 /// A search for all boxes down to the spacing that the surface between the bodies crosses.
 /// It bounds no least value: no box comes before another, and all are searched.
 struct RegionSearch<'s, 'a, const D: usize> {
-    couple: &'s mut Couple<'a, D>,
+    pair: &'s mut BodyPair<'a, D>,
     settings: &'s ManifoldSettings,
     budget: u32,
     slack: f64,
@@ -89,7 +89,7 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
         let limit = 0.5 * self.settings.margin + self.slack;
         let mut values = [[0.0; BLOCK]; 2];
         for (body, values) in values.iter_mut().enumerate() {
-            self.couple.values(body, round, self.memory, values);
+            self.pair.values(body, round, self.memory, values);
         }
         let mut is_near = [false; BLOCK];
         for (i, part) in round.iter().enumerate() {
@@ -117,7 +117,7 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
     }
 
     fn is_spent(&self) -> bool {
-        self.couple.evaluations >= self.budget
+        self.pair.evaluations >= self.budget
     }
 
     /// Boxes are halved once they are bounded, and their halves are pending.
@@ -134,12 +134,12 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
         let mut is_open = self.is_near(round);
         self.open.clear();
         self.open.extend((0..round.len()).filter(|&i| is_open[i]));
-        self.couple.keep_known(round, self.open, self.memory);
+        self.pair.keep_known(round, self.open, self.memory);
         for body in 0..2 {
-            self.couple.models(body, round, self.open, self.memory);
+            self.pair.models(body, round, self.open, self.memory);
         }
         for (lane, &i) in self.open.iter().enumerate() {
-            let models = [0, 1].map(|body| self.couple.model(body, self.memory, lane));
+            let models = [0, 1].map(|body| self.pair.model(body, self.memory, lane));
             let found = look::<D>(&models, self.settings, self.slack);
             is_open[i] = found == Look::Open;
             if found == Look::Middle {
@@ -205,7 +205,7 @@ fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack:
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,
 /// and appends those that get there and where the bodies face each other.
 fn settle<const D: usize>(
-    couple: &mut Couple<'_, D>,
+    pair: &mut BodyPair<'_, D>,
     cells: &[BoxCell<D>],
     settings: &ManifoldSettings,
     memory: &mut Memory<D>,
@@ -219,7 +219,7 @@ fn settle<const D: usize>(
     let mut count = cells.len();
     let mut slopes = [[(0.0, Vector::ZERO); BLOCK]; 2];
     for step in 0..STEPS {
-        couple.block_slopes(&points[..count], memory, &mut slopes);
+        pair.block_slopes(&points[..count], memory, &mut slopes);
         let mut left = 0;
         for i in 0..count {
             let cell = &cells[from[i]];

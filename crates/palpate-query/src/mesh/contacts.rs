@@ -45,7 +45,8 @@ pub struct MeshContacts<const D: usize> {
 ///
 /// # Errors
 ///
-/// If `gap` is negative or no number, or a pose is not finite or beyond 1e15 m.
+/// If `gap` or the tolerance is negative, NaN or too large, or a pose is not finite or
+/// beyond 1e15 m.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -57,7 +58,7 @@ pub struct MeshContacts<const D: usize> {
 /// let floor = TriangleMesh::new(corners, vec![[0, 2, 1]])?;
 /// let ball = Shape::from_kernel(Ball::new(1.0)?);
 /// let above = Placed::new(&ball, Pose::translation(Vector([0.5, 0.75, 0.0])));
-/// let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+/// let limits = Limits::new(1e-6);
 /// let mut workspace = MeshWorkspace::new();
 /// let touching = mesh_contacts(above, &floor, 0.0, &limits, &mut workspace)?;
 /// let [touch] = touching.contacts.as_slice() else { panic!("one contact") };

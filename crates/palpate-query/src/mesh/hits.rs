@@ -126,7 +126,8 @@ pub struct MeshHits {
 ///
 /// # Errors
 ///
-/// If `gap` is negative or no number, or a pose is not finite or beyond 1e15 m.
+/// If `gap` or the tolerance is negative, NaN or too large, or a pose is not finite or
+/// beyond 1e15 m.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -140,7 +141,7 @@ pub struct MeshHits {
 /// let mut workspace = MeshWorkspace::new();
 /// // Its lowest side passes the disc at 0.5, and its long side at 1.3.
 /// let placed = PlacedMesh::new(&triangle, Pose::translation(Vector([-2.0, 0.5])));
-/// let near = mesh_hits(&disc, placed, 0.0, &Limits::default(), &mut workspace)?;
+/// let near = mesh_hits(&disc, placed, 0.0, &Limits::new(1e-4), &mut workspace)?;
 /// assert_eq!(near.hits, [0]);
 /// assert!(near.undecided.is_empty());
 /// # Ok(())
@@ -165,6 +166,7 @@ pub(super) fn find<const N: usize, const D: usize>(
     limits: &Limits,
     workspace: &mut MeshWorkspace<N, D>,
 ) -> Result<(), QueryError> {
+    limits.check()?;
     let level = level(field.shape, gap)?;
     let view = placed.seen_from(field)?;
     // No element is larger than the mesh.

@@ -34,6 +34,7 @@ const FAR: f64 = 100.0;
 
 /// A way out: after the second body has moved along it, the bodies do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Escape<const D: usize> {
     /// The way, of length one, in world coordinates.
     pub direction: Vector<f64, D>,
@@ -64,7 +65,7 @@ pub struct Escape<const D: usize> {
 /// let long = Shape::from_kernel(Cuboid::new(Vector([4.0, 1.0, 1.0]))?);
 /// let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?)
 ///     .translated(Vector([0.3, 0.6, 0.0]))?;
-/// let way = escape(&long, &cube, &Limits::default(), &mut PairWorkspace::new())?;
+/// let way = escape(&long, &cube, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// let way = way.expect("both are bounded");
 /// assert!((way.direction - Vector([0.0, 1.0, 0.0])).norm() < 0.1);
 /// assert!(0.4 < way.length && way.length < 0.402);
@@ -88,7 +89,7 @@ pub fn escape<'a, const D: usize>(
     };
     let mut search = WaysOut {
         bodies: [a, b],
-        limits: Limits { tolerance: 0.5 * limits.tolerance, ..*limits },
+        limits: limits.with_tolerance(0.5 * limits.tolerance),
         workspace,
         best: None,
         longest: FAR * (size(&a) + size(&b)),

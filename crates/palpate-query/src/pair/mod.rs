@@ -23,8 +23,8 @@
 //! tangent planes plus a parabola is least at a step along a mean of both gradients.
 
 pub(crate) mod body;
+pub(crate) mod body_pair;
 pub(crate) mod cell;
-pub(crate) mod couple;
 pub(crate) mod descent;
 mod escape;
 mod nearest;
@@ -37,7 +37,7 @@ use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
-use couple::Couple;
+use body_pair::BodyPair;
 use search::PairSearch;
 
 pub use escape::{Escape, escape};
@@ -56,7 +56,7 @@ pub use track::Track;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let a = Shape::from_kernel(Ball::new(1.0)?);
 /// let b = Shape::from_kernel(Ball::new(0.5)?).translated(Vector([1.2, 1.6]))?;
-/// let answer = separation(&a, &b, &Limits::default(), &mut PairWorkspace::new())?;
+/// let answer = separation(&a, &b, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(answer.lower <= 0.5 && 0.5 <= answer.upper);
 /// assert!(answer.upper - answer.lower <= 1e-4);
 /// # Ok(())
@@ -73,7 +73,7 @@ pub fn separation<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::least(0.5 * limits.tolerance);
-    Ok(PairSearch::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }
 
 /// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
@@ -91,5 +91,5 @@ pub fn overlap<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::sign(0.5 * limits.tolerance);
-    Ok(PairSearch::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }

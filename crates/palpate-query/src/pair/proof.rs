@@ -5,7 +5,7 @@
 
 use palpate_field::{Aabb, Pose};
 
-use super::couple::Couple;
+use super::body_pair::BodyPair;
 use super::search::PairSearch;
 use super::{Nearest, PairWorkspace};
 use crate::certified::{Certified, Limits};
@@ -16,6 +16,7 @@ use crate::placed::Placed;
 
 /// The separation of two bodies, and the boxes that prove it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Proof<const D: usize> {
     /// The answer, as [`separation`](crate::separation) gives it.
     pub answer: Certified<Nearest<D>>,
@@ -28,6 +29,7 @@ pub struct Proof<const D: usize> {
 
 /// A box, and what was proven of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,
@@ -48,8 +50,8 @@ pub fn proof<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
-    let couple = Couple::new(a.into(), b.into())?;
-    let mut search = PairSearch::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
+    let pair = BodyPair::new(a.into(), b.into())?;
+    let mut search = PairSearch::new(pair, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_all = true;
     let (answer, _) = search.run_within(0.0, workspace);
     let Frontier { queue, pending, .. } = &mut workspace.frontier;
@@ -58,5 +60,5 @@ pub fn proof<'a, const D: usize>(
         aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
         lower: 2.0 * cell.lower,
     });
-    Ok(Proof { answer, world_from_boxes: couple.world_from_frame, boxes: boxes.collect() })
+    Ok(Proof { answer, world_from_boxes: pair.world_from_frame, boxes: boxes.collect() })
 }

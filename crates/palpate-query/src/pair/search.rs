@@ -7,8 +7,8 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
+use super::body_pair::{BodyPair, Memory};
 use super::cell::{BoxCell, least, least_of_larger, mean, reach};
-use super::couple::{Couple, Memory};
 use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
 use crate::engine::{self, Frontier, Heap, Problem, Queue};
@@ -83,7 +83,7 @@ impl<const D: usize> Default for PairWorkspace<D> {
 
 /// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
 pub(crate) struct PairSearch<'a, const D: usize> {
-    pub(super) couple: Couple<'a, D>,
+    pub(super) pair: BodyPair<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
     /// Whether a descent was made from a box that is no better than the best.
@@ -102,13 +102,13 @@ pub(crate) struct PairSearch<'a, const D: usize> {
 
 impl<'a, const D: usize> PairSearch<'a, D> {
     pub(crate) fn new(
-        couple: Couple<'a, D>,
+        pair: BodyPair<'a, D>,
         goal: Goal,
         limits: &Limits,
     ) -> Result<Self, QueryError> {
         limits.check()?;
         Ok(Self {
-            couple,
+            pair,
             goal,
             budget: limits.budget,
             has_tried: false,
@@ -131,17 +131,17 @@ impl<'a, const D: usize> PairSearch<'a, D> {
 
     /// The answer, if the boxes of both bodies are as far apart as matters.
     pub(super) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
-        let gap = self.couple.gap_of_boxes()?;
-        self.best = self.couple.root(0.0).centre();
+        let gap = self.pair.gap_of_boxes()?;
+        self.best = self.pair.root(0.0).centre();
         // One of both values is at least half of it, everywhere.
-        self.slack = self.couple.slack(self.best.norm() + gap);
+        self.slack = self.pair.slack(self.best.norm() + gap);
         let lower = 0.5 * gap - self.slack;
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
     /// Improves the best point, from `start`, with `first` as in [`descend`].
     pub(super) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
-        let (value, p) = descend(&mut self.couple, (start, first), self.goal, self.slack);
+        let (value, p) = descend(&mut self.pair, (start, first), self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
@@ -153,11 +153,11 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         margin: f64,
         workspace: &mut PairWorkspace<D>,
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
-        let both = self.couple.root(0.0);
-        self.slack = self.couple.slack(reach(&both));
+        let both = self.pair.root(0.0);
+        self.slack = self.pair.slack(reach(&both));
         self.descend(both.centre(), None);
         let root = self.root(margin);
-        self.slack = self.couple.slack(reach(&root));
+        self.slack = self.pair.slack(reach(&root));
         workspace.frontier.queue.clear();
         if self.goal.is_hit(self.upper + self.slack) {
             return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
@@ -171,7 +171,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     pub(super) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
         let Frontier { queue, pending, .. } = &mut workspace.frontier;
         pending.clear();
-        self.slack = self.couple.slack(reach(root));
+        self.slack = self.pair.slack(reach(root));
         let threshold = self.threshold();
         while queue.least() < threshold {
             queue.take_least(|cell| pending.push(*cell));
@@ -196,11 +196,11 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
         let upper = self.upper + self.slack;
         Certified {
-            best: Nearest::at(&mut self.couple, self.best),
+            best: Nearest::at(&mut self.pair, self.best),
             lower: 2.0 * lower.min(upper),
             upper: 2.0 * upper,
             stop,
-            evaluations: self.couple.evaluations,
+            evaluations: self.pair.evaluations,
         }
     }
 
@@ -212,11 +212,11 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     /// A box that holds all points that matter, and `margin` more: where neither `g` is
     /// more than the best so far, or than what is asked for. Elsewhere one is.
     pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
-        let slack = self.couple.slack(self.best.norm() + self.upper.abs());
+        let slack = self.pair.slack(self.best.norm() + self.upper.abs());
         let least = self.goal.most(self.upper);
         self.dropped = least + slack;
         let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
-        self.couple.tightened(&self.couple.root(grown), grown)
+        self.pair.tightened(&self.pair.root(grown), grown)
     }
 
     /// Whether a descent from a box may find bodies to overlap, although its centre is no
@@ -266,7 +266,7 @@ impl<const D: usize> Problem for PairRounds<'_, '_, D> {
 
     #[inline]
     fn is_spent(&self) -> bool {
-        self.search.couple.evaluations >= self.search.budget
+        self.search.pair.evaluations >= self.search.budget
     }
 
     #[inline]
@@ -332,12 +332,12 @@ impl<const D: usize> PairRounds<'_, '_, D> {
     fn bound_by_first(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
         let Self { search, memory, known: Known { radii, values, .. }, .. } = self;
         let Frontier { queue, round, .. } = frontier;
-        search.couple.values(0, round, memory, &mut values[0]);
+        search.pair.values(0, round, memory, &mut values[0]);
         let threshold = search.threshold();
         let mut kept = 0;
         for i in 0..round.len() {
             let (mut part, radius, value) = (round[i], radii[i], values[0][i]);
-            let floor = search.couple.floor(0, (i, value), radius, memory);
+            let floor = search.pair.floor(0, (i, value), radius, memory);
             part.lower = larger(part.lower, floor - search.slack);
             if part.lower < threshold {
                 (round[kept], radii[kept]) = (part, radius);
@@ -354,12 +354,12 @@ impl<const D: usize> PairRounds<'_, '_, D> {
     /// Bounds the boxes by the values of the second body.
     fn bound_by_second(&mut self, round: &mut [BoxCell<D>]) -> LeastBox<D> {
         let Self { search, memory, known: Known { radii, values, .. }, .. } = self;
-        search.couple.values(1, round, memory, &mut values[1]);
+        search.pair.values(1, round, memory, &mut values[1]);
         let mut least =
             LeastBox { value: f64::INFINITY, centre: Vector::ZERO, radius: radii[0] };
         for (i, part) in round.iter_mut().enumerate() {
             let at = (i, values[1][i]);
-            let floor = search.couple.floor(1, at, radii[i], memory);
+            let floor = search.pair.floor(1, at, radii[i], memory);
             part.lower = larger(part.lower, floor - search.slack);
             let value = larger(values[0][i], values[1][i]);
             if value < least.value {
@@ -379,17 +379,17 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         open.clear();
         let is_open = |&i: &usize| round[i].lower < wanted && radii[i] <= *largest;
         open.extend((0..round.len()).filter(is_open));
-        search.couple.keep_known(round, open, memory);
+        search.pair.keep_known(round, open, memory);
         if !search.keeps_all && queue.least() < threshold {
             // The rest of a line waits for the boxes of the next round.
             for i in open.drain(open.len() / LINE * LINE..).rev() {
                 pending.push(round.swap_remove(i));
             }
         }
-        search.couple.models(0, round, open, memory);
+        search.pair.models(0, round, open, memory);
         let (mut lane, mut kept) = (0, 0);
         open.retain(|&i| {
-            let model = search.couple.model(0, memory, lane);
+            let model = search.pair.model(0, memory, lane);
             lane += 1;
             // Boxes are off by a rounding where they meet.
             round[i].lower = larger(round[i].lower, least::<D>(&model) - search.slack);
@@ -400,9 +400,9 @@ impl<const D: usize> PairRounds<'_, '_, D> {
             }
             is_open
         });
-        search.couple.models(1, round, open, memory);
+        search.pair.models(1, round, open, memory);
         for (lane, &i) in open.iter().enumerate() {
-            let (a, b) = (models[lane], search.couple.model(1, memory, lane));
+            let (a, b) = (models[lane], search.pair.model(1, memory, lane));
             let (lower, share) = least_of_larger::<D>(&a, &b, wanted + search.slack);
             let part = &mut round[i];
             part.lower = larger(part.lower, lower - search.slack);

@@ -43,6 +43,7 @@ impl BodyId {
 
 /// What a world's answers are to be like.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct WorldSettings {
     /// Of each pair: the margin, how finely it is looked at, how many contacts.
     pub manifold: ManifoldSettings,
@@ -51,17 +52,24 @@ pub struct WorldSettings {
 }
 
 impl WorldSettings {
+    /// These settings for each pair.
+    #[must_use]
+    pub fn new(manifold: ManifoldSettings, limits: Limits) -> Self {
+        Self { manifold, limits }
+    }
+
     /// For bodies of about `size` [m].
     #[must_use]
     pub fn of_size(size: f64) -> Self {
         let manifold = ManifoldSettings::of_size(size);
-        let limits = Limits { tolerance: 0.5 * manifold.margin, ..Limits::default() };
+        let limits = Limits::new(0.5 * manifold.margin);
         Self { manifold, limits }
     }
 }
 
 /// What is known of two bodies that are near each other.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Neighbours<const D: usize> {
     /// The bodies, the one that was added first first.
     pub bodies: [BodyId; 2],
@@ -71,6 +79,7 @@ pub struct Neighbours<const D: usize> {
 
 /// Whether two bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// Their separation is at most the margin.
     Touching,
@@ -211,7 +220,8 @@ impl<const D: usize> World<D> {
             aabb: None,
             has_moved: true,
         };
-        body.place(world_from_body, self.settings.manifold.margin)?;
+        check_pose(self.bodies.len(), &world_from_body)?;
+        body.place(world_from_body, self.settings.manifold.margin);
         self.bodies.push(Some(body));
         Ok(BodyId(self.bodies.len() - 1))
     }
@@ -246,10 +256,13 @@ impl<const D: usize> World<D> {
     pub fn set_poses(&mut self, poses: &[(BodyId, Pose<D>)]) -> Result<(), QueryError> {
         for (body, pose) in poses {
             self.body(*body)?;
-            check_pose(pose)?;
+            check_pose(body.0, pose)?;
         }
         let margin = self.settings.manifold.margin;
-        poses.iter().try_for_each(|(body, pose)| self.body(*body)?.place(*pose, margin))
+        for (body, pose) in poses {
+            self.body(*body)?.place(*pose, margin);
+        }
+        Ok(())
     }
 
     /// Puts a body into `groups`, a bit each, and asks it only with bodies of a group in
@@ -349,14 +362,13 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> Body<D> {
-    fn place(&mut self, pose: Pose<D>, margin: f64) -> Result<(), QueryError> {
-        check_pose(&pose)?;
+    /// Moves the body to a pose that was checked.
+    fn place(&mut self, pose: Pose<D>, margin: f64) {
         (self.pose, self.has_moved) = (pose, true);
         let bounds = self.shape.promise().bounds;
         self.aabb = bounds.map(|bounds| {
             let placed = bounds.aabb.placed(&pose);
             placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * reach(&placed))
         });
-        Ok(())
     }
 }
