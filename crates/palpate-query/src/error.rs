@@ -50,6 +50,14 @@ pub enum QueryError {
     /// Two unbounded bodies.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,
+    /// Not as many places for answers as poses.
+    #[error("{poses} poses need as many places for answers, got {places}")]
+    Places {
+        /// How many poses there are.
+        poses: usize,
+        /// How many places there are.
+        places: usize,
+    },
     /// A name that no method has.
     #[error("there is no method {name:?}; there are {known}")]
     UnknownMethod {

@@ -43,6 +43,7 @@ mod certified;
 mod contact;
 mod contacts;
 mod cut_box;
+mod display;
 mod element;
 mod element_search;
 mod engine;
@@ -56,8 +57,11 @@ mod pair;
 mod patches;
 mod placed;
 mod point;
+mod pool;
+mod query;
 mod ray;
 mod sampler;
+#[cfg(feature = "world")]
 mod world;
 
 pub use ball::{BallWorkspace, contact_ball, touches_ball};
@@ -78,5 +82,7 @@ pub use pair::{
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
+pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
+#[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

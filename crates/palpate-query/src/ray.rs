@@ -60,6 +60,12 @@ impl<const D: usize> Ray<D> {
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
     }
 
+    /// How long the ray is [m].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
     /// The point at a distance from the origin [m].
     #[must_use]
     pub fn at(&self, distance: f64) -> Point<D> {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Segments and triangles on random trees: bounds against dense samples.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
@@ -203,17 +204,26 @@ fn elements_without_an_extent_are_what_is_left_of_them() -> Result<(), ShapeErro
 }
 
 #[test]
-fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+fn limits_that_are_no_lengths_are_refused_and_zero_says_nothing_wrong() -> Result<(), ShapeError>
+{
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let segment = Element::new([Vector([-2.0, 0.6]), Vector([3.0, 0.5])]).unwrap();
     let mut workspace = Workspace::new();
     for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
         let limits = Limits::new(tolerance).with_budget(1000);
         for answer in [
-            minimum(&ball, &segment, &limits, &mut workspace).unwrap(),
-            touches(&ball, &segment, &limits, &mut workspace).unwrap(),
+            minimum(&ball, &segment, &limits, &mut workspace),
+            touches(&ball, &segment, &limits, &mut workspace),
         ] {
-            assert_eq!(wrong(&ball, &segment, &answer), None);
+            match answer {
+                Ok(answer) => {
+                    assert_eq!(tolerance, 0.0);
+                    assert_eq!(wrong(&ball, &segment, &answer), None);
+                }
+                Err(error) => {
+                    assert!(tolerance != 0.0 && matches!(error, QueryError::Length { .. }));
+                }
+            }
         }
     }
     Ok(())

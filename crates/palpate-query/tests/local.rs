@@ -3,6 +3,7 @@
 
 //! Local searches: never below what is proven, at the minimum of what is convex, and at
 //! times elsewhere.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};

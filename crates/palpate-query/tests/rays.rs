@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Rays on random trees: nothing is skipped, and what is hit is there.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
@@ -152,16 +153,20 @@ fn rays_hit_where_equations_say_at_any_scale() {
 }
 
 #[test]
-fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+fn limits_that_are_no_lengths_are_refused_and_zero_says_nothing_wrong() -> Result<(), ShapeError>
+{
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let Ok(asked) = Ray::new(Vector([-3.0, 0.6]), Vector([1.0, 0.0]), 10.0) else { panic!() };
-    for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
-        for budget in [0, 10, 1000] {
-            let answer =
-                cast_ray(&ball, &asked, &Limits::new(tolerance).with_budget(budget)).unwrap();
-            assert!(answer.lower <= 2.2 + 1e-12, "{answer:?}");
-            assert!(answer.upper >= 2.2 - 1e-12 || tolerance > 0.0, "{answer:?}");
+    for budget in [0, 10, 1000] {
+        for tolerance in [f64::NAN, -1.0, f64::INFINITY] {
+            let limits = Limits::new(tolerance).with_budget(budget);
+            let refused = cast_ray(&ball, &asked, &limits);
+            assert!(matches!(refused, Err(QueryError::Length { .. })), "{refused:?}");
         }
+        let exact = Limits::new(0.0).with_budget(budget);
+        let answer = cast_ray(&ball, &asked, &exact).unwrap();
+        assert!(answer.lower <= 2.2 + 1e-12, "{answer:?}");
+        assert!(answer.upper >= 2.2 - 1e-12, "{answer:?}");
     }
     Ok(())
 }

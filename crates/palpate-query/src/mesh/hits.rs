@@ -50,7 +50,7 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     marks: Marks,
     pub(super) hits: MeshHits,
     pub(super) contacts: MeshContacts<D>,
-    pub(super) search: Workspace<N, D>,
+    pub(crate) search: Workspace<N, D>,
 }
 
 /// An element or a part of one, where the field sees it.

@@ -32,30 +32,34 @@ const PATIENCE: u32 = 30;
 /// Beyond so many sizes of what is bounded no way out is looked for.
 const FAR: f64 = 100.0;
 
-/// A way out: after the second body has moved along it, the bodies do not overlap.
+/// A translation of the second body after which the bodies do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Escape<const D: usize> {
-    /// The way, of length one, in world coordinates.
+    /// The direction, a unit vector in world coordinates.
     pub direction: Vector<f64, D>,
-    /// How far the second body moves [m]. After that the separation is at least zero,
-    /// which is proven; that no other way is shorter is not.
+    /// How far the second body moves [m]. The separation after that is proven to be at least
+    /// zero; another direction may be shorter.
     pub length: f64,
-    /// No way out is shorter [m]: a motion changes the separation by no more than its
-    /// length.
+    /// Proven lower bound of the length in any direction [m]: a translation changes the
+    /// separation by no more than its length.
     pub at_least: f64,
-    /// How often fields were asked; a gradient counts twice.
+    /// How often fields were evaluated; a gradient counts twice.
     pub evaluations: u32,
 }
 
-/// A short way along which the second body leaves the first; of length zero if they are
-/// apart, and `None` if none was found.
+/// A short translation of the second body that parts the bodies: an upper bound of the
+/// minimum translation, which physics engines call penetration depth. Its length is zero if
+/// the bodies are apart; `None` if no translation was found.
 ///
-/// Tried are the normal, directions all around, and ever closer ones about the best,
-/// with the normals at its end; along each, the body moves on by as much as it
-/// overlaps, which never oversteps the first way out, unless that takes more than 30
-/// steps. The length is within `limits.tolerance` of the shortest along its direction
-/// otherwise, and the budget is for each separation on the way.
+/// That the bodies are apart at the end is proven, and so is [`Escape::at_least`], a lower
+/// bound of the minimum translation. That no other direction is shorter is not.
+///
+/// The search tries the normal of the overlap, directions all around, and ever closer ones
+/// about the best of them, with the normals at its end. Along a direction the body advances
+/// by as much as it overlaps, which cannot overstep the first way out; after 30 steps the
+/// strides double. Up to there the length is within `limits.tolerance` of the shortest along
+/// its direction. The budget holds for each separation on the way.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};

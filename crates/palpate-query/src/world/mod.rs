@@ -9,11 +9,12 @@
 //! threads change no bit of the answer.
 
 mod near;
-mod pool;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use palpate_field::{Aabb, Pose, Shape};
+#[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
 use crate::certified::{Limits, Stop};
@@ -23,8 +24,8 @@ use crate::manifold::{Manifold, ManifoldSettings};
 use crate::pair::Track;
 use crate::pair::cell::reach;
 use crate::placed::check_pose;
+use crate::pool::Pool;
 use near::pairs_near;
-use pool::Pool;
 
 /// Roundings of a placed box, relative to its largest coordinate.
 const ROUNDINGS: f64 = 16.0;
@@ -88,6 +89,16 @@ pub enum Verdict {
     /// The budget came to its end first, or neither is bounded: the truth is between the
     /// bounds.
     Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Touching => "touching",
+            Self::Apart => "apart",
+            Self::Undecided => "undecided",
+        })
+    }
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -299,27 +310,26 @@ impl<const D: usize> World<D> {
     /// Finds what touches where bodies are now: all pairs whose boxes are within the
     /// margin and that are not proven to be farther apart, in the order of their bodies.
     ///
-    /// Runs on rayon's threads; the bits do not depend on how many there are.
+    /// With the feature `parallel` rayon's threads share the pairs; the bits do not depend on
+    /// how many there are.
     pub fn step(&mut self) -> Vec<&Neighbours<D>> {
         self.find_near();
         let (bodies, settings, pool) = (&self.bodies, &self.settings, &self.pool);
-        self.pairs.par_iter_mut().filter(|(_, pair)| pair.is_stale).for_each(
-            |([one, other], pair)| {
-                if let (Some(a), Some(b)) = (&bodies[*one], &bodies[*other]) {
-                    pool.with(|workspace| {
-                        let poses = [a.pose, b.pose];
-                        let asked = pair.track.manifold(
-                            poses,
-                            &settings.manifold,
-                            &settings.limits,
-                            workspace,
-                        );
-                        pair.found.manifold = asked.ok();
-                    });
-                }
-                pair.is_stale = false;
-            },
-        );
+        let ask = |([one, other], pair): (&[usize; 2], &mut Pair<D>)| {
+            if let (Some(a), Some(b)) = (&bodies[*one], &bodies[*other]) {
+                pool.with(|workspace| {
+                    let poses = [a.pose, b.pose];
+                    let WorldSettings { manifold, limits } = settings;
+                    let asked = pair.track.manifold(poses, manifold, limits, workspace);
+                    pair.found.manifold = asked.ok();
+                });
+            }
+            pair.is_stale = false;
+        };
+        #[cfg(feature = "parallel")]
+        self.pairs.par_iter_mut().filter(|(_, pair)| pair.is_stale).for_each(ask);
+        #[cfg(not(feature = "parallel"))]
+        self.pairs.iter_mut().filter(|(_, pair)| pair.is_stale).for_each(ask);
         for body in self.bodies.iter_mut().flatten() {
             body.has_moved = false;
         }
