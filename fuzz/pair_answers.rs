@@ -25,7 +25,7 @@ where
 {
     let Some([a, b]) = draw::two::<D>(u, depth)? else { return Ok(Ok(None)) };
     let size = draw::size(&a);
-    let limits = Limits { tolerance: 0.02 * size, budget: 200_000 };
+    let limits = Limits::new(0.02 * size).with_budget(200_000);
     let Ok(answer) = separation(&a, &b, &limits, workspace) else {
         return Ok(Err("bounded bodies are refused".into()));
     };

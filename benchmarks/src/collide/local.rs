@@ -40,10 +40,10 @@ fn triangles(work: &Work<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>>
         let mut times = Vec::new();
         let (mut evaluations, mut missed) = (0, 0);
         for size in SIZES {
-            let limits = Limits { tolerance: 0.01 * MISSED * size, ..Limits::default() };
+            let limits = Limits::new(0.01 * MISSED * size);
             let mut workspace = Workspace::new();
             for triangle in near::<3, 3>(shape, size)? {
-                let least = minimum(shape, &triangle, &limits, &mut workspace);
+                let least = minimum(shape, &triangle, &limits, &mut workspace)?;
                 let found = method.descend(shape, &triangle);
                 evaluations += found.evaluations;
                 missed += u32::from(found.value > least.upper + MISSED * size);

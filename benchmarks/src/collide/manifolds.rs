@@ -52,10 +52,10 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
 }
 
 fn ask<const D: usize>(cases: &[Case<D>], rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
-    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let limits = Limits::new(1e-3);
     let mut workspace = PairWorkspace::new();
     for (name, a, b, place, margin) in cases {
-        let settings = ManifoldSettings { margin: *margin, spacing: 0.04, most: 32 };
+        let settings = ManifoldSettings::of_size(1.0).with_margin(*margin);
         let there = Placed::new(b, Pose::translation(Vector(*place)));
         let found = manifold(a, there, &settings, &limits, &mut workspace)?;
         let time = fastest(|| {

@@ -52,7 +52,7 @@ fn measure_one<const N: usize, const D: usize>(
     poses: &[Pose<D>],
     rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
-    let limits = Limits { tolerance: TOLERANCE, ..Limits::default() };
+    let limits = Limits::new(TOLERANCE);
     let mut workspace = MeshWorkspace::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided, mut hits) = (0, 0, 0);

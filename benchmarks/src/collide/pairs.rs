@@ -87,7 +87,7 @@ fn ask<'a, const D: usize>(
     pairs: &[Pair<'a, D>],
     rows: &mut TimedRows,
 ) -> Result<(), Box<dyn Error>> {
-    let limits = Limits { tolerance, ..Limits::default() };
+    let limits = Limits::new(tolerance);
     let mut workspace = PairWorkspace::new();
     let mut times = Vec::new();
     let (mut evaluations, mut undecided) = (0, 0);
@@ -117,7 +117,7 @@ fn follow<const D: usize>(
 where
     Space: super::Turn<D>,
 {
-    let limits = Limits { tolerance, ..Limits::default() };
+    let limits = Limits::new(tolerance);
     let mut workspace = PairWorkspace::new();
     let mut random = Random::new(7);
     let mut times = Vec::new();
@@ -170,7 +170,7 @@ where
 {
     let mut random = Random::new(99);
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: PLACED, budget: 1_000_000 };
+    let limits = Limits::new(PLACED).with_budget(1_000_000);
     let mut pairs = Vec::with_capacity(POSES);
     while pairs.len() < POSES {
         let turn = <Space as super::Turn<D>>::any(&mut random)?;

@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use palpate::field::kernel::{Ball, Torus};
 use palpate::field::{Shape, Vector};
-use palpate::query::{BallWorkspace, Limits, ball};
+use palpate::query::{BallWorkspace, Limits, contact_ball};
 use parry3d_f64::math::Pose;
 use parry3d_f64::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d_f64::shape::{Ball as ParryBall, TriMesh};
@@ -31,17 +31,23 @@ pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
     let torus = Shape::from_kernel(Torus::new(TORUS[0], TORUS[1])?);
     let (of_ball, mesh) = (Shape::from_kernel(Ball::new(BALL)?), mesh()?);
     let poses = pairs::placed([&torus, &of_ball], -DEPTH)?;
-    let limits = Limits::default();
+    let limits = Limits::new(1e-4);
     let mut workspace = BallWorkspace::new();
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     let mut missed = 0;
     for [_, there] in &poses {
         let centre = there.world_from_body.translation;
-        let found = ball(&torus, centre, BALL, &limits, &mut workspace)?;
+        let found = contact_ball(&torus, centre, BALL, &limits, &mut workspace)?;
         missed += u32::from(found.best.is_none_or(|contact| contact.gap > 0.0));
         ours.push(fastest(|| {
             // That it is no error was seen above.
-            let _ = black_box(ball(&torus, black_box(centre), BALL, &limits, &mut workspace));
+            let _ = black_box(contact_ball(
+                &torus,
+                black_box(centre),
+                BALL,
+                &limits,
+                &mut workspace,
+            ));
         }));
         let [x, y, z] = centre.0;
         let there = Pose::translation(x, y, z);

@@ -8,7 +8,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Point, Shape, Vector};
-use palpate::query::{Certified, Element, Limits, Workspace, minimum, touches};
+use palpate::query::{Certified, Element, Limits, QueryError, Workspace, minimum, touches};
 
 use super::{TimedRows, fastest};
 use crate::random::Random;
@@ -24,8 +24,12 @@ const COUNT: usize = 400;
 const NEAR: f64 = 0.7;
 
 /// A way of asking.
-type Ask<const N: usize, const D: usize> =
-    fn(&Shape<D>, &Element<N, D>, &Limits, &mut Workspace<N, D>) -> Certified<Point<D>>;
+type Ask<const N: usize, const D: usize> = fn(
+    &Shape<D>,
+    &Element<N, D>,
+    &Limits,
+    &mut Workspace<N, D>,
+) -> Result<Certified<Point<D>>, QueryError>;
 
 /// Adds the rows of triangles in space and of segments in the plane.
 pub(super) fn measure(rows: &mut TimedRows) -> Result<(), Box<dyn Error>> {
@@ -46,17 +50,22 @@ fn of<const N: usize, const D: usize>(
         let mut times = Vec::new();
         let (mut evaluations, mut undecided) = (0, 0);
         for size in SIZES {
-            let limits = Limits { tolerance: tolerance * size, ..Limits::default() };
+            let limits = Limits::new(tolerance * size);
             let mut workspace = Workspace::new();
             for element in near(&work.shape, size)? {
-                let answer = ask(&work.shape, &element, &limits, &mut workspace);
+                let answer = ask(&work.shape, &element, &limits, &mut workspace)?;
                 evaluations += answer.evaluations;
                 undecided += u32::from(match question {
                     "hit" => answer.is_hit().is_none(),
                     _ => answer.upper - answer.lower > limits.tolerance,
                 });
                 times.push(fastest(|| {
-                    black_box(ask(&work.shape, black_box(&element), &limits, &mut workspace));
+                    let _ = black_box(ask(
+                        &work.shape,
+                        black_box(&element),
+                        &limits,
+                        &mut workspace,
+                    ));
                 }));
             }
         }

@@ -115,7 +115,7 @@ fn touching<const D: usize>(
     turn: Rotation<D>,
     place: Vector<f64, D>,
 ) -> Result<f64, QueryError> {
-    let limits = Limits { tolerance: 1e-5, ..Limits::default() };
+    let limits = Limits::new(1e-5);
     let mut workspace = PairWorkspace::new();
     let (mut near, mut far) = (0.0, 2.0);
     while far - near > 1e-5 {

@@ -12,6 +12,10 @@
 //! next to it, and so on by inclusion and exclusion. What is between the planes is
 //! counted half, and its whole half is the error; it shrinks with the square of the
 //! cell where the surface is smooth. Cells that contribute most are cut again.
+//!
+//! This loop is not the best-first search of `palpate-query`, which bounds a least value and
+//! leaves cells alone that cannot hold it. A volume is a sum: every cell counts, and which
+//! cells to cut follows from the errors of all.
 
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, positive};
@@ -215,12 +219,12 @@ impl<const D: usize> Moments<D> {
 
 /// Part of the box of a shape, in coordinates from the middle of the box.
 #[derive(Clone, Copy, Debug)]
-struct Cell<const D: usize> {
+struct MassCell<const D: usize> {
     centre: [f64; D],
     half: [f64; D],
 }
 
-impl<const D: usize> Cell<D> {
+impl<const D: usize> MassCell<D> {
     fn volume(&self) -> f64 {
         self.half.iter().map(|half| 2.0 * half).product()
     }
@@ -245,7 +249,7 @@ impl<const D: usize> Cell<D> {
 /// The part of a cell that is inside.
 #[derive(Clone, Copy, Debug)]
 struct Filling<const D: usize> {
-    cell: Cell<D>,
+    cell: MassCell<D>,
     /// With half of what may be inside.
     moments: Moments<D>,
     /// The volume of what may be inside.
@@ -253,7 +257,7 @@ struct Filling<const D: usize> {
 }
 
 impl<const D: usize> Filling<D> {
-    fn new(cell: Cell<D>, model: &Model) -> Self {
+    fn new(cell: MassCell<D>, model: &Model) -> Self {
         let largest = (0..D).fold(0.0_f64, |most, i| most.max(model.gradient[i].abs()));
         let flattest = (FLATTEST * largest).max(f64::MIN_POSITIVE);
         let mut moved = 0.0;
@@ -288,7 +292,7 @@ impl<const D: usize> Filling<D> {
 fn fill<const D: usize>(
     shape: &Shape<D>,
     middle: &[f64; D],
-    cells: &[Cell<D>],
+    cells: &[MassCell<D>],
     fillings: &mut Vec<Filling<D>>,
 ) where
     dyn Field<D>: EvaluateBlock<Model, D, BLOCK>,
@@ -340,7 +344,7 @@ impl<const D: usize> Shape<D> {
         };
         let middle = bounds.aabb.centre().0;
         let mut total = Total::new(&bounds.aabb);
-        let mut cells = vec![Cell { centre: [0.0; D], half: bounds.aabb.half_extents().0 }];
+        let mut cells = vec![MassCell { centre: [0.0; D], half: bounds.aabb.half_extents().0 }];
         loop {
             let mut fillings = Vec::with_capacity(cells.len());
             fill(self, &middle, &cells, &mut fillings);

@@ -1,14 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a mesh, and with a file of one.
-
-use std::path::PathBuf;
+//! What can be wrong with a mesh.
 
 use palpate_field::LARGEST_LENGTH;
-
-use crate::polygon::MOST_CORNERS;
-use crate::read::LARGEST_FILE;
 
 /// Why vertices and elements are no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -52,62 +47,4 @@ pub enum MeshError {
         /// The factor.
         value: f64,
     },
-}
-
-/// What is wrong with the contents of a file.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReadProblem {
-    /// The ending says nothing of a format that is known.
-    #[error("the ending {ending:?} is none of .obj, .stl, .ply and .glb: convert the file")]
-    Ending {
-        /// What is behind the last dot.
-        ending: String,
-    },
-    /// Nothing was read, or not all.
-    #[error("it cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
-    /// More than is read into memory.
-    #[error("it has {bytes} bytes, {LARGEST_FILE} at most: cut the mesh into parts")]
-    TooLarge {
-        /// The size of the file.
-        bytes: u64,
-    },
-    /// The file is not what its format asks for.
-    #[error("it is no good {format}: {problem}; export it again")]
-    Malformed {
-        /// The name of the format.
-        format: &'static str,
-        /// What is wrong, and where.
-        problem: String,
-    },
-    /// The file uses a part of its format that is not read.
-    #[error("it has {what}, which are not read: {advice}")]
-    Unsupported {
-        /// What is not read.
-        what: &'static str,
-        /// What to do instead.
-        advice: &'static str,
-    },
-    /// A face has more corners than are cut into triangles.
-    #[error("face {face} has {corners} corners, {MOST_CORNERS} at most: export triangles")]
-    Polygon {
-        /// The face, counted from 0.
-        face: usize,
-        /// How many corners it has.
-        corners: usize,
-    },
-    /// What was read is no mesh.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-}
-
-/// A file that is no mesh, and why.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}", path.display())]
-pub struct ReadError {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    pub problem: ReadProblem,
 }

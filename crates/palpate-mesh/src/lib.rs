@@ -3,18 +3,20 @@
 
 //! Triangle meshes, and outlines of segments in the plane.
 //!
-//! A [`Mesh`] is checked when it is made: its numbers are finite, its elements name
-//! vertices that exist, and there is at least one. [`Mesh::report`] says whether it is
-//! watertight, and what else is odd about it. [`read`] and [`read_file`] take OBJ, STL,
-//! PLY and GLB files. A [`BallTree`] over the elements serves searches.
+//! [`Mesh::new`] checks that all numbers are finite, that elements name vertices that
+//! exist, and that there is at least one element. [`Mesh::report`] says whether the mesh is
+//! watertight, and lists its defects. With the feature `files`, which is on by default,
+//! `Mesh::open`, `read_file` and `read` take OBJ, STL, PLY and GLB files. A [`BallTree`]
+//! over the elements serves searches.
 //!
 //! ```
-//! use palpate_mesh::{Format, read};
+//! use palpate_field::Vector;
+//! use palpate_mesh::TriangleMesh;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n\
-//!                    f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-//! let mesh = read(tetrahedron.as_bytes(), Format::Obj)?;
+//! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
+//! let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+//! let mesh = TriangleMesh::new(corners.map(Vector).to_vec(), faces)?;
 //! let report = mesh.report();
 //! assert!(report.is_watertight());
 //! assert_eq!(report.enclosed, Some(1.0)); // 1 · 2 · 3 / 6 [m³]
@@ -26,15 +28,19 @@
 mod ball;
 mod error;
 mod mesh;
+#[cfg(feature = "files")]
 mod polygon;
+#[cfg(feature = "files")]
 mod read;
 mod report;
 mod tree;
 
 pub use ball::{centre_weights, smallest_ball};
-pub use error::{MeshError, ReadError, ReadProblem};
+pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
+#[cfg(feature = "files")]
 pub use polygon::MOST_CORNERS;
-pub use read::{Format, LARGEST_FILE, read, read_file};
+#[cfg(feature = "files")]
+pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
 pub use tree::{BallTree, FAN, Level};

@@ -1,21 +1,105 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A place where two things touch.
+//! A place where two bodies touch.
 
-use palpate_field::{Point, Vector};
+use std::fmt;
 
-/// One place where two things touch, or nearly do, in world coordinates.
+use palpate_field::{Point, Pose, Vector};
+
+/// One place where two bodies touch, or nearly do, in world coordinates.
+///
+/// Every question of this crate that finds contacts answers with this type. Which body is
+/// `a` and which is `b` follows from the order of the arguments.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_query::Contact;
+///
+/// let contact = Contact::new(
+///     Vector([0.0, 0.5]),
+///     Vector([0.0, 0.25]),
+///     Vector([0.0, 1.0]),
+/// );
+/// assert_eq!((contact.gap, contact.id), (-0.25, 0));
+/// assert_eq!(contact.to_string(), "contact 0: gap -0.25 m along [0.0, 1.0] at [0.0, 0.5] m");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Contact<const D: usize> {
-    /// The nearest point of the first thing's surface [m].
+    /// The point on the surface of body `a` [m].
     pub point_a: Point<D>,
-    /// The nearest point of the second thing's surface [m].
+    /// The point on the surface of body `b` [m].
     pub point_b: Point<D>,
-    /// The unit vector from the first thing to the second.
+    /// The unit vector from body `a` to body `b`.
     pub normal: Vector<f64, D>,
-    /// How far both surfaces are apart along the normal [m]; negative where they overlap.
+    /// The distance from `point_a` to `point_b` along the normal,
+    /// `(point_b − point_a)·normal` [m]; negative where the bodies overlap.
     pub gap: f64,
-    /// What tells this contact from the others, and stays while it lasts.
+    /// Tells this contact from the others of the same answer. Where a
+    /// [`Track`](crate::Track) or a [`World`](crate::World) follows the bodies, a contact
+    /// that lasts keeps its id from step to step; elsewhere the id is the contact's index
+    /// in the answer.
     pub id: u64,
+}
+
+impl<const D: usize> Contact<D> {
+    /// The contact at these points [m] with this unit `normal`, from body `a` to body `b`.
+    /// The gap is `(point_b − point_a)·normal`; the id is 0.
+    #[must_use]
+    #[inline]
+    pub fn new(point_a: Point<D>, point_b: Point<D>, normal: Vector<f64, D>) -> Self {
+        let gap = (point_b - point_a).dot(normal);
+        Self { point_a, point_b, normal, gap, id: 0 }
+    }
+
+    /// The same contact with another `id`.
+    #[must_use]
+    #[inline]
+    pub fn with_id(self, id: u64) -> Self {
+        Self { id, ..self }
+    }
+
+    /// The same contact in other coordinates. The gap stays: a rigid motion changes no
+    /// distance.
+    #[must_use]
+    pub fn placed(&self, pose: &Pose<D>) -> Self {
+        Self {
+            point_a: pose.transform_point(self.point_a),
+            point_b: pose.transform_point(self.point_b),
+            normal: pose.transform_vector(self.normal),
+            ..*self
+        }
+    }
+}
+
+impl<const D: usize> fmt::Display for Contact<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { point_a, normal, gap, id, .. } = self;
+        write!(f, "contact {id}: gap {gap} m along {:?} at {:?} m", normal.0, point_a.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Rotation;
+
+    use super::*;
+
+    #[test]
+    fn a_placed_contact_keeps_its_gap_and_its_id() {
+        let contact = Contact::new(
+            Vector([1.0, 2.0, 3.0]),
+            Vector([1.0, 2.5, 3.0]),
+            Vector([0.0, 1.0, 0.0]),
+        )
+        .with_id(7);
+        let turn =
+            Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 0.5 * std::f64::consts::PI);
+        let pose = Pose::new(turn.unwrap_or(Rotation::identity()), Vector([10.0, 0.0, 0.0]));
+        let placed = contact.placed(&pose);
+        assert_eq!((placed.gap, placed.id), (0.5, 7));
+        assert!((placed.point_b - Vector([7.5, 1.0, 3.0])).norm() < 1e-14);
+        assert!((placed.normal - Vector([-1.0, 0.0, 0.0])).norm() < 1e-15);
+    }
 }

@@ -12,11 +12,12 @@ use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::element::Element;
+use crate::element_search::{ElementCell, ElementSearch, Terms, Workspace};
+use crate::engine::{self, Frontier};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{normal as direction, unit};
-use crate::search::{Cell, Search, Terms, Workspace};
 
 /// Heights over and under the centre of an element from which it is seen to be plain, in
 /// radii: half a block each.
@@ -31,13 +32,29 @@ const FEW_CELLS: usize = 64;
 const DIRECTION: f64 = 1e-9;
 
 /// All contacts of one element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElementContacts<'a, const D: usize> {
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ElementContacts<const D: usize> {
     /// The contacts, the deepest first, in the shape's coordinates.
-    pub contacts: &'a [Contact<D>],
-    /// The field's least value on the element, as of [`minimum`](crate::minimum) if the
-    /// element comes within the gap, which it is proven not to do if `lower` is above it.
+    pub contacts: Vec<Contact<D>>,
+    /// The field's least value on the element. If the element comes within the gap, it is
+    /// what [`minimum`](crate::minimum) finds; if `lower` exceeds the gap, the element is
+    /// proven to stay out of it, and the search stopped there.
     pub least: Certified<Point<D>>,
+}
+
+impl<const D: usize> ElementContacts<D> {
+    /// Room for `count` contacts of an element of which nothing is known.
+    pub(crate) fn with_capacity(count: usize) -> Self {
+        let least = Certified {
+            best: Vector::ZERO,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            stop: Stop::BudgetSpent,
+            evaluations: 0,
+        };
+        Self { contacts: Vec::with_capacity(count), least }
+    }
 }
 
 /// All contacts of a shape on an element, up to a gap [m], in the shape's coordinates.
@@ -61,12 +78,11 @@ pub struct ElementContacts<'a, const D: usize> {
 ///
 /// A contact's normal points from the shape to the element. Its gap is the way to the
 /// surface point that Newton's method finds, the nearest one where the field is exact. It
-/// may exceed `gap` by the tolerance, and more where the field is a bound. Its `id` counts
-/// the contacts of the element.
+/// may exceed `gap` by the tolerance, and more where the field is a bound.
 ///
 /// # Errors
 ///
-/// If `gap` is negative, too large or no number.
+/// If `gap` or the tolerance is negative, NaN or too large.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
@@ -77,8 +93,8 @@ pub struct ElementContacts<'a, const D: usize> {
 /// let bumps = Shape::union([bump(-2.0)?, bump(2.0)?])?;
 /// let segment = Element::new([Vector([-3.0, 0.8]), Vector([3.0, 0.9])])?;
 /// let mut workspace = Workspace::new();
-/// let touching = contacts(&bumps, &segment, 0.0, &Limits::default(), &mut workspace)?;
-/// let [left, right] = touching.contacts else { panic!("two contacts") };
+/// let touching = contacts(&bumps, &segment, 0.0, &Limits::new(1e-4), &mut workspace)?;
+/// let [left, right] = touching.contacts.as_slice() else { panic!("two contacts") };
 /// assert!(left.point_b[0] < 0.0 && right.point_b[0] > 0.0 && left.gap < right.gap);
 /// # Ok(())
 /// # }
@@ -89,18 +105,16 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut Workspace<N, D>,
-) -> Result<ElementContacts<'w, D>, QueryError> {
+) -> Result<&'w ElementContacts<D>, QueryError> {
+    limits.check()?;
     let terms = Terms {
         goal: Goal::least(limits.tolerance),
         budget: limits.budget,
         level: level(shape, gap)?,
         reach: 0.0,
     };
-    let mut contacts = std::mem::take(&mut workspace.contacts);
-    contacts.clear();
-    let least = append(shape, element, &terms, workspace, &mut contacts);
-    workspace.contacts = contacts;
-    Ok(ElementContacts { contacts: &workspace.contacts, least })
+    find(shape, element, &terms, workspace);
+    Ok(&workspace.found)
 }
 
 /// What values are compared with for a gap [m].
@@ -111,37 +125,38 @@ pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, Q
     Ok(gap * shape.promise().lipschitz.max(1.0))
 }
 
-/// Appends the contacts on an element, and says what is known of its minimum.
-pub(crate) fn append<const N: usize, const D: usize>(
+/// Finds the contacts on an element, and writes them into the workspace.
+pub(crate) fn find<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
-    out: &mut Vec<Contact<D>>,
-) -> Certified<Point<D>> {
-    let first = out.len();
-    let Workspace { cells, samples, patches, .. } = workspace;
+) {
+    let Workspace { frontier, samples, patches, found } = workspace;
+    let ElementContacts { contacts, least } = found;
+    contacts.clear();
     let tolerance = terms.goal.tolerance;
-    let mut search = Search::new(shape, element, terms, samples);
-    let answer = search.patches(element, patches, cells, |answer| {
+    let mut search = ElementSearch::new(shape, element, terms, samples);
+    let answer = search.patches(element, patches, frontier, |answer| {
         if answer.lower <= 0.0 && answer.upper <= tolerance.max(0.0) {
-            out.push(at(shape, answer.best));
+            contacts.push(at(shape, answer.best));
         }
     });
-    out[first..].sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
-    for (id, contact) in out[first..].iter_mut().enumerate() {
+    contacts.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap));
+    for (id, contact) in contacts.iter_mut().enumerate() {
         contact.id = id as u64;
     }
-    Certified { lower: answer.lower + terms.level, upper: answer.upper + terms.level, ..answer }
+    let (lower, upper) = (answer.lower + terms.level, answer.upper + terms.level);
+    *least = Certified { lower, upper, ..answer };
 }
 
-impl<const N: usize, const D: usize> Search<'_, N, D> {
+impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
     /// Tells what is known of each patch of an element, and returns what is known of all.
     fn patches(
         &mut self,
         element: &Element<N, D>,
         patches: &mut Patches<N, D>,
-        cells: &mut Vec<Cell<N, D>>,
+        frontier: &mut Frontier<Vec<ElementCell<N, D>>>,
         mut tell: impl FnMut(&Certified<Point<D>>),
     ) -> Certified<Point<D>> {
         let tolerance = self.goal.tolerance;
@@ -158,7 +173,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         patches.radius = self.radius;
         if !self.sampler.is_convex() && !self.is_plain(&whole, tolerance) {
             self.keeps_all = true;
-            self.refine(tolerance, patches);
+            self.refine(tolerance, patches, &mut frontier.round);
             self.keeps_all = false;
         }
         if patches.cells.is_empty() {
@@ -167,13 +182,13 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
         let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
         let mut all = self.answer(self.dropped, Stop::Converged);
         for patch in 0..patches.divide(&self.weights, tolerance, |cell| cell.lower) {
-            let deepest = patches.copy(patch, cells);
+            let deepest = patches.copy(patch, &mut frontier.queue);
             self.dropped = f64::INFINITY;
             if !is_whole {
                 // What was found is at the centre.
                 (self.upper, self.best) = (deepest.upper, deepest.element.at(&self.weights));
             }
-            let answer = self.finish(cells);
+            let answer = self.finish(frontier);
             tell(&answer);
             if answer.upper < all.upper {
                 (all.upper, all.best) = (answer.upper, answer.best);
@@ -188,7 +203,12 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
 
     /// Halves all cells until there are as many patches as their values let expect, or as
     /// many cells as are looked at together.
-    fn refine(&mut self, tolerance: f64, patches: &mut Patches<N, D>) {
+    fn refine(
+        &mut self,
+        tolerance: f64,
+        patches: &mut Patches<N, D>,
+        round: &mut Vec<ElementCell<N, D>>,
+    ) {
         let parts = self.parts;
         let mut cells_of_whole = 1;
         while !patches.cells.is_empty()
@@ -199,11 +219,12 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
             let Patches { cells, halves, .. } = &mut *patches;
             halves.clear();
             for parents in cells.chunks(SHORT / parts) {
-                let first = halves.len();
+                round.clear();
                 for parent in parents {
-                    parent.halve_into(parts, halves);
+                    parent.halve_into(parts, round);
                 }
-                self.look_at(halves, first, first);
+                self.bound_parts(round);
+                engine::keep(self, round, halves);
             }
             std::mem::swap(cells, halves);
             patches.radius *= 0.5;
@@ -224,7 +245,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     /// under the centre. The second is convex: from any point to a lower one a straight
     /// path on the cell does not climb. So where both differ by at most the tolerance, it
     /// climbs by no more in the field. Their difference is convex, and largest at a vertex.
-    fn is_plain(&mut self, cell: &Cell<N, D>, tolerance: f64) -> bool {
+    fn is_plain(&mut self, cell: &ElementCell<N, D>, tolerance: f64) -> bool {
         let centre = cell.element.at(&self.weights);
         let mut points = [centre; SHORT];
         for (k, height) in HEIGHTS.iter().enumerate() {
@@ -245,7 +266,7 @@ impl<const N: usize, const D: usize> Search<'_, N, D> {
     }
 }
 
-/// The contact of a shape at a point of something else; its id is still to be given.
+/// The contact of a shape with a point `p` of an element; the caller gives the id.
 pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
     let (value, gradient) = shape.distance_gradient(p);
     let sign = if value < 0.0 { -1.0 } else { 1.0 };
@@ -261,6 +282,5 @@ pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
         let there = direction(shape.distance_gradient(surface).1);
         there.or(direction(gradient)).unwrap_or(Vector::unit(D - 1))
     };
-    let gap = (p - surface).dot(normal);
-    Contact { point_a: surface, point_b: p, normal, gap, id: 0 }
+    Contact::new(surface, p, normal)
 }

@@ -35,17 +35,29 @@ pub enum QueryError {
         value: f64,
     },
     /// A pose with a number that is NaN or infinite.
-    #[error("a pose must be finite")]
-    Pose,
-    /// A name that no body of the world has, or no more.
+    #[error("pose {index} must be finite")]
+    Pose {
+        /// Which of the poses, from 0: of two bodies, of a list of poses, or of the bodies
+        /// of a world.
+        index: usize,
+    },
+    /// An id of no body in the world.
     #[error("there is no body {body} in this world")]
     NoBody {
         /// Its index.
         body: usize,
     },
-    /// Two bodies that both go on without end.
+    /// Two unbounded bodies.
     #[error("one of two bodies must be bounded, and both have no bounds")]
     Unbounded,
+    /// Not as many places for answers as poses.
+    #[error("{poses} poses need as many places for answers, got {places}")]
+    Places {
+        /// How many poses there are.
+        poses: usize,
+        /// How many places there are.
+        places: usize,
+    },
     /// A name that no method has.
     #[error("there is no method {name:?}; there are {known}")]
     UnknownMethod {

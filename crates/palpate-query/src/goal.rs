@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a search is to find out, and when it has.
+//! What a search is for, and when it may stop.
 
 use crate::certified::Stop;
 
-/// What is to be known of a least value.
+/// What is asked of a least value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
     /// How far apart the bounds may be [m].
     pub(crate) tolerance: f64,
-    /// That nothing is as small as this is all that is to be known beyond it [m].
+    /// Stop once the minimum is proven above this [m].
     pub(crate) apart: f64,
-    /// Whether it is enough that something is at most zero.
+    /// Stop once the minimum is proven to be at most zero.
     is_sign: bool,
 }
 
@@ -32,32 +32,33 @@ impl Goal {
         Self { tolerance, apart: 0.0, is_sign: true }
     }
 
-    /// `true` if it is enough that something is at most zero.
+    /// `true` if a minimum of at most zero ends the search.
     pub(crate) fn is_sign(self) -> bool {
         self.is_sign
     }
 
-    /// Cells with nothing below this need no more looking at.
+    /// Cells with a lower bound from this on are closed.
     pub(crate) fn threshold(self, upper: f64) -> f64 {
         (upper - self.tolerance).min(self.apart + self.apart * f64::EPSILON + f64::MIN_POSITIVE)
     }
 
-    /// Where nothing is below this, nothing needs looking at, when the best is `upper`.
+    /// Places with values above this cannot matter, when the best value is `upper`.
     pub(crate) fn most(self, upper: f64) -> f64 {
         upper.min(self.apart + self.tolerance).max(0.0)
     }
 
-    /// `true` if a value as small as this is all that is to be known.
+    /// `true` if a best value of `upper` ends the search.
     pub(crate) fn is_hit(self, upper: f64) -> bool {
         self.is_sign && upper <= 0.0
     }
 
-    /// Why to stop, if the bounds allow it.
+    /// Why to stop, if these bounds suffice.
     pub(crate) fn reached(self, lower: f64, upper: f64) -> Option<Stop> {
         if self.is_hit(upper) || lower > self.apart {
             return Some(Stop::SignKnown);
         }
-        // The same rule as that by which cells are left alone, to the last bit.
+        // The same rule as the one that closes cells, to the last bit: else a search could
+        // close all cells and not be done.
         (lower >= self.threshold(upper)).then_some(Stop::Converged)
     }
 }

@@ -10,7 +10,7 @@
 //! - [`separation`] says how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] whether they do.
 //! - [`point`] says all that a field says at a point; [`ball`] how deep a ball is in it,
-//!   [`ball_touches`] whether it is.
+//!   [`touches_ball`] whether it is.
 //! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
@@ -28,8 +28,8 @@
 //!     Vector([0.0, 2.0, 0.0]),
 //!     Vector([0.0, 0.0, 2.0]),
 //! ])?;
-//! let limits = Limits { tolerance: 1e-6, ..Limits::default() };
-//! let nearest = minimum(&ball, &triangle, &limits, &mut Workspace::new());
+//! let limits = Limits::new(1e-6);
+//! let nearest = minimum(&ball, &triangle, &limits, &mut Workspace::new())?;
 //! // The plane x + y + z = 2 is 2/√3 from the centre.
 //! let truth = 2.0 / 3.0_f64.sqrt() - 1.0;
 //! assert_eq!(nearest.stop, Stop::Converged);
@@ -43,7 +43,10 @@ mod certified;
 mod contact;
 mod contacts;
 mod cut_box;
+mod display;
 mod element;
+mod element_search;
+mod engine;
 mod error;
 mod goal;
 mod larger;
@@ -54,27 +57,32 @@ mod pair;
 mod patches;
 mod placed;
 mod point;
+mod pool;
+mod query;
 mod ray;
 mod sampler;
-mod search;
+#[cfg(feature = "world")]
 mod world;
 
-pub use ball::{BallWorkspace, ball, ball_touches};
+pub use ball::{BallWorkspace, contact_ball, touches_ball};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
+pub use element_search::{Workspace, minimum, touches};
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{
-    MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts, mesh_hits,
+    MeshContact, MeshContacts, MeshHits, MeshWorkspace, PlacedMesh, Undecided, mesh_contacts,
+    mesh_hits,
 };
 pub use pair::{
     Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
     overlap, proof, rates, separation,
 };
 pub use placed::Placed;
-pub use point::{AtPoint, point};
-pub use ray::{Ray, RayHit, ray};
-pub use search::{Workspace, minimum, touches};
+pub use point::{AtPoint, evaluate_point};
+pub use query::{ElementMemory, Query, Tolerance};
+pub use ray::{Ray, RayHit, cast_ray};
+#[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -15,8 +15,8 @@
 
 use palpate_field::Point;
 
+use crate::element_search::ElementCell;
 use crate::sampler::unit;
-use crate::search::Cell;
 
 /// The most cells that are looked at together: 32 to the edge of a triangle.
 pub(crate) const MOST_CELLS: usize = 1024;
@@ -27,11 +27,11 @@ const ROUNDINGS: f64 = 1e-9;
 /// Memory of a division into patches.
 #[derive(Debug)]
 pub(crate) struct Patches<const N: usize, const D: usize> {
-    pub(crate) cells: Vec<Cell<N, D>>,
+    pub(crate) cells: Vec<ElementCell<N, D>>,
     /// Of all cells [m].
     pub(crate) radius: f64,
     /// While cells are halved: those that become `cells`.
-    pub(crate) halves: Vec<Cell<N, D>>,
+    pub(crate) halves: Vec<ElementCell<N, D>>,
     /// How far cells lie along a direction; they are sorted by it.
     places: Vec<f64>,
     centres: Vec<Point<D>>,
@@ -67,7 +67,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         &mut self,
         weights: &[f64; N],
         tolerance: f64,
-        shore: impl Fn(&Cell<N, D>) -> f64,
+        shore: impl Fn(&ElementCell<N, D>) -> f64,
     ) -> usize {
         self.sort_along_element(weights);
         let Self { cells, order, .. } = self;
@@ -104,7 +104,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         let longest =
             (1..N).fold(edge(0), |l, i| if edge(i).norm() > l.norm() { edge(i) } else { l });
         let direction = unit(longest);
-        let place = |cell: &Cell<N, D>| cell.element.at(weights).dot(direction);
+        let place = |cell: &ElementCell<N, D>| cell.element.at(weights).dot(direction);
         cells.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)));
         places.clear();
         places.extend(cells.iter().map(place));
@@ -141,7 +141,11 @@ impl<const N: usize, const D: usize> Patches<N, D> {
 
     /// The cells of a patch, into `cells`, and the one with the least value found. The patch
     /// of which that is least comes first.
-    pub(crate) fn copy(&mut self, patch: usize, cells: &mut Vec<Cell<N, D>>) -> Cell<N, D> {
+    pub(crate) fn copy(
+        &mut self,
+        patch: usize,
+        cells: &mut Vec<ElementCell<N, D>>,
+    ) -> ElementCell<N, D> {
         let deepest = self.order[patch];
         cells.clear();
         for (i, cell) in self.cells.iter().enumerate() {

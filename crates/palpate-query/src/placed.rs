@@ -16,7 +16,7 @@ use crate::error::QueryError;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(1.0)?);
 /// let there = Placed::new(&ball, Pose::translation(Vector([0.0, 5.0, 0.0])));
-/// let apart = separation(&ball, there, &Limits::default(), &mut PairWorkspace::new())?;
+/// let apart = separation(&ball, there, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(apart.lower <= 3.0 && 3.0 <= apart.upper);
 /// # Ok(())
 /// # }
@@ -43,10 +43,13 @@ impl<'a, const D: usize> From<&'a Shape<D>> for Placed<'a, D> {
     }
 }
 
-/// That a pose can be computed with: squares of what is too far away overflow.
-pub(crate) fn check_pose<const D: usize>(pose: &Pose<D>) -> Result<(), QueryError> {
+/// Refuses the pose at this index if it is not finite, or so far away that squares overflow.
+pub(crate) fn check_pose<const D: usize>(
+    index: usize,
+    pose: &Pose<D>,
+) -> Result<(), QueryError> {
     if !pose.is_finite() {
-        return Err(QueryError::Pose);
+        return Err(QueryError::Pose { index });
     }
     let far = pose.translation.0.into_iter().find(|x| x.abs() > LARGEST_LENGTH);
     far.map_or(Ok(()), |value| Err(QueryError::Coordinate { what: "a translation", value }))

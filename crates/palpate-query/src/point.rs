@@ -10,6 +10,7 @@ use crate::sampler::normal;
 
 /// All that a field says at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AtPoint<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
@@ -63,17 +64,17 @@ impl<const D: usize> AtPoint<D> {
 ///
 /// ```
 /// use palpate_field::{Quality, Shape, Vector, kernel::Ball};
-/// use palpate_query::point;
+/// use palpate_query::evaluate_point;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
-/// let answer = point(&ball, Vector([0.0, 2.0]))?;
+/// let answer = evaluate_point(&ball, Vector([0.0, 2.0]))?;
 /// assert_eq!((answer.distance, answer.is_inside), (1.5, false));
 /// assert_eq!(answer.normal, Some(Vector([0.0, 1.0])));
 /// assert_eq!(answer.surface, Some(Vector([0.0, 0.5])));
 /// assert_eq!(answer.quality, Quality::Exact);
 /// assert!(1.5 - 1e-14 < answer.safe_radius && answer.safe_radius < 1.5);
-/// assert!(point(&ball, Vector([0.0, f64::NAN])).is_err());
+/// assert!(evaluate_point(&ball, Vector([0.0, f64::NAN])).is_err());
 /// # Ok(())
 /// # }
 /// ```
@@ -81,7 +82,10 @@ impl<const D: usize> AtPoint<D> {
 /// # Errors
 ///
 /// If a coordinate is not finite or beyond 1e15 m.
-pub fn point<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Result<AtPoint<D>, QueryError> {
+pub fn evaluate_point<const D: usize>(
+    shape: &Shape<D>,
+    p: Point<D>,
+) -> Result<AtPoint<D>, QueryError> {
     check_coordinates("a point", p)?;
     Ok(AtPoint::of_slope(shape, p, shape.distance_gradient(p)))
 }
@@ -97,11 +101,11 @@ mod tests {
         let a = Shape::from_kernel(Ball::new(0.3)?);
         let b = a.clone().translated(Vector([0.4, 0.0, 0.0]))?;
         let both = Shape::union([a, b])?;
-        let inside = point(&both, Vector([0.2, 0.0, 0.0]))?;
+        let inside = evaluate_point(&both, Vector([0.2, 0.0, 0.0]))?;
         assert_eq!((inside.is_inside, inside.quality), (true, Quality::Bound));
         assert!((inside.distance + 0.1).abs() < 1e-15);
         assert!(0.1 - 1e-14 < inside.safe_radius && inside.safe_radius < 0.1);
-        let outside = point(&both, Vector([0.0, 0.7, 0.0]))?;
+        let outside = evaluate_point(&both, Vector([0.0, 0.7, 0.0]))?;
         assert_eq!((outside.is_inside, outside.quality), (false, Quality::Exact));
         assert!((outside.distance - 0.4).abs() < 1e-15);
         Ok(())
@@ -116,7 +120,7 @@ mod tests {
             .translated(Vector([0.1, -0.2]))?;
         for i in 0..200 {
             let (x, y) = (f64::from(i % 20) * 0.1 - 1.0, f64::from(i / 20) * 0.3 - 1.4);
-            let answer = point(&stretched, Vector([x, y]))?;
+            let answer = evaluate_point(&stretched, Vector([x, y]))?;
             assert_eq!(answer.distance, stretched.distance(answer.point));
             assert_eq!(answer.safe_radius, stretched.safe_radius(answer.point));
             if let Some(surface) = answer.surface {

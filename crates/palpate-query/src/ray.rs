@@ -60,6 +60,12 @@ impl<const D: usize> Ray<D> {
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
     }
 
+    /// How long the ray is [m].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
     /// The point at a distance from the origin [m].
     #[must_use]
     pub fn at(&self, distance: f64) -> Point<D> {
@@ -69,6 +75,7 @@ impl<const D: usize> Ray<D> {
 
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RayHit<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
@@ -85,25 +92,31 @@ pub struct RayHit<const D: usize> {
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::{Limits, Ray, Stop, ray};
+/// use palpate_query::{Limits, Ray, Stop, cast_ray};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(1.0)?);
-/// let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+/// let limits = Limits::new(1e-9);
 /// let across = Ray::new(Vector([-3.0, 0.6]), Vector([1.0, 0.0]), 10.0)?;
-/// let first = ray(&ball, &across, &limits);
+/// let first = cast_ray(&ball, &across, &limits)?;
 /// assert!(first.lower <= 2.2 && 2.2 - 1e-8 < first.upper && first.upper < 2.2 + 1e-8);
 ///
 /// let past = Ray::new(Vector([-3.0, 1.000_001]), Vector([1.0, 0.0]), 10.0)?;
-/// assert_eq!((ray(&ball, &past, &limits).best, ray(&ball, &past, &limits).stop), (None, Stop::SignKnown));
+/// let free = cast_ray(&ball, &past, &limits)?;
+/// assert_eq!((free.best, free.stop), (None, Stop::SignKnown));
 /// # Ok(())
 /// # }
 /// ```
-pub fn ray<const D: usize>(
+///
+/// # Errors
+///
+/// If the tolerance is negative, NaN or too large.
+pub fn cast_ray<const D: usize>(
     shape: &Shape<D>,
     ray: &Ray<D>,
     limits: &Limits,
-) -> Certified<Option<RayHit<D>>> {
+) -> Result<Certified<Option<RayHit<D>>>, QueryError> {
+    limits.check()?;
     let mut samples = Samples::new();
     let mut advance = Advance {
         sampler: Sampler::new(shape, &mut samples, ray.origin.norm(), 0.0),
@@ -111,7 +124,7 @@ pub fn ray<const D: usize>(
         height: FIRST_HEIGHT * ray.length,
         witness: None,
     };
-    advance.run(limits)
+    Ok(advance.run(limits))
 }
 
 /// A ray on its way.

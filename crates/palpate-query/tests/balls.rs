@@ -7,8 +7,8 @@ use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Sheet};
 use palpate_field::{Point, Quality, Rotation, Shape, Vector};
 use palpate_query::{
-    BallWorkspace, Certified, Contact, Limits, PairWorkspace, QueryError, Stop, ball,
-    ball_touches, overlap,
+    BallWorkspace, Certified, Contact, Limits, PairWorkspace, QueryError, Stop, contact_ball,
+    overlap, touches_ball,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -86,12 +86,12 @@ where
         let size = draw::size(&shape);
         let centre = draw::point(u, &shape)?;
         let radius = size * [0.0, 0.01, 0.2, 1.0][u.choose_index(4)?] * draw::unit(u)?;
-        let limits = Limits { tolerance: 0.01 * size, budget: 200_000 };
+        let limits = Limits::new(0.01 * size).with_budget(200_000);
         let asks = [
-            ball(&shape, centre, radius, &limits, &mut workspace),
-            ball_touches(&shape, centre, radius, &limits, &mut workspace),
+            contact_ball(&shape, centre, radius, &limits, &mut workspace),
+            touches_ball(&shape, centre, radius, &limits, &mut workspace),
             // Ten evaluations prove little, and nothing that is wrong.
-            ball(&shape, centre, radius, &Limits { budget: 10, ..limits }, &mut workspace),
+            contact_ball(&shape, centre, radius, &limits.with_budget(10), &mut workspace),
         ];
         let [gap, sign, hasty] = asks.map(|answer| answer.map_err(|error| error.to_string()));
         for answer in [&gap, &sign, &hasty] {
@@ -143,8 +143,9 @@ fn the_depth_in_a_union_is_that_of_the_nearest_surface() -> Outcome {
         disc.translated(Vector([0.3, 0.0]))?,
     ])?;
     assert_eq!(both.promise().inside, Quality::Bound);
-    let limits = Limits { tolerance: 1e-9, ..Limits::default() };
-    let answer = ball(&both, Vector([0.0, 0.1]), 0.05, &limits, &mut BallWorkspace::new())?;
+    let limits = Limits::new(1e-9);
+    let answer =
+        contact_ball(&both, Vector([0.0, 0.1]), 0.05, &limits, &mut BallWorkspace::new())?;
     // The field is √(0.3² + 0.1²) − 0.5 there; the discs cross at (0, 0.4).
     let truth = -0.3 - 0.05;
     assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
@@ -160,7 +161,7 @@ fn the_depth_in_a_union_is_that_of_the_nearest_surface() -> Outcome {
 fn the_gap_to_a_stretched_ball_is_that_of_an_ellipsoid() -> Outcome {
     let ellipsoid = Shape::from_kernel(Ball::new(1.0)?).stretched([1.0, 4.0, 1.0])?;
     let mut workspace = BallWorkspace::new();
-    let limits = Limits { tolerance: 1e-7, ..Limits::default() };
+    let limits = Limits::new(1e-7);
     for (centre, radius, truth) in [
         (Vector([0.0, 5.5, 0.0]), 1.0, 0.5),
         (Vector([0.0, 5.5, 0.0]), 1.6, -0.1),
@@ -169,10 +170,10 @@ fn the_gap_to_a_stretched_ball_is_that_of_an_ellipsoid() -> Outcome {
         (Vector([0.0, 3.99, 0.0]), 0.0, -0.01),
         (Vector([0.0, 0.0, 0.0]), 0.5, -1.5),
     ] {
-        let answer = ball(&ellipsoid, centre, radius, &limits, &mut workspace)?;
+        let answer = contact_ball(&ellipsoid, centre, radius, &limits, &mut workspace)?;
         assert!(answer.lower <= truth && truth <= answer.upper, "{truth}: {answer:?}");
         assert!(answer.upper - answer.lower <= 1e-7, "{answer:?}");
-        let sign = ball_touches(&ellipsoid, centre, radius, &limits, &mut workspace)?;
+        let sign = touches_ball(&ellipsoid, centre, radius, &limits, &mut workspace)?;
         assert_eq!(sign.is_hit(), Some(truth < 0.0), "{sign:?}");
         assert!(sign.evaluations <= answer.evaluations);
     }
@@ -183,18 +184,15 @@ fn the_gap_to_a_stretched_ball_is_that_of_an_ellipsoid() -> Outcome {
 fn an_exact_field_is_asked_once_and_gives_the_witness() -> Outcome {
     let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
     let mut workspace = BallWorkspace::new();
-    let limits = Limits::default();
-    let answer = ball(&floor, Vector([3.0, 0.25, -2.0]), 0.5, &limits, &mut workspace)?;
-    let expected = Contact {
-        point_a: Vector([3.0, 0.0, -2.0]),
-        point_b: Vector([3.0, -0.25, -2.0]),
-        normal: Vector([0.0, 1.0, 0.0]),
-        gap: -0.25,
-        id: 0,
-    };
+    let limits = Limits::new(1e-4);
+    let answer = contact_ball(&floor, Vector([3.0, 0.25, -2.0]), 0.5, &limits, &mut workspace)?;
+    let (on_floor, on_ball) = (Vector([3.0, 0.0, -2.0]), Vector([3.0, -0.25, -2.0]));
+    let expected = Contact::new(on_floor, on_ball, Vector([0.0, 1.0, 0.0]));
+    assert_eq!(expected.gap, -0.25);
     assert_eq!((answer.best, answer.evaluations), (Some(expected), 2));
     // From below the floor too.
-    let answer = ball(&floor, Vector([3.0, -0.25, -2.0]), 0.5, &limits, &mut workspace)?;
+    let answer =
+        contact_ball(&floor, Vector([3.0, -0.25, -2.0]), 0.5, &limits, &mut workspace)?;
     let contact = answer.best.ok_or("a contact")?;
     assert_eq!((contact.gap, contact.normal), (-0.75, Vector([0.0, 1.0, 0.0])));
     assert_eq!(contact.point_b, Vector([3.0, -0.75, -2.0]));
@@ -213,10 +211,10 @@ fn a_ball_overlaps_as_its_shape_does() {
         let size = draw::size(&shape);
         let radius = size * (0.02 + 0.5 * draw::unit(u)?);
         let (centre, limits) =
-            (draw::point(u, &shape)?, Limits { tolerance: 1e-3 * size, budget: 200_000 });
+            (draw::point(u, &shape)?, Limits::new(1e-3 * size).with_budget(200_000));
         let Ok(body) = Ball::new(radius).map(Shape::from_kernel) else { return Ok(Ok(())) };
         let Ok(body) = body.translated(centre) else { return Ok(Ok(())) };
-        let by_ball = ball_touches(&shape, centre, radius, &limits, &mut workspace);
+        let by_ball = touches_ball(&shape, centre, radius, &limits, &mut workspace);
         let by_pair = overlap(&shape, &body, &limits, &mut of_pairs);
         let (Ok(by_ball), Ok(by_pair)) = (by_ball, by_pair) else { return Ok(Ok(())) };
         if let (Some(one), Some(other)) = (by_ball.is_hit(), by_pair.is_hit()) {
@@ -240,12 +238,12 @@ fn moved_together_the_gap_stays() -> Outcome {
     let turn = Rotation::from_quaternion([0.1, 0.3, -0.2, 0.9])?;
     let away = Vector([3.0, -2.0, 1.0]);
     let moved = shape.clone().rotated(turn)?.translated(away)?;
-    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    let limits = Limits::new(1e-6);
     let mut workspace = BallWorkspace::new();
     for centre in [Vector([0.9, 0.4, 0.2]), Vector([0.35, 0.05, -0.02])] {
         let there = turn.rotate(centre) + away;
-        let here = ball(&shape, centre, 0.2, &limits, &mut workspace)?;
-        let there = ball(&moved, there, 0.2, &limits, &mut workspace)?;
+        let here = contact_ball(&shape, centre, 0.2, &limits, &mut workspace)?;
+        let there = contact_ball(&moved, there, 0.2, &limits, &mut workspace)?;
         println!("{here:?} {there:?}");
         assert_eq!((here.stop, there.stop), (Stop::Converged, Stop::Converged));
         assert!(here.lower <= there.upper && there.lower <= here.upper, "{here:?} {there:?}");
@@ -262,10 +260,10 @@ fn a_sheet_is_touched_where_it_is() -> Outcome {
     let sheet =
         Shape::from_kernel(Sheet::<3>::new(corners, 0.0)?).stretched([1.0, 2.0, 3.0])?;
     let mut workspace = BallWorkspace::new();
-    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    let limits = Limits::new(1e-6);
     for (height, truth) in [(0.3, 0.1), (-0.15, -0.05)] {
         let centre = Vector([0.2, 0.3, height]);
-        let answer = ball(&sheet, centre, 0.2, &limits, &mut workspace)?;
+        let answer = contact_ball(&sheet, centre, 0.2, &limits, &mut workspace)?;
         assert!((answer.lower - truth).abs() < 1e-5, "{answer:?}");
         assert!((answer.upper - truth).abs() < 1e-5, "{answer:?}");
     }
@@ -275,8 +273,9 @@ fn a_sheet_is_touched_where_it_is() -> Outcome {
 #[test]
 fn bad_balls_are_refused() -> Outcome {
     let disc = Shape::<2>::from_kernel(Ball::new(1.0)?);
-    let (limits, mut workspace) = (Limits::default(), BallWorkspace::new());
-    let mut ask = |x: f64, r: f64| ball(&disc, Vector([x, 0.0]), r, &limits, &mut workspace);
+    let (limits, mut workspace) = (Limits::new(1e-4), BallWorkspace::new());
+    let mut ask =
+        |x: f64, r: f64| contact_ball(&disc, Vector([x, 0.0]), r, &limits, &mut workspace);
     assert!(matches!(ask(f64::NAN, 1.0), Err(QueryError::Coordinate { .. })));
     assert!(matches!(ask(0.0, f64::NAN), Err(QueryError::Length { .. })));
     assert!(matches!(ask(0.0, -1.0), Err(QueryError::Length { value: -1.0 })));

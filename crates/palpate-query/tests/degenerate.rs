@@ -21,7 +21,7 @@ fn ask<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     tolerance: f64,
 ) -> Answers<D> {
-    let limits = Limits { tolerance, ..Limits::default() };
+    let limits = Limits::new(tolerance);
     let mut workspace = PairWorkspace::new();
     let (a, b) = (a.into(), b.into());
     let answers =
@@ -100,12 +100,12 @@ fn poses_that_are_no_numbers_are_refused() -> Result<(), ShapeError> {
     let mut workspace = PairWorkspace::new();
     for wrong in [f64::NAN, f64::INFINITY] {
         let there = Placed::new(&ball, Pose::translation(Vector([wrong, 0.0])));
-        let answer = separation(&ball, there, &Limits::default(), &mut workspace);
-        assert_eq!(answer, Err(QueryError::Pose));
+        let answer = separation(&ball, there, &Limits::new(1e-4), &mut workspace);
+        assert_eq!(answer, Err(QueryError::Pose { index: 1 }));
     }
     // Squares of such numbers overflowed, and the upper bound was no number.
     let there = Placed::new(&ball, Pose::translation(Vector([0.0, 1e200])));
-    let answer = separation(&ball, there, &Limits::default(), &mut workspace);
+    let answer = separation(&ball, there, &Limits::new(1e-4), &mut workspace);
     assert_eq!(answer, Err(QueryError::Coordinate { what: "a translation", value: 1e200 }));
     Ok(())
 }

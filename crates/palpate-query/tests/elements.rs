@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Segments and triangles on random trees: bounds against dense samples.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
@@ -78,9 +79,9 @@ where
     let scaled = shape.clone().scaled(factor).and_then(|shape| shape.placed(&pose));
     let vertices = element.vertices().map(|v| pose.transform_point(v * factor));
     let (Ok(scaled), Ok(there)) = (scaled, Element::new(vertices)) else { return Ok(None) };
-    let here = minimum(shape, element, limits, workspace);
-    let limits = Limits { tolerance: factor * limits.tolerance, ..*limits };
-    let there = minimum(&scaled, &there, &limits, workspace);
+    let here = minimum(shape, element, limits, workspace).unwrap();
+    let limits = limits.with_tolerance(factor * limits.tolerance);
+    let there = minimum(&scaled, &there, &limits, workspace).unwrap();
     // Vertices are rounded once more.
     let steepness = shape.promise().lipschitz;
     let reach = pose.translation.norm()
@@ -104,9 +105,9 @@ where
         let tree: Tree<D> = draw::tree(u, 1 + (seed % 4))?;
         let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
         let element = element::<N, D>(u, &shape)?;
-        let limits = Limits { tolerance: 0.01 * draw::size(&shape), ..Limits::default() };
-        let least = minimum(&shape, &element, &limits, &mut workspace);
-        let sign = touches(&shape, &element, &limits, &mut workspace);
+        let limits = Limits::new(0.01 * draw::size(&shape));
+        let least = minimum(&shape, &element, &limits, &mut workspace).unwrap();
+        let sign = touches(&shape, &element, &limits, &mut workspace).unwrap();
         for answer in [least, sign] {
             if let Some(complaint) = wrong(&shape, &element, &answer) {
                 return Ok(Err(format!("{complaint}\n  {tree:?}")));
@@ -124,8 +125,8 @@ where
             return Ok(Err(format!("{complaint}\n  {tree:?}")));
         }
         // Ten evaluations prove little, and nothing that is wrong.
-        let hasty = Limits { budget: 10, ..limits };
-        let answer = minimum(&shape, &element, &hasty, &mut workspace);
+        let hasty = limits.with_budget(10);
+        let answer = minimum(&shape, &element, &hasty, &mut workspace).unwrap();
         Ok(wrong(&shape, &element, &answer).map_or(Ok(()), Err))
     });
     assert!(spent * 50 <= count, "{spent} of {count} searches spent their budget");
@@ -154,9 +155,9 @@ fn a_triangle_through_a_ball_and_one_that_passes_it_are_told_apart() -> Result<(
     for (clearance, is_hit) in [(1e-9, false), (-1e-9, true)] {
         let z = 1.0 + clearance;
         let vertices = [Vector([-3.0, -2.0, z]), Vector([4.0, -2.5, z]), Vector([0.3, 5.0, z])];
-        let limits = Limits { tolerance: 1e-12, ..Limits::default() };
+        let limits = Limits::new(1e-12);
         let triangle = Element::new(vertices).unwrap();
-        let answer = touches(&ball, &triangle, &limits, &mut Workspace::new());
+        let answer = touches(&ball, &triangle, &limits, &mut Workspace::new()).unwrap();
         assert_eq!(answer.is_hit(), Some(is_hit), "{answer:?}");
     }
     Ok(())
@@ -166,8 +167,8 @@ fn a_triangle_through_a_ball_and_one_that_passes_it_are_told_apart() -> Result<(
 fn the_depth_of_a_segment_in_a_box_is_exact_to_the_tolerance() -> Result<(), ShapeError> {
     let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
     let segment = Element::new([Vector([-2.0, 0.2]), Vector([3.0, 0.2])]).unwrap();
-    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
-    let answer = minimum(&square, &segment, &limits, &mut Workspace::new());
+    let limits = Limits::new(1e-6);
+    let answer = minimum(&square, &segment, &limits, &mut Workspace::new()).unwrap();
     assert_eq!(answer.stop, Stop::Converged);
     assert!(answer.lower <= -0.3 && -0.3 <= answer.upper && answer.upper < -0.3 + 1e-6);
     Ok(())
@@ -180,7 +181,7 @@ fn elements_without_an_extent_are_what_is_left_of_them() -> Result<(), ShapeErro
     let block = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0, 0.5]))?);
     let (a, b) = (Vector([-2.0, 0.2, 0.1]), Vector([3.0, 0.2, 0.1]));
     let middle = (a + b) * 0.5;
-    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    let limits = Limits::new(1e-6);
     // On a line, the same twice, and a point alone: 0.15 m deep, or 1 m off.
     for (vertices, truth) in [
         ([a, middle, b], -0.15),
@@ -190,30 +191,39 @@ fn elements_without_an_extent_are_what_is_left_of_them() -> Result<(), ShapeErro
         ([a; 3], 1.0),
     ] {
         let element = Element::new(vertices).unwrap();
-        let answer = minimum(&block, &element, &limits, &mut Workspace::new());
+        let answer = minimum(&block, &element, &limits, &mut Workspace::new()).unwrap();
         assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
         assert!(answer.lower <= truth && truth <= answer.upper, "{answer:?}");
-        let sign = touches(&block, &element, &limits, &mut Workspace::new());
+        let sign = touches(&block, &element, &limits, &mut Workspace::new()).unwrap();
         assert_eq!((sign.is_hit(), sign.stop), (Some(truth < 0.0), Stop::SignKnown));
     }
     let point = Element::new([b; 2]).unwrap();
-    let answer = minimum(&block, &point, &limits, &mut Workspace::new());
+    let answer = minimum(&block, &point, &limits, &mut Workspace::new()).unwrap();
     assert!(answer.lower <= 2.0 && 2.0 <= answer.upper && answer.upper <= 2.0 + 1e-6);
     Ok(())
 }
 
 #[test]
-fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+fn limits_that_are_no_lengths_are_refused_and_zero_says_nothing_wrong() -> Result<(), ShapeError>
+{
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let segment = Element::new([Vector([-2.0, 0.6]), Vector([3.0, 0.5])]).unwrap();
     let mut workspace = Workspace::new();
     for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
-        let limits = Limits { tolerance, budget: 1000 };
+        let limits = Limits::new(tolerance).with_budget(1000);
         for answer in [
             minimum(&ball, &segment, &limits, &mut workspace),
             touches(&ball, &segment, &limits, &mut workspace),
         ] {
-            assert_eq!(wrong(&ball, &segment, &answer), None);
+            match answer {
+                Ok(answer) => {
+                    assert_eq!(tolerance, 0.0);
+                    assert_eq!(wrong(&ball, &segment, &answer), None);
+                }
+                Err(error) => {
+                    assert!(tolerance != 0.0 && matches!(error, QueryError::Length { .. }));
+                }
+            }
         }
     }
     Ok(())

@@ -7,7 +7,7 @@ use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{Escape, Limits, PairWorkspace, Placed, escape, separation};
 
-const LIMITS: Limits = Limits { tolerance: 1e-4, budget: 200_000 };
+const LIMITS: Limits = Limits::new(1e-4).with_budget(200_000);
 
 /// The way out, which must be one.
 fn out<const D: usize>(a: &Shape<D>, b: &Shape<D>, pose: Pose<D>) -> Escape<D> {

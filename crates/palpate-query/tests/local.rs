@@ -3,6 +3,7 @@
 
 //! Local searches: never below what is proven, at the minimum of what is convex, and at
 //! times elsewhere.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
@@ -56,8 +57,8 @@ where
             vertices[N - 1] = (vertices[0] + vertices[1]) * 0.5;
         }
         let Ok(element) = Element::new(vertices) else { return Ok(Ok(())) };
-        let limits = Limits { tolerance: 1e-3 * size, ..Limits::default() };
-        let certified = minimum(&shape, &element, &limits, &mut workspace);
+        let limits = Limits::new(1e-3 * size);
+        let certified = minimum(&shape, &element, &limits, &mut workspace).unwrap();
         let reach = vertices.iter().map(|vertex| vertex.norm()).fold(0.0, f64::max);
         let rounding = 2.0 * shape.promise().rounding.within(reach);
         for method in ElementMethod::ALL {
@@ -106,7 +107,7 @@ where
         let away = draw::direction::<D>(u)? * (2.0 * size * draw::unit(u)?);
         let Ok(b) = b.translated(away) else { return Ok(Ok(())) };
         let start = draw::point(u, &a)?;
-        let limits = Limits { tolerance: 0.02 * size, budget: 100_000 };
+        let limits = Limits::new(0.02 * size).with_budget(100_000);
         let Ok(certified) = separation(&a, &b, &limits, &mut workspace) else {
             return Ok(Err("bounded bodies are refused".into()));
         };
@@ -141,7 +142,7 @@ fn nothing_is_found_below_what_is_proven_of_pairs() {
 #[test]
 fn the_minimum_of_a_convex_field_is_found() -> Outcome {
     let ball = Shape::from_kernel(Ball::new(0.4)?);
-    let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+    let limits = Limits::new(1e-9);
     let mut workspace = Workspace::new();
     let corner = |i: i32, k: i32| {
         let t = f64::from(7 * i + 3 * k);
@@ -149,7 +150,7 @@ fn the_minimum_of_a_convex_field_is_found() -> Outcome {
     };
     for i in 0..100 {
         let triangle = Element::new([corner(i, 0), corner(i, 1), corner(i, 2)])?;
-        let least = minimum(&ball, &triangle, &limits, &mut workspace);
+        let least = minimum(&ball, &triangle, &limits, &mut workspace).unwrap();
         let [a, b, c] = *triangle.vertices();
         let longest = (a - b).norm().max((b - c).norm()).max((c - a).norm());
         for method in ElementMethod::ALL {
@@ -207,7 +208,8 @@ fn a_needle_on_a_floor_is_missed_by_all_and_proven() -> Outcome {
     let corners =
         [Vector([-1.0, 0.1, -0.8]), Vector([1.0, 0.1, -0.7]), Vector([0.1, 0.1, 1.0])];
     let triangle = Element::new(corners)?;
-    let certified = minimum(&shape, &triangle, &Limits::default(), &mut Workspace::new());
+    let certified =
+        minimum(&shape, &triangle, &Limits::new(1e-4), &mut Workspace::new()).unwrap();
     assert_eq!(certified.is_hit(), Some(true), "{certified:?}");
     for method in ElementMethod::ALL {
         let found = method.descend(&shape, &triangle);
@@ -224,7 +226,7 @@ fn a_ring_that_cuts_a_plate_is_missed_from_a_bad_start_and_proven() -> Outcome {
         Shape::from_kernel(Torus::new(0.1, 0.05)?).translated(Vector([0.3, 0.0, 0.155]))?,
         Shape::from_kernel(Torus::new(0.1, 0.05)?).translated(Vector([-0.3, 0.0, 0.17]))?,
     ])?;
-    let limits = Limits::default();
+    let limits = Limits::new(1e-4);
     let mut workspace = PairWorkspace::new();
     assert_eq!(overlap(&plate, &rings, &limits, &mut workspace)?.is_hit(), Some(true));
     for method in PairMethod::ALL {

@@ -9,7 +9,7 @@ use palpate_query::{
     Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, manifold,
 };
 
-const LIMITS: Limits = Limits { tolerance: 1e-3, budget: 200_000 };
+const LIMITS: Limits = Limits::new(1e-3).with_budget(200_000);
 
 fn cuboid(sides: [f64; 3]) -> Result<Shape<3>, ShapeError> {
     Ok(Shape::from_kernel(Cuboid::new(Vector(sides))?))
@@ -27,7 +27,7 @@ fn touching<const D: usize>(
 }
 
 fn settings(margin: f64) -> ManifoldSettings {
-    ManifoldSettings { margin, spacing: 0.04, most: 64 }
+    ManifoldSettings::of_size(1.0).with_margin(margin).with_most(64)
 }
 
 /// What holds of every manifold.
@@ -184,7 +184,7 @@ fn a_cap_keeps_the_deepest_and_the_spread() -> Result<(), ShapeError> {
     let pose = Pose::new(tilt, Vector([0.1, 0.0, 0.499]));
     let all = touching(&large, &small, pose, &settings(2e-3));
     for most in 1..all.contacts.len() {
-        let settings = ManifoldSettings { most, ..settings(2e-3) };
+        let settings = settings(2e-3).with_most(most);
         let some = touching(&large, &small, pose, &settings);
         assert_eq!(some.contacts.len(), most);
         assert_eq!(some.dropped, all.contacts.len() - most);
@@ -235,10 +235,8 @@ fn what_cannot_be_asked_is_refused_and_what_is_apart_has_no_contacts() -> Result
     let ball = Shape::from_kernel(Ball::new(0.3)?);
     let mut workspace = PairWorkspace::new();
     for wrong in [f64::NAN, -1.0, f64::INFINITY] {
-        for settings in [
-            ManifoldSettings { margin: wrong, ..settings(1e-3) },
-            ManifoldSettings { spacing: wrong, ..settings(1e-3) },
-        ] {
+        for settings in [settings(1e-3).with_margin(wrong), settings(1e-3).with_spacing(wrong)]
+        {
             let asked = manifold(&ball, &ball, &settings, &LIMITS, &mut workspace);
             assert!(asked.is_err(), "{settings:?}");
         }
@@ -273,10 +271,10 @@ fn without_a_margin_what_overlaps_is_spanned() -> Result<(), ShapeError> {
 #[test]
 fn a_tiny_spacing_spends_the_budget_and_little_more() -> Result<(), ShapeError> {
     let cube = cuboid([1.0, 1.0, 1.0])?;
-    let settings = ManifoldSettings { margin: 2e-9, spacing: 4e-8, most: 32 };
+    let settings = ManifoldSettings::of_size(1e-6);
     let mut workspace = PairWorkspace::new();
     let there = Placed::new(&cube, Pose::translation(Vector([1.0, 0.0, 0.0])));
-    let limits = Limits { tolerance: 1e-10, budget: 100_000 };
+    let limits = Limits::new(1e-10).with_budget(100_000);
     let found = manifold(&cube, there, &settings, &limits, &mut workspace).expect("bounded");
     assert!(!found.is_whole);
     assert!(found.separation.evaluations < 400_000, "{}", found.separation.evaluations);
@@ -289,7 +287,7 @@ fn a_ball_in_a_hollow_one_touches_it_all_around() -> Result<(), ShapeError> {
     let cavity = Shape::<3>::from_kernel(Ball::new(0.301)?);
     let hollow = Shape::from_kernel(Ball::new(0.9)?).difference([cavity])?;
     let ball = Shape::from_kernel(Ball::new(0.3)?);
-    let settings = ManifoldSettings { margin: 0.1, spacing: 0.02, most: 200 };
+    let settings = ManifoldSettings::of_size(0.5).with_margin(0.1).with_most(200);
     let there = Pose::translation(Vector([1e-4, 0.0, 0.0]));
     let found = touching(&hollow, &ball, there, &settings);
     laws(&found, &settings);

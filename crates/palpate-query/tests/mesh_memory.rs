@@ -23,7 +23,7 @@ fn after_the_first_time_nothing_is_allocated() {
         Shape::from_kernel(Ball::new(0.3 * size).unwrap()).translated(place).unwrap()
     });
     let bumps = Shape::union(bumps).unwrap();
-    let limits = Limits { tolerance: 1e-6 * size, ..Limits::default() };
+    let limits = Limits::new(1e-6 * size);
     let mut workspace = MeshWorkspace::new();
     let start = nut.bounds().centre();
     let at = |step: f64| Pose::translation(Vector([1e-3 * step * size, 0.0, 0.0]) - start);

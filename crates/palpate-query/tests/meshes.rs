@@ -11,8 +11,8 @@ use palpate_field::scalar::Scalar;
 use palpate_field::{Point, Pose, Promise, Shape, ShapeError, Vector};
 use palpate_mesh::{Mesh, MeshError, Outline, TriangleMesh};
 use palpate_query::{
-    Contact, Element, Limits, MeshContacts, MeshWorkspace, Placed, PlacedMesh, QueryError,
-    Stop, Workspace, contacts, mesh_contacts, mesh_hits, minimum, touches,
+    Contact, Element, Limits, MeshContact, MeshContacts, MeshWorkspace, Placed, PlacedMesh,
+    QueryError, Stop, Workspace, contacts, mesh_contacts, mesh_hits, minimum, touches,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -68,7 +68,7 @@ where
         );
         let gap = [0.0, 0.03 * size][u.choose_index(2)?];
         let level = gap * shape.promise().lipschitz.max(1.0);
-        let limits = Limits { tolerance: 1e-6 * size, ..Limits::default() };
+        let limits = Limits::new(1e-6 * size);
         let placed = PlacedMesh::new(&mesh, pose);
         let answer = mesh_hits(&shape, placed, gap, &limits, &mut workspace).unwrap();
         let (hits, undecided) = (answer.hits.to_vec(), answer.undecided.to_vec());
@@ -87,16 +87,16 @@ where
             }
             // Each by itself.
             let element = Element::new(corners).unwrap();
-            let one = minimum(&shape, &element, &limits, &mut alone);
+            let one = minimum(&shape, &element, &limits, &mut alone).unwrap();
             if is_hit && one.lower > level || !is_hit && is_open.is_none() && one.upper < level
             {
                 return Ok(Err(format!("{name} is {one:?}, hit {is_hit}\n  {tree:?}")));
             }
         }
         // Ten evaluations prove little, and nothing that is wrong.
-        let hasty = Limits { budget: 10, ..limits };
+        let hasty = limits.with_budget(10);
         let answer = mesh_hits(&shape, placed, gap, &hasty, &mut workspace).unwrap();
-        for hit in answer.hits {
+        for hit in &answer.hits {
             if hits.binary_search(hit).is_err() && undecided.iter().all(|o| o.element != *hit) {
                 return Ok(Err(format!("{hit} touches in haste alone\n  {tree:?}")));
             }
@@ -124,15 +124,18 @@ fn contacts_are_right<const N: usize, const D: usize>(
     let (mut workspace, mut alone) = (MeshWorkspace::new(), Workspace::new());
     let placed = PlacedMesh::new(mesh, pose);
     let all = mesh_contacts(shape, placed, gap, limits, &mut workspace).unwrap();
-    if !all.contacts.is_sorted_by_key(|contact| contact.id) {
+    let is_named = |(i, touch): (usize, &MeshContact<D>)| touch.contact.id == i as u64;
+    if !all.contacts.is_sorted_by_key(|touch| touch.element)
+        || !all.contacts.iter().enumerate().all(is_named)
+    {
         return Err("contacts are out of order".to_owned());
     }
-    for &hit in all.hits {
+    for &hit in &all.hits {
         let corners = mesh.corners(hit as usize).map(|corner| pose.transform_point(corner));
         let element = Element::new(corners).unwrap();
-        let least = minimum(shape, &element, limits, &mut alone);
+        let least = minimum(shape, &element, limits, &mut alone).unwrap();
         let here = contacts(shape, &element, gap, limits, &mut alone).unwrap();
-        let of_hit = all.contacts.iter().filter(|contact| contact.id >> 32 == u64::from(hit));
+        let of_hit = all.contacts.iter().filter(|touch| touch.element == hit);
         if of_hit.clone().count() != here.contacts.len().max(1) {
             return Err(format!("{:?} of {hit} are not {here:?}", of_hit.collect::<Vec<_>>()));
         }
@@ -143,7 +146,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
                 }
             }
         }
-        let values = of_hit.map(|contact| shape.distance(contact.point_b));
+        let values = of_hit.map(|touch| shape.distance(touch.contact.point_b));
         let deepest = values.fold(f64::INFINITY, f64::min);
         let is_known = here.least.stop == Stop::Converged;
         if is_known && deepest > least.upper + limits.tolerance {
@@ -153,7 +156,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
             return Err(format!("{:?} is not {least:?}", here.least));
         }
     }
-    for contact in all.contacts {
+    for MeshContact { contact, .. } in &all.contacts {
         let along = (contact.point_b - contact.point_a).dot(contact.normal);
         if (contact.normal.norm() - 1.0).abs() > 1e-9 || (along - contact.gap).abs() > 1e-9 {
             return Err(format!("{contact:?} does not agree with itself"));
@@ -200,7 +203,7 @@ fn segments_in_space_and_triangles_in_the_plane_are_decided_too() {
 /// The contacts of a triangle that lies at `height` over the plane of x and z.
 fn on_triangle(shape: &Shape<3>, height: f64, gap: f64) -> Vec<Contact<3>> {
     let corners = [[-3.0, height, -2.0], [3.0, height, -2.0], [0.0, height, 4.0]].map(Vector);
-    let limits = Limits { tolerance: 1e-5, ..Limits::default() };
+    let limits = Limits::new(1e-5);
     let mut workspace = Workspace::new();
     let element = Element::new(corners).unwrap();
     contacts(shape, &element, gap, &limits, &mut workspace).unwrap().contacts.to_vec()
@@ -266,7 +269,7 @@ fn contacts_come_in_the_same_order_each_time() -> Result<(), Box<dyn std::error:
     let bumps = Shape::union(bumps.collect::<Result<Vec<_>, _>>()?)?;
     let corners = [[-2.0, 0.2, -2.0], [2.0, 0.2, -2.0], [2.0, 0.2, 2.0], [-2.0, 0.2, 2.0]];
     let floor = TriangleMesh::new(corners.map(Vector).to_vec(), vec![[0, 2, 1], [0, 3, 2]])?;
-    let limits = Limits::default();
+    let limits = Limits::new(1e-4);
     let mut workspace = MeshWorkspace::new();
     let first = mesh_contacts(&bumps, &floor, 0.0, &limits, &mut workspace)?.contacts.to_vec();
     // Those on the diagonal touch both triangles.
@@ -286,12 +289,12 @@ fn the_field_and_the_mesh_may_both_be_moved() -> Result<(), Box<dyn std::error::
     let field = Placed::new(&square, Pose::new(quarter, Vector([10.0, 2.0])));
     let mesh = PlacedMesh::new(&line, Pose::translation(Vector([10.0, 3.1])));
     let mut workspace = MeshWorkspace::new();
-    let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+    let limits = Limits::new(1e-9);
     let MeshContacts { contacts: none, .. } =
         mesh_contacts(field, mesh, 0.0999, &limits, &mut workspace)?;
     assert!(none.is_empty());
     let near = mesh_contacts(field, mesh, 0.1001, &limits, &mut workspace)?;
-    let [contact] = near.contacts else { panic!("{near:?}") };
+    let [MeshContact { contact, .. }] = near.contacts.as_slice() else { panic!("{near:?}") };
     assert!((contact.gap - 0.1).abs() < 1e-8);
     assert!((contact.normal - Vector([0.0, 1.0])).norm() < 1e-6);
     assert!((contact.point_a[1] - 3.0).abs() < 1e-8 && contact.point_a[0] > 9.0);
@@ -304,9 +307,9 @@ fn elements_without_an_extent_are_points() -> Result<(), Box<dyn std::error::Err
     let points = [[0.9, 0.0, 0.0], [1.1, 0.0, 0.0], [0.0, 0.0, 0.0]].map(Vector).to_vec();
     let mesh = TriangleMesh::new(points, vec![[0, 0, 0], [1, 1, 1], [1, 0, 1], [2, 2, 2]])?;
     let mut workspace = MeshWorkspace::new();
-    let all = mesh_contacts(&ball, &mesh, 0.0, &Limits::default(), &mut workspace)?;
+    let all = mesh_contacts(&ball, &mesh, 0.0, &Limits::new(1e-4), &mut workspace)?;
     assert_eq!(all.hits, [0, 2, 3]);
-    let gaps: Vec<f64> = all.contacts.iter().map(|contact| contact.gap).collect();
+    let gaps: Vec<f64> = all.contacts.iter().map(|touch| touch.contact.gap).collect();
     assert!((gaps[0] + 0.1).abs() < 1e-9 && (gaps[1] + 0.1).abs() < 1e-4 && gaps[2] == -1.0);
     Ok(())
 }
@@ -317,7 +320,7 @@ fn what_is_no_question_is_an_error() -> Result<(), Box<dyn std::error::Error>> {
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let point = TriangleMesh::new(vec![Vector([0.0; 3])], vec![[0, 0, 0]])?;
     let mut workspace = MeshWorkspace::new();
-    let limits = Limits::default();
+    let limits = Limits::new(1e-4);
     for gap in [f64::NAN, -1.0, f64::INFINITY] {
         let wrong = mesh_hits(&ball, &point, gap, &limits, &mut workspace);
         assert!(matches!(wrong, Err(QueryError::Length { .. })), "{wrong:?}");
@@ -325,7 +328,7 @@ fn what_is_no_question_is_an_error() -> Result<(), Box<dyn std::error::Error>> {
     let nowhere = Pose::translation(Vector([f64::NAN, 0.0, 0.0]));
     let placed = PlacedMesh::new(&point, nowhere);
     let wrong = mesh_hits(&ball, placed, 0.0, &limits, &mut workspace);
-    assert_eq!(wrong, Err(QueryError::Pose));
+    assert_eq!(wrong, Err(QueryError::Pose { index: 1 }));
     let far = PlacedMesh::new(&point, Pose::translation(Vector([1e200, 0.0, 0.0])));
     let wrong = mesh_contacts(&ball, far, 0.0, &limits, &mut workspace);
     assert!(matches!(wrong, Err(QueryError::Coordinate { .. })));
@@ -339,7 +342,7 @@ fn of_a_field_that_is_no_number_nothing_is_known() -> Result<(), Box<dyn std::er
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector).to_vec();
     let triangle = TriangleMesh::new(corners, vec![[0, 1, 2]])?;
     let mut workspace = MeshWorkspace::new();
-    let answer = mesh_contacts(&nothing, &triangle, 0.0, &Limits::default(), &mut workspace)?;
+    let answer = mesh_contacts(&nothing, &triangle, 0.0, &Limits::new(1e-4), &mut workspace)?;
     assert!(answer.hits.is_empty() && answer.contacts.is_empty());
     assert_eq!(answer.undecided.len(), 1);
     assert_eq!(answer.undecided[0].lower, f64::NEG_INFINITY);
@@ -367,7 +370,7 @@ fn a_mesh_touches_where_its_elements_do_by_themselves() -> Result<(), Box<dyn st
             .translated(Vector([0.0, 0.61, 0.1]))?,
         Shape::from_kernel(Ball::new(0.3)?).translated(Vector([-1.2, 0.6, 0.0]))?,
     ])?;
-    let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+    let limits = Limits::new(1e-9);
     let mut workspace = MeshWorkspace::new();
     let answer = mesh_hits(&shape, &strip, 0.0, &limits, &mut workspace)?;
     assert!(answer.undecided.is_empty() && answer.hits.len() > 100);
@@ -375,7 +378,7 @@ fn a_mesh_touches_where_its_elements_do_by_themselves() -> Result<(), Box<dyn st
     let one_by_one: Vec<u32> = (0..strip.elements().len())
         .filter(|&name| {
             let element = Element::new(strip.corners(name)).unwrap();
-            touches(&shape, &element, &limits, &mut alone).is_hit().unwrap()
+            touches(&shape, &element, &limits, &mut alone).unwrap().is_hit().unwrap()
         })
         .map(|name| name as u32)
         .collect();

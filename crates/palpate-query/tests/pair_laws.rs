@@ -46,7 +46,7 @@ impl<const D: usize> Case<'_, D> {
         b: impl Into<Placed<'a, D>>,
         scale: f64,
     ) -> Result<Answer<D>, String> {
-        let limits = Limits { tolerance: scale * self.limits.tolerance, ..self.limits };
+        let limits = self.limits.with_tolerance(scale * self.limits.tolerance);
         separation(a, b, &limits, self.workspace).map_err(|error| error.to_string())
     }
 
@@ -85,7 +85,7 @@ fn on_trees<const D: usize>(
         let Some(bodies) = draw::two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
         let [a, b] = &bodies;
         let size = draw::size(a);
-        let limits = Limits { tolerance: 0.02 * size, budget: 200_000 };
+        let limits = Limits::new(0.02 * size).with_budget(200_000);
         let Ok(answer) = separation(a, b, &limits, &mut workspace) else {
             return Ok(Err("bounded bodies are refused".into()));
         };
@@ -247,7 +247,7 @@ fn hasty<const D: usize>(
 ) -> arbitrary::Result<Verdict> {
     let [a, b] = case.bodies.clone();
     let budget = *u.choose(&[0, 10, 300])?;
-    let limits = Limits { tolerance: 1e-6 * case.size, budget };
+    let limits = Limits::new(1e-6 * case.size).with_budget(budget);
     let whole = separation(&a, &b, &limits, case.workspace);
     let sign = overlap(&a, &b, &limits, case.workspace);
     for answer in [whole, sign] {
@@ -277,7 +277,7 @@ where
     let mut poses = [draw::pose::<D>(u)?, draw::pose::<D>(u)?];
     for _ in 0..MOTIONS {
         let budget = *u.choose(&[10, 1000, 200_000])?;
-        let limits = Limits { budget, ..case.limits };
+        let limits = case.limits.with_budget(budget);
         let warm = track.separation(poses, &limits, case.workspace);
         let cold = case.of(Placed::new(&a, poses[0]), Placed::new(&b, poses[1]), 1.0);
         let (Ok(warm), Ok(cold)) = (warm, cold) else {
@@ -305,7 +305,7 @@ fn escaped<const D: usize>(
     Ok((|| {
         let error = |error: QueryError| error.to_string();
         // It asks for hundreds of separations.
-        let limits = Limits { tolerance: 0.1 * case.size, budget: 1000 };
+        let limits = Limits::new(0.1 * case.size).with_budget(1000);
         let Some(way) = escape(&a, &b, &limits, case.workspace).map_err(error)? else {
             return Ok(());
         };

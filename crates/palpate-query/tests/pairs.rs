@@ -46,7 +46,7 @@ fn separations_in_the_plane_are_enclosed() {
 #[test]
 fn balls_are_as_far_apart_as_their_centres_less_their_radii() -> Result<(), ShapeError> {
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: 1e-7, ..Limits::default() };
+    let limits = Limits::new(1e-7);
     let a = Shape::<3>::from_kernel(Ball::new(1.0)?);
     for (apart, truth) in [(3.0, 1.5), (1.500_001, 1e-6), (1.2, -0.3), (0.1, -1.0)] {
         // A ball inside the other is as wide as the overlap gets.
@@ -67,7 +67,7 @@ fn balls_are_as_far_apart_as_their_centres_less_their_radii() -> Result<(), Shap
 fn a_box_on_a_floor_is_as_deep_as_it_is() -> Result<(), ShapeError> {
     let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+    let limits = Limits::new(1e-6);
     for lift in [0.01, -0.01] {
         let crate_ = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4]))?)
             .translated(Vector([0.3, 0.2 + lift]))?;
@@ -93,7 +93,7 @@ fn a_thin_plate_that_just_cuts_a_torus_is_found() -> Result<(), ShapeError> {
             -0.05,
             0.5 + 0.01 + gap,
         ]))?;
-        let limits = Limits { tolerance: 1e-4, ..Limits::default() };
+        let limits = Limits::new(1e-4);
         let Ok(answer) = separation(&plate, &torus, &limits, &mut workspace) else {
             panic!("bounded");
         };
@@ -113,7 +113,7 @@ fn turned_and_moved_together_bodies_stay_as_far_apart() -> Result<(), ShapeError
     let b = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.5, 0.6]))?)
         .translated(Vector([0.7, 0.2, -0.1]))?;
     let turn = Rotation::from_quaternion([0.1, 0.3, -0.2, 0.9])?;
-    let limits = Limits { tolerance: 1e-5, ..Limits::default() };
+    let limits = Limits::new(1e-5);
     let mut workspace = PairWorkspace::new();
     let mut ask = |a: &Shape<3>, b: &Shape<3>| separation(a, b, &limits, &mut workspace);
     let here = ask(&a, &b);
@@ -128,7 +128,7 @@ fn turned_and_moved_together_bodies_stay_as_far_apart() -> Result<(), ShapeError
 #[test]
 fn two_bodies_without_an_end_are_refused() -> Result<(), ShapeError> {
     let a = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
-    let answer = separation(&a, &a, &Limits::default(), &mut PairWorkspace::new());
+    let answer = separation(&a, &a, &Limits::new(1e-4), &mut PairWorkspace::new());
     assert_eq!(answer, Err(QueryError::Unbounded));
     Ok(())
 }
@@ -140,7 +140,7 @@ fn coincident_and_concentric_bodies_overlap_by_the_width_of_the_smaller()
     let ball = Shape::from_kernel(Ball::new(0.2)?);
     let large = Shape::from_kernel(Ball::new(0.9)?);
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let limits = Limits::new(1e-3);
     for (a, b, truth) in [(&plate, &plate, -0.1), (&ball, &ball, -0.4), (&ball, &large, -0.4)] {
         let Ok(answer) = separation(a, b, &limits, &mut workspace) else { panic!("bounded") };
         assert_eq!(answer.stop, Stop::Converged, "{answer:?}");
@@ -159,14 +159,14 @@ fn searches_that_may_not_look_say_little_and_nothing_wrong() -> Result<(), Shape
         let Ok(answer) = separation(&a, &b, limits, workspace) else { panic!("bounded") };
         answer
     };
-    let truth = ask(&Limits { tolerance: 1e-6, budget: 1_000_000 }, &mut workspace);
+    let truth = ask(&Limits::new(1e-6).with_budget(1_000_000), &mut workspace);
     for (tolerance, budget) in [(1e-6, 0), (1e-6, 10), (0.0, 1000), (1e15, 1000)] {
-        let answer = ask(&Limits { tolerance, budget }, &mut workspace);
+        let answer = ask(&Limits::new(tolerance).with_budget(budget), &mut workspace);
         assert!(answer.lower <= truth.upper && truth.lower <= answer.upper, "{answer:?}");
     }
     // A tolerance without end once led a descent to a point that was no number.
     for tolerance in [f64::NAN, -1.0, f64::INFINITY] {
-        let limits = Limits { tolerance, budget: 1000 };
+        let limits = Limits::new(tolerance).with_budget(1000);
         assert!(separation(&a, &b, &limits, &mut workspace).is_err(), "{tolerance}");
     }
     Ok(())

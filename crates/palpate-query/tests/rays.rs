@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Rays on random trees: nothing is skipped, and what is hit is there.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 use palpate_field::field::{DifferentiateBlock, EvaluateBlock, Field};
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace};
 use palpate_field::{Point, SHORT, Shape, ShapeError, Vector};
-use palpate_query::{Limits, QueryError, Ray, Stop, ray};
+use palpate_query::{Limits, QueryError, Ray, Stop, cast_ray};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
@@ -29,8 +30,8 @@ where
         let length = size * [0.1, 1.0, 4.0][u.choose_index(3)?];
         let (origin, direction) = (draw::point(u, &shape)?, draw::direction(u)?);
         let Ok(asked) = Ray::new(origin, direction, length) else { return Ok(Ok(())) };
-        let limits = Limits { tolerance: 1e-4 * size, ..Limits::default() };
-        let answer = ray(&shape, &asked, &limits);
+        let limits = Limits::new(1e-4 * size);
+        let answer = cast_ray(&shape, &asked, &limits).unwrap();
         let wrong =
             |what: String| Ok(Err(format!("{what}: {answer:?} of {asked:?}\n  {tree:?}")));
         let before = if answer.lower > 0.0 { SAMPLES } else { 0 };
@@ -121,8 +122,8 @@ where
         let Ok(asked) = Ray::new(there, pose.transform_vector(way), length) else {
             return Ok(Ok(()));
         };
-        let limits = Limits { tolerance: 1e-6 * factor, ..Limits::default() };
-        let answer = ray(&shape, &asked, &limits);
+        let limits = Limits::new(1e-6 * factor);
+        let answer = cast_ray(&shape, &asked, &limits).unwrap();
         let truth = first(is_ball, origin, way).map(|t| t * factor).filter(|t| *t <= length);
         let rounding = 1e-12 * (factor * (1.0 + origin.norm()) + pose.translation.norm());
         let is_right = match (truth, answer.stop) {
@@ -152,15 +153,20 @@ fn rays_hit_where_equations_say_at_any_scale() {
 }
 
 #[test]
-fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
+fn limits_that_are_no_lengths_are_refused_and_zero_says_nothing_wrong() -> Result<(), ShapeError>
+{
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let Ok(asked) = Ray::new(Vector([-3.0, 0.6]), Vector([1.0, 0.0]), 10.0) else { panic!() };
-    for tolerance in [f64::NAN, -1.0, 0.0, f64::INFINITY] {
-        for budget in [0, 10, 1000] {
-            let answer = ray(&ball, &asked, &Limits { tolerance, budget });
-            assert!(answer.lower <= 2.2 + 1e-12, "{answer:?}");
-            assert!(answer.upper >= 2.2 - 1e-12 || tolerance > 0.0, "{answer:?}");
+    for budget in [0, 10, 1000] {
+        for tolerance in [f64::NAN, -1.0, f64::INFINITY] {
+            let limits = Limits::new(tolerance).with_budget(budget);
+            let refused = cast_ray(&ball, &asked, &limits);
+            assert!(matches!(refused, Err(QueryError::Length { .. })), "{refused:?}");
         }
+        let exact = Limits::new(0.0).with_budget(budget);
+        let answer = cast_ray(&ball, &asked, &exact).unwrap();
+        assert!(answer.lower <= 2.2 + 1e-12, "{answer:?}");
+        assert!(answer.upper >= 2.2 - 1e-12, "{answer:?}");
     }
     Ok(())
 }
@@ -168,12 +174,12 @@ fn limits_that_are_no_numbers_say_nothing_wrong() -> Result<(), ShapeError> {
 #[test]
 fn a_ray_along_a_floor_is_free_in_few_steps() -> Result<(), ShapeError> {
     let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
-    let limits = Limits { tolerance: 1e-7, ..Limits::default() };
+    let limits = Limits::new(1e-7);
     let along =
         Ray::new(Vector([0.0, 1e-5]), Vector([2.0, 0.0]), 100.0).unwrap_or_else(|error| {
             panic!("{error}");
         });
-    let answer = ray(&floor, &along, &limits);
+    let answer = cast_ray(&floor, &along, &limits).unwrap();
     assert_eq!((answer.best, answer.stop), (None, Stop::SignKnown));
     // By plain steps there would be ten million.
     assert!(answer.evaluations < 10_000, "{answer:?}");
@@ -185,8 +191,8 @@ fn a_thin_plate_is_not_skipped() -> Result<(), ShapeError> {
     let plate = Shape::from_kernel(Cuboid::new(Vector([1.0, 1e-7, 1.0]))?);
     let down = Ray::new(Vector([0.1, 1e6, 0.2]), Vector([0.0, -1.0, 0.0]), 1e15);
     let Ok(down) = down else { panic!("a ray") };
-    let limits = Limits { tolerance: 1e-8, ..Limits::default() };
-    let answer = ray(&plate, &down, &limits);
+    let limits = Limits::new(1e-8);
+    let answer = cast_ray(&plate, &down, &limits).unwrap();
     assert!(answer.best.is_some() && (answer.upper - (1e6 - 5e-8)).abs() < 1e-8, "{answer:?}");
     Ok(())
 }
@@ -195,7 +201,7 @@ fn a_thin_plate_is_not_skipped() -> Result<(), ShapeError> {
 fn a_ray_that_starts_inside_hits_at_once() -> Result<(), ShapeError> {
     let ball = Shape::from_kernel(Ball::new(1.0)?);
     let Ok(inside) = Ray::new(Vector([0.5, 0.0]), Vector([0.0, 1.0]), 3.0) else { panic!() };
-    let answer = ray(&ball, &inside, &Limits::default());
+    let answer = cast_ray(&ball, &inside, &Limits::new(1e-4)).unwrap();
     assert_eq!((answer.lower, answer.upper), (0.0, 0.0));
     assert_eq!(answer.best.and_then(|hit| hit.normal), Some(Vector([1.0, 0.0])));
     Ok(())

@@ -84,7 +84,7 @@ fn answers<const D: usize>(
 where
     Space: Turned<D>,
 {
-    let limits = Limits::default();
+    let limits = Limits::new(1e-4);
     let [a, b] = &pair.bodies;
     let there = Placed::new(b, row.pose()?);
     let built = b.clone().placed(&row.pose()?)?;

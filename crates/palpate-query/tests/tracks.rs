@@ -41,7 +41,7 @@ fn in_the_plane() -> Result<Vec<Pair<2>>, ShapeError> {
 
 /// Follows each pair along a way with a jump in it, and asks anew beside it.
 fn agree<const D: usize>(pairs: &[Pair<D>], motion: impl Fn(f64) -> Pose<D>) {
-    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let limits = Limits::new(1e-3);
     let mut workspace = PairWorkspace::new();
     for (name, a, b) in pairs {
         let mut track = Track::new(a.clone(), b.clone());
@@ -88,7 +88,7 @@ fn differ<const D: usize>(
     moves: &[(Pose<D>, usize, usize)],
 ) {
     const STEP: f64 = 1e-4;
-    let limits = Limits { tolerance: 1e-9, budget: 1_000_000 };
+    let limits = Limits::new(1e-9).with_budget(1_000_000);
     let mut workspace = PairWorkspace::new();
     for (name, a, b) in pairs {
         let mut at = |poses: [Pose<D>; 2]| {
@@ -151,7 +151,7 @@ fn a_ball_deep_in_another_is_as_deep_wherever_it_is() -> Result<(), ShapeError> 
     let (large, small) =
         (Shape::from_kernel(Ball::new(1.0)?), Shape::from_kernel(Ball::new(0.2)?));
     let there = Placed::new(&small, Pose::translation(Vector([0.3, 0.1, 0.2])));
-    let limits = Limits { tolerance: 1e-6, budget: 200_000 };
+    let limits = Limits::new(1e-6).with_budget(200_000);
     let mut workspace = PairWorkspace::new();
     let nearest = separation(&large, there, &limits, &mut workspace).expect("bounded").best;
     let rates = rates(&large, there, &nearest).expect("bounded");
@@ -165,7 +165,7 @@ fn a_ball_deep_in_another_is_as_deep_wherever_it_is() -> Result<(), ShapeError> 
 #[test]
 fn far_from_the_origin_bounds_hold_the_roundings_of_poses() -> Result<(), ShapeError> {
     let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
-    let limits = Limits { tolerance: 0.0, budget: 2000 };
+    let limits = Limits::new(0.0).with_budget(2000);
     let mut workspace = PairWorkspace::new();
     let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
     let far = Vector([1e6, -2e6, 3e6]);
@@ -179,7 +179,7 @@ fn far_from_the_origin_bounds_hold_the_roundings_of_poses() -> Result<(), ShapeE
 
 #[test]
 fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
-    let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };
+    let limits = Limits::new(1e-6).with_budget(1_000_000);
     let mut workspace = PairWorkspace::new();
     let turn = Rotation::from_axis_angle(Vector([0.3, 1.0, -0.4]), 0.7)?;
     let away = Vector([0.6, 0.35, 0.3]);
@@ -199,7 +199,7 @@ fn poses_and_built_motions_give_the_same_answers() -> Result<(), ShapeError> {
 /// The boxes of a proof fill the box around them, and each says what is true.
 #[test]
 fn a_proof_has_no_gaps_and_no_untruths() -> Result<(), ShapeError> {
-    let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+    let limits = Limits::new(1e-3);
     let mut workspace = PairWorkspace::new();
     let there = Pose::translation(Vector([0.62, 0.4]));
     for (name, a, b) in in_the_plane()? {
@@ -240,8 +240,11 @@ where
             return Ok(Ok(()));
         }
         let size = draw::size(&a).min(draw::size(&b));
-        let limits = Limits { tolerance: 0.02 * size, budget: 5_000 };
-        let settings = ManifoldSettings { margin: 0.02 * size, spacing: 0.15 * size, most: 16 };
+        let limits = Limits::new(0.02 * size).with_budget(5_000);
+        let settings = ManifoldSettings::of_size(size)
+            .with_margin(0.02 * size)
+            .with_spacing(0.15 * size)
+            .with_most(16);
         let mut track = Track::new(a.clone(), b.clone());
         let start = [Pose::identity(), draw::pose(u)?];
         let mut poses = start;

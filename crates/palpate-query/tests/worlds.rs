@@ -6,8 +6,8 @@
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{
-    BodyId, Limits, PairWorkspace, Placed, QueryError, Verdict, World, WorldSettings, overlap,
-    separation,
+    BodyId, Limits, ManifoldSettings, PairWorkspace, Placed, QueryError, Verdict, World,
+    WorldSettings, overlap, separation,
 };
 
 type Test = Result<(), Box<dyn std::error::Error>>;
@@ -56,10 +56,10 @@ fn made<const D: usize>(
 
 /// That a world says of all pairs what each says alone.
 fn agrees<const D: usize>(world: &mut World<D>, bodies: &[(Shape<D>, Pose<D>)]) -> usize {
-    let WorldSettings { manifold, limits: asked } = *world.settings();
+    let WorldSettings { manifold, limits: asked, .. } = *world.settings();
     let margin = manifold.margin;
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: 1e-5, budget: 200_000 };
+    let limits = Limits::new(1e-5).with_budget(200_000);
     let found = world.step();
     let mut touching = 0;
     for (k, (b, of_b)) in bodies.iter().enumerate() {
@@ -105,7 +105,7 @@ fn a_world_says_what_all_pairs_say() -> Test {
 #[test]
 fn bodies_that_come_and_go_are_asked_while_they_are_there() -> Test {
     let margin = WorldSettings::of_size(1.0).manifold.margin;
-    let limits = Limits { tolerance: 1e-5, budget: 200_000 };
+    let limits = Limits::new(1e-5).with_budget(200_000);
     let mut workspace = PairWorkspace::new();
     let mut world = World::new(WorldSettings::of_size(1.0))?;
     // Name, shape, pose, groups and mask of those that are there.
@@ -217,8 +217,8 @@ fn no_pair_is_dropped() -> Test {
     assert_eq!(verdicts[2], ([wall, ball], Verdict::Touching));
     assert!((found[2].contacts()[0].gap + 1e-4).abs() < 1e-6);
     // A budget of nothing decides nothing, and drops nothing.
-    let limits = Limits { tolerance: 1e-9, budget: 10 };
-    let settings = WorldSettings { limits, ..WorldSettings::of_size(1.0) };
+    let limits = Limits::new(1e-9).with_budget(10);
+    let settings = WorldSettings::new(ManifoldSettings::of_size(1.0), limits);
     let mut world = World::new(settings)?;
     let cuboid = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?);
     let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
@@ -229,7 +229,7 @@ fn no_pair_is_dropped() -> Test {
     let found = world.step();
     let [lower, upper] = found[0].bounds();
     let mut workspace = PairWorkspace::new();
-    let limits = Limits { tolerance: 1e-6, budget: 1_000_000 };
+    let limits = Limits::new(1e-6).with_budget(1_000_000);
     let truth = separation(&cuboid, Placed::new(&torus, there), &limits, &mut workspace)?;
     assert!(lower <= truth.upper && truth.lower <= upper, "{truth:?}");
     assert!(overlap(&cuboid, Placed::new(&torus, there), &limits, &mut workspace).is_ok());
@@ -244,9 +244,12 @@ fn poses_are_moved_all_or_none() -> Test {
     let other = world.add(ball.clone(), Pose::identity())?;
     let fine = Pose::translation(Vector([3.0, 0.0, 0.0]));
     let wrong = Pose::translation(Vector([f64::NAN, 0.0, 0.0]));
-    assert_eq!(world.set_poses(&[(one, fine), (other, wrong)]), Err(QueryError::Pose));
+    assert_eq!(
+        world.set_poses(&[(one, fine), (other, wrong)]),
+        Err(QueryError::Pose { index: 1 })
+    );
     assert_eq!(world.pose(one)?, Pose::identity());
-    assert_eq!(world.add(ball, wrong), Err(QueryError::Pose));
+    assert_eq!(world.add(ball, wrong), Err(QueryError::Pose { index: 2 }));
     world.set_poses(&[(one, fine)])?;
     assert!(world.step().is_empty());
     Ok(())

@@ -31,7 +31,7 @@
 //! )?;
 //! let World::Spatial(world) = scene.build()? else { unreachable!("dimension is 3") };
 //! assert_eq!(world.bodies[0].material.stiffness, 800.0);
-//! assert_eq!(world.whole.distance([0.0, 0.01, 0.0].into()), 0.004);
+//! assert_eq!(world.whole.distance([0.0, 0.01, 0.0]), 0.004);
 //! # Ok(())
 //! # }
 //! ```

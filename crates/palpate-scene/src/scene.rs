@@ -63,7 +63,7 @@ impl fmt::Display for Dimension {
 /// )?;
 /// assert_eq!(Scene::from_json(&scene.to_json())?, scene);
 /// if let World::Planar(world) = scene.build()? {
-///     assert_eq!(world.whole.distance([3.0, 0.0].into()), 1.5);
+///     assert_eq!(world.whole.distance([3.0, 0.0]), 1.5);
 /// }
 /// # Ok(())
 /// # }

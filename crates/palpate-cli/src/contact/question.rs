@@ -55,9 +55,9 @@ impl Question {
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;
         let tolerance = length("--tolerance", asked.tolerance.unwrap_or(0.5 * margin), 0.0)?;
-        let manifold = ManifoldSettings { margin, spacing, ..usual };
-        let limits = Limits { tolerance, budget: asked.budget };
-        Ok(Self { settings: WorldSettings { manifold, limits } })
+        let manifold = usual.with_margin(margin).with_spacing(spacing);
+        let limits = Limits::new(tolerance).with_budget(asked.budget);
+        Ok(Self { settings: WorldSettings::new(manifold, limits) })
     }
 
     /// All pairs that touch, or of which it is not known.

@@ -5,7 +5,7 @@
 
 use std::io::Write;
 
-use palpate::query::{Stop, Verdict};
+use palpate::query::Verdict;
 use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
@@ -25,14 +25,14 @@ impl<const D: usize> Report<'_, D> {
         let mut out = output::answer();
         for pair in self.pairs {
             let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
-            write!(out, "{a} – {b}: {}", word(pair.verdict))?;
+            write!(out, "{a} – {b}: {}", pair.verdict.to_string())?;
             match &pair.separation {
                 Some(found) => writeln!(
                     out,
                     ", separation {} to {} mm ({}, {} evaluations)",
                     millimetres(found.lower),
                     millimetres(found.upper),
-                    reason(found.stop),
+                    found.stop.to_string(),
                     found.evaluations
                 )?,
                 None => writeln!(out, ": neither is bounded, nothing is known")?,
@@ -104,7 +104,7 @@ impl<const D: usize> Report<'_, D> {
             .collect();
         let mut said = json!({
             "bodies": pair.bodies.map(|i| self.names[i]),
-            "verdict": word(pair.verdict),
+            "verdict": pair.verdict.to_string(),
             "dropped": pair.dropped,
             "is_whole": pair.is_whole,
             "groups": pair.groups,
@@ -113,26 +113,10 @@ impl<const D: usize> Report<'_, D> {
         said[key] = json!(contacts);
         if let Some(found) = &pair.separation {
             said["separation_m"] = json!({ "lower": found.lower, "upper": found.upper });
-            said["stop"] = json!(reason(found.stop));
+            said["stop"] = json!(found.stop.to_string());
             said["evaluations"] = json!(found.evaluations);
         }
         said
-    }
-}
-
-fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Touching => "touching",
-        Verdict::Apart => "apart",
-        Verdict::Undecided => "undecided",
-    }
-}
-
-fn reason(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Converged => "converged",
-        Stop::SignKnown => "sign known",
-        Stop::BudgetSpent => "budget spent",
     }
 }
 

@@ -91,7 +91,8 @@ where
     let answer = Answer {
         method,
         found: method.descend(&scene.whole, element),
-        certified: minimum(&scene.whole, element, &limits, &mut Workspace::new()),
+        certified: minimum(&scene.whole, element, &limits, &mut Workspace::new())
+            .map_err(Failure::input)?,
     };
     answer.print(options.json)?;
     if let Some(picture) = picture {
@@ -116,7 +117,7 @@ fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
     let tolerance = tolerance.unwrap_or(TOLERANCE * size);
     // Written so that what is no number is refused.
     if tolerance >= 0.0 && tolerance.is_finite() {
-        Ok(Limits { tolerance, ..Limits::default() })
+        Ok(Limits::new(tolerance))
     } else {
         let rule = "--tolerance must be finite and zero or more";
         Err(Failure::input(format!("{rule}, got {tolerance:?} m")))

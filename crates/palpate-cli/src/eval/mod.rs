@@ -39,7 +39,7 @@ fn evaluate<const D: usize>(
         return stream::run(&scene.whole, points, options, destination, interrupt);
     }
     let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
-    let answer = query::point(&scene.whole, point).map_err(Failure::input)?;
+    let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
     let mut out = output::answer();
     let promise = promise_in_words(scene.whole.promise());
     if options.json {

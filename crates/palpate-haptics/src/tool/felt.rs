@@ -95,13 +95,11 @@ impl<const D: usize> Tool<D> {
         for push in &rest.pushes {
             let point = self.shell.points().get(push.point as usize);
             let radius = point.map_or(0.0, |point| point.radius);
-            touch.contacts.push(Contact {
-                point_a: push.centre - push.normal * radius,
-                point_b: push.centre - push.normal * (radius + push.gap),
-                normal: -push.normal,
-                gap: push.gap,
-                id: u64::from(push.body) << 32 | u64::from(push.point),
-            });
+            let point_a = push.centre - push.normal * radius;
+            let point_b = push.centre - push.normal * (radius + push.gap);
+            // One point of the tool touches one body once, so that the two name the contact.
+            let id = u64::from(push.body) << 32 | u64::from(push.point);
+            touch.contacts.push(Contact::new(point_a, point_b, -push.normal).with_id(id));
         }
     }
 

@@ -12,7 +12,7 @@ use gltf::{Accessor, Document, Gltf, Node, Primitive, Semantic, buffer};
 use palpate_field::{Point, Vector};
 
 use super::Format;
-use crate::error::ReadProblem;
+use super::ReadProblem;
 use crate::mesh::TriangleMesh;
 
 /// Bytes before the first chunk.

@@ -3,10 +3,10 @@
 
 //! Files of meshes.
 //!
-//! Parsing is left to crates made for it; what is here says what they need to be told
-//! before they are given a file that nobody vouches for, and puts their answers together.
-//! Reading takes memory in proportion to the size of the file and no more.
+//! Other crates parse; the modules here check what those crates take for granted of a file,
+//! and build the mesh. Reading takes memory in proportion to the size of the file.
 
+mod error;
 mod glb;
 mod obj;
 mod ply;
@@ -16,10 +16,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{ReadError, ReadProblem};
 use crate::mesh::TriangleMesh;
 use crate::polygon::{MOST_CORNERS, triangulate};
 use palpate_field::Point;
+
+pub use error::{ReadError, ReadProblem};
 
 /// The largest file that is read [bytes]: 1 GiB.
 pub const LARGEST_FILE: u64 = 1 << 30;
@@ -29,6 +30,7 @@ const LONGEST_COMPLAINT: usize = 300;
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Wavefront OBJ: its vertices and faces, all objects and groups together.
     Obj,
@@ -88,6 +90,28 @@ impl Format {
 pub fn read_file(path: impl AsRef<Path>) -> Result<TriangleMesh, ReadError> {
     let path = path.as_ref();
     from_path(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
+}
+
+impl TriangleMesh {
+    /// Reads the mesh of a file, as [`read_file`] does.
+    ///
+    /// # Errors
+    ///
+    /// As of [`read_file`].
+    ///
+    /// ```
+    /// use palpate_mesh::Mesh;
+    ///
+    /// # fn main() -> Result<(), palpate_mesh::ReadError> {
+    /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/meshes/nut.ply");
+    /// let nut = Mesh::open(path)?;
+    /// assert!(nut.report().is_watertight());
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        read_file(path)
+    }
 }
 
 fn from_path(path: &Path) -> Result<TriangleMesh, ReadProblem> {

@@ -11,8 +11,8 @@ use std::fmt::Write;
 
 use palpate_field::Vector;
 
+use super::ReadProblem;
 use super::{Format, of_polygons};
-use crate::error::ReadProblem;
 use crate::mesh::TriangleMesh;
 
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {

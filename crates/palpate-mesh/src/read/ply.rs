@@ -8,8 +8,8 @@ use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 use palpate_field::{Point, Vector};
 
+use super::ReadProblem;
 use super::{Format, of_polygons};
-use crate::error::ReadProblem;
 use crate::mesh::TriangleMesh;
 
 /// One row of a file: a vertex, a face, or something that does not matter.

@@ -11,7 +11,7 @@ use std::io::Cursor;
 use palpate_field::Vector;
 
 use super::Format;
-use crate::error::ReadProblem;
+use super::ReadProblem;
 use crate::mesh::TriangleMesh;
 
 /// Bytes of a binary header, of the count behind it, and of a triangle.

@@ -46,7 +46,7 @@ const PAST: f64 = 4.0;
 /// let far = Shape::union([b, Shape::from_kernel(Ball::new(0.1)?).translated(Vector([2.4, 0.0]))?])?;
 /// let method = AlternatingProjection::default();
 /// let found = method.descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
-/// let proven = overlap(&a, &far, &Limits::default(), &mut PairWorkspace::new())?;
+/// let proven = overlap(&a, &far, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(found.value > 0.0 && proven.is_hit() == Some(true));
 /// # Ok(())
 /// # }
@@ -80,7 +80,7 @@ impl AlternatingProjection {
     ) -> Result<Descent<D>, QueryError> {
         check_coordinates("a start", start)?;
         check_length(tolerance)?;
-        let (a, b) = (Body::in_world(a.into())?, Body::in_world(b.into())?);
+        let (a, b) = (Body::in_world(0, a.into())?, Body::in_world(1, b.into())?);
         let value = |p| a.slope(p).0.max(b.slope(p).0);
         let visit = |descent: &mut Descent<D>, p| {
             descent.evaluations += 4;

@@ -30,7 +30,7 @@ use crate::element::Element;
 /// ])?;
 /// let segment = Element::new([Vector([-1.0, 0.25]), Vector([1.0, -0.75])])?;
 /// let found = FrankWolfe::default().descend(&balls, &segment);
-/// let certified = minimum(&balls, &segment, &Limits::default(), &mut Workspace::new());
+/// let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
 /// assert!(certified.upper < -0.032 && found.value > 0.02);
 /// # Ok(())
 /// # }

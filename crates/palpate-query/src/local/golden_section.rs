@@ -36,7 +36,7 @@ const LEFT: f64 = 0.618_033_988_749_894_9;
 /// let segment = Element::new([Vector([-1.0, 0.125]), Vector([1.0, 0.125])])?;
 /// let scene = Shape::union([floor, bump])?;
 /// let found = GoldenSection::default().descend(&scene, &segment);
-/// let certified = minimum(&scene, &segment, &Limits::default(), &mut Workspace::new());
+/// let certified = minimum(&scene, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
 /// assert!(found.value == 0.125 && certified.upper < -0.0499);
 /// # Ok(())
 /// # }

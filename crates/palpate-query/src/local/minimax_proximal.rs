@@ -33,7 +33,7 @@ use crate::placed::Placed;
 /// let above = Shape::union([ball(-2.0, 1.1)?, ball(2.0, 0.9)?])?;
 /// let found = MinimaxProximal::default().descend(&below, &above, Vector([-1.8, 0.4]), 1e-9)?;
 /// assert!((found.value - 0.05).abs() < 1e-8);
-/// let limits = Limits::default();
+/// let limits = Limits::new(1e-4);
 /// let proven = separation(&below, &above, &limits, &mut PairWorkspace::new())?;
 /// assert!((proven.upper + 0.1).abs() < 1e-4);
 /// # Ok(())
@@ -68,7 +68,7 @@ impl MinimaxProximal {
     ) -> Result<Descent<D>, QueryError> {
         check_coordinates("a start", start)?;
         check_length(tolerance)?;
-        let bodies = [Body::in_world(a.into())?, Body::in_world(b.into())?];
+        let bodies = [Body::in_world(0, a.into())?, Body::in_world(1, b.into())?];
         let slopes = |p: Point<D>| bodies.map(|body| body.slope(p));
         let mut here = slopes(start);
         let mut descent = Descent::from_start(start, here[0].0.max(here[1].0), 4);

@@ -36,7 +36,7 @@
 //! let segment = Element::new([Vector([-1.0, 0.25]), Vector([1.0, -0.75])])?;
 //! let method: ElementMethod = "projected_gradient".parse()?;
 //! let found = method.descend(&balls, &segment);
-//! let certified = minimum(&balls, &segment, &Limits::default(), &mut Workspace::new());
+//! let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
 //! assert!(found.value > 0.02 && certified.upper < -0.032);
 //! # Ok(())
 //! # }

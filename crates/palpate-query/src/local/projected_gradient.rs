@@ -39,7 +39,7 @@ const KEPT: f64 = 0.5;
 /// let corners = [Vector([-0.6, -0.9]), Vector([1.2, 0.0]), Vector([-0.6, 0.9])];
 /// let triangle = Element::new(corners)?;
 /// let found = ProjectedGradient::default().descend(&balls, &triangle);
-/// let certified = minimum(&balls, &triangle, &Limits::default(), &mut Workspace::new());
+/// let certified = minimum(&balls, &triangle, &Limits::new(1e-4), &mut Workspace::new())?;
 /// assert!(found.value == -0.1 && certified.upper < -0.199);
 /// # Ok(())
 /// # }

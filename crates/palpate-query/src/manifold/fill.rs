@@ -10,7 +10,7 @@ use palpate_field::{Point, Vector};
 use super::grid::distance;
 use super::patch::Patches;
 use super::{COPIES, LIKE, Member};
-use crate::pair::cell::Cell;
+use crate::pair::cell::BoxCell;
 
 /// A flat box in the middle of a region, of which no candidate was made.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ pub(super) struct Middle<const D: usize> {
 impl<const D: usize> Middle<D> {
     /// The box, by the models of both fields in it; `None` where they do not face each
     /// other.
-    pub(super) fn of(cell: &Cell<D>, [a, b]: &[Model; 2]) -> Option<Self> {
+    pub(super) fn of(cell: &BoxCell<D>, [a, b]: &[Model; 2]) -> Option<Self> {
         let mut slopes = [Vector::ZERO; 2];
         for k in (0..D).filter(|k| cell.half[*k] > 0.0) {
             (slopes[0][k], slopes[1][k]) =

@@ -23,12 +23,13 @@ use crate::certified::{Certified, Limits};
 use crate::contact::Contact;
 use crate::error::{QueryError, check_length};
 use crate::goal::Goal;
-use crate::pair::couple::Couple;
-use crate::pair::search::Search;
+use crate::pair::body_pair::BodyPair;
+use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
 use grid::distance;
 use patch::Patches;
+use region::Region;
 
 pub(crate) use names::Names;
 
@@ -42,6 +43,7 @@ const SHALLOW: f64 = 1e-3;
 
 /// Which contacts are to be found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ManifoldSettings {
     /// Up to this gap bodies count as touching [m].
     pub margin: f64,
@@ -58,17 +60,29 @@ impl ManifoldSettings {
     pub fn of_size(size: f64) -> Self {
         Self { margin: 0.002 * size, spacing: 0.04 * size, most: 32 }
     }
-}
 
-impl Default for ManifoldSettings {
-    /// For bodies of about a metre.
-    fn default() -> Self {
-        Self::of_size(1.0)
+    /// The same settings with another margin [m].
+    #[must_use]
+    pub const fn with_margin(self, margin: f64) -> Self {
+        Self { margin, ..self }
+    }
+
+    /// The same settings with another spacing [m].
+    #[must_use]
+    pub const fn with_spacing(self, spacing: f64) -> Self {
+        Self { spacing, ..self }
+    }
+
+    /// The same settings with another number of contacts at most.
+    #[must_use]
+    pub const fn with_most(self, most: usize) -> Self {
+        Self { most, ..self }
     }
 }
 
 /// How two bodies touch.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Manifold<const D: usize> {
     /// The contacts, by group, and in each from the deepest.
     pub contacts: Vec<Contact<D>>,
@@ -89,7 +103,7 @@ pub struct Manifold<const D: usize> {
 /// The separation is found to `limits.tolerance` first; once it is proven to be more than
 /// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
 /// other parts of the region are found is not, if they are smaller than the spacing.
-/// Contacts are numbered from 0; [`Track::manifold`](crate::Track::manifold) names them.
+/// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Cuboid};
@@ -100,7 +114,7 @@ pub struct Manifold<const D: usize> {
 /// let cube = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.4, 0.4]))?);
 /// // One millimetre into its top.
 /// let there = Placed::new(&cube, Pose::translation(Vector([0.1, 0.0, 0.499])));
-/// let limits = Limits { tolerance: 1e-3, ..Limits::default() };
+/// let limits = Limits::new(1e-3);
 /// let settings = ManifoldSettings::default();
 /// let touching = manifold(&table, there, &settings, &limits, &mut PairWorkspace::new())?;
 /// assert_eq!(touching.groups.len(), 1);
@@ -124,17 +138,17 @@ pub fn manifold<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Manifold<D>, QueryError> {
     settings.check()?;
-    let couple = Couple::new(a.into(), b.into())?;
+    let pair = BodyPair::new(a.into(), b.into())?;
     let goal = settings.goal(limits);
-    let mut search = Search::new(couple, goal, limits)?;
+    let mut search = PairSearch::new(pair, goal, limits)?;
     let separation = search.run(workspace);
     let budget = limits.budget;
-    Ok(spanning(couple, (search.best, separation), settings, budget, workspace))
+    Ok(spanning(pair, (search.best, separation), settings, budget, workspace))
 }
 
-/// The manifold of a couple whose separation was found at `best`, in its frame.
+/// The manifold of a pair whose separation was found at `best`, in its frame.
 fn spanning<const D: usize>(
-    mut couple: Couple<'_, D>,
+    mut pair: BodyPair<'_, D>,
     (best, separation): (Point<D>, Certified<Nearest<D>>),
     settings: &ManifoldSettings,
     budget: u32,
@@ -150,18 +164,18 @@ fn spanning<const D: usize>(
     if separation.lower > settings.margin {
         return found;
     }
-    let mut candidates = vec![Touch::at(&mut couple, best)];
-    let mut middles = Vec::new();
-    let into = (&mut candidates, &mut middles);
-    found.is_whole = region::find(&mut couple, settings, budget, workspace, into);
-    let mut patches = Patches { couple, settings, candidates: &candidates };
+    let first = Touch::at(&mut pair, best);
+    let Region { candidates, mut middles, is_whole } =
+        region::find(&mut pair, settings, budget, workspace, first);
+    found.is_whole = is_whole;
+    let mut patches = Patches { pair, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     patches.fill(&mut middles, &mut touches);
     drop_copies(&mut touches, settings.spacing);
     if let Some(deepest) = touches.first().map(|member| member.touch) {
-        found.deepen(&deepest, &patches.couple);
+        found.deepen(&deepest, &patches.pair);
     }
-    let contacts = touches.iter().map(|member| member.touch.contact(&couple, settings.spacing));
+    let contacts = touches.iter().map(|member| member.touch.contact(&pair, settings.spacing));
     let mut spanning: Vec<_> = touches.iter().copied().zip(contacts).collect();
     // Where a field says less than the distance, surfaces are farther apart than it says.
     let mut is_deepest = true;
@@ -180,19 +194,19 @@ fn spanning<const D: usize>(
         if let Some(count) = found.groups.last_mut() {
             *count += 1;
         }
-        found.contacts.push(Contact { id: i as u64, ..*contact });
+        found.contacts.push(contact.with_id(i as u64));
     }
-    found.separation.evaluations += patches.couple.evaluations;
+    found.separation.evaluations += patches.pair.evaluations;
     found
 }
 
 impl<const D: usize> Manifold<D> {
     /// Takes a contact as the best point if it is deeper.
-    fn deepen(&mut self, deepest: &Touch<D>, couple: &Couple<'_, D>) {
-        let slack = couple.slack(deepest.point.norm() + deepest.gap.abs());
+    fn deepen(&mut self, deepest: &Touch<D>, pair: &BodyPair<'_, D>) {
+        let slack = pair.slack(deepest.point.norm() + deepest.gap.abs());
         let upper = deepest.gap + 2.0 * slack;
         if upper < self.separation.upper {
-            let pose = &couple.world_from_frame;
+            let pose = &pair.world_from_frame;
             self.separation.best = Nearest {
                 point: pose.transform_point(deepest.point),
                 normal: Some(pose.transform_vector(deepest.normal)),
@@ -224,7 +238,7 @@ impl ManifoldSettings {
     }
 }
 
-/// A point between two bodies, in the couple's frame.
+/// A point between two bodies, in the pair's frame.
 #[derive(Clone, Copy, Debug)]
 struct Touch<const D: usize> {
     point: Point<D>,
@@ -242,19 +256,19 @@ struct Member<const D: usize> {
 impl<const D: usize> Touch<D> {
     /// The point as it is. Where no gradient says which way, bodies are parted by their
     /// centres, or else upwards.
-    fn at(couple: &mut Couple<'_, D>, point: Point<D>) -> Self {
-        let [(a, slope_a), (b, slope_b)] = couple.slopes(point);
-        let ways = [slope_a - slope_b, couple.between_centres(), Vector::unit(1)];
+    fn at(pair: &mut BodyPair<'_, D>, point: Point<D>) -> Self {
+        let [(a, slope_a), (b, slope_b)] = pair.slopes(point);
+        let ways = [slope_a - slope_b, pair.between_centres(), Vector::unit(1)];
         let way = ways.into_iter().find(|way| way.norm() > 1e-6).unwrap_or(ways[2]);
         Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
     }
 
     /// The contact in world coordinates, with the surfaces' points within `near` and 45° of
     /// the normal: in the middle of a body the gradient may lead to any side.
-    fn contact(&self, couple: &Couple<'_, D>, near: f64) -> Contact<D> {
+    fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {
-            let found = couple.surface_point(body, self.point);
+            let found = pair.surface_point(body, self.point);
             let found = found.filter(|p| {
                 let away = *p - self.point;
                 let along = away.dot(self.normal);
@@ -262,15 +276,8 @@ impl<const D: usize> Touch<D> {
             });
             found.unwrap_or(self.point + self.normal * (side * 0.5 * self.gap))
         };
-        let pose = &couple.world_from_frame;
-        let (point_a, point_b) = (on(0, -1.0), on(1, 1.0));
-        Contact {
-            point_a: pose.transform_point(point_a),
-            point_b: pose.transform_point(point_b),
-            normal: pose.transform_vector(self.normal),
-            gap: (point_b - point_a).dot(self.normal),
-            id: 0,
-        }
+        let pose = &pair.world_from_frame;
+        Contact::new(on(0, -1.0), on(1, 1.0), self.normal).placed(pose)
     }
 }
 

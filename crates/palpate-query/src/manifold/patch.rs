@@ -9,7 +9,7 @@ use super::grid::{Grid, distance};
 use super::region::{Towards, towards};
 use super::{ManifoldSettings, Member, Touch};
 use crate::goal::Goal;
-use crate::pair::couple::Couple;
+use crate::pair::body_pair::BodyPair;
 use crate::pair::descent::descend;
 
 /// Candidates nearer than this many spacings are neighbours.
@@ -36,7 +36,7 @@ const SHARP: f64 = 0.06;
 
 /// Candidates and what they are candidates of.
 pub(super) struct Patches<'a, 'b, const D: usize> {
-    pub(super) couple: Couple<'a, D>,
+    pub(super) pair: BodyPair<'a, D>,
     pub(super) settings: &'b ManifoldSettings,
     /// The certified best point is among them.
     pub(super) candidates: &'b [Touch<D>],
@@ -138,7 +138,7 @@ impl<const D: usize> Patches<'_, '_, D> {
         // Bodies that touch in a valley meet all along it nearly as deep: short steps find
         // no way down.
         let first = Some(self.settings.spacing);
-        let (_, p) = descend(&mut self.couple, (start.point, first), goal, 0.0);
+        let (_, p) = descend(&mut self.pair, (start.point, first), goal, 0.0);
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
         found.filter(|found| found.gap < start.gap).unwrap_or(start)
@@ -176,7 +176,7 @@ impl<const D: usize> Patches<'_, '_, D> {
     pub(super) fn settle(&mut self, p: Point<D>, far: f64) -> Option<Touch<D>> {
         let mut here = p;
         for _ in 0..4 {
-            let slopes = self.couple.slopes(here);
+            let slopes = self.pair.slopes(here);
             match towards(here, slopes, self.settings) {
                 Towards::There(touch) => return Some(touch),
                 Towards::Next(next) if distance(next, p) <= far => here = next,

@@ -8,9 +8,11 @@ use palpate_field::{BLOCK, Point, Vector};
 
 use super::fill::Middle;
 use super::{ManifoldSettings, Touch};
+use crate::certified::Stop;
+use crate::engine::{self, End, Frontier, Heap, Problem};
 use crate::pair::PairWorkspace;
-use crate::pair::cell::{Cell, least_of_larger, reach};
-use crate::pair::couple::{Couple, Memory};
+use crate::pair::body_pair::{BodyPair, Memory};
+use crate::pair::cell::{BoxCell, least_of_larger, reach};
 use crate::pair::search::ROOM;
 
 /// Steps to the surface between at most.
@@ -23,71 +25,148 @@ const ON: f64 = 1e-3;
 /// function are flat.
 const FLAT: f64 = 0.05;
 
-/// Appends candidates on the surface between, and the flat boxes in the middle of the
-/// region; `false` if the budget ended first.
+/// What was found of the region in which two bodies touch.
+#[derive(Debug, Default)]
+pub(super) struct Region<const D: usize> {
+    /// Points on the surface between the bodies.
+    pub(super) candidates: Vec<Touch<D>>,
+    /// Flat boxes in the middle of the region.
+    pub(super) middles: Vec<Middle<D>>,
+    /// `false` if the budget ended before the whole region was searched.
+    pub(super) is_whole: bool,
+}
+
+/// Finds the region in which two bodies touch; `first` is the first candidate.
 pub(super) fn find<const D: usize>(
-    couple: &mut Couple<'_, D>,
+    pair: &mut BodyPair<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
-    (candidates, middles): (&mut Vec<Touch<D>>, &mut Vec<Middle<D>>),
-) -> bool {
-    let half_margin = 0.5 * settings.margin;
-    let root = couple.root(half_margin);
-    let slack = couple.slack(reach(&root));
-    let limit = half_margin + slack;
-    let PairWorkspace { pending, open, memory, .. } = workspace;
-    let mut small = Vec::new();
-    let mut parts = [Cell::NOTHING; BLOCK];
-    let mut values = [[0.0; BLOCK]; 2];
-    Cell::unknown(&root).grid(pending);
-    let mut is_whole = true;
-    while !pending.is_empty() {
-        is_whole = couple.evaluations < budget && pending.len() + (BLOCK << D) <= ROOM;
-        if !is_whole {
-            break;
-        }
-        let first = pending.len().saturating_sub(BLOCK);
-        let count = pending.len() - first;
-        parts[..count].copy_from_slice(&pending[first..]);
-        pending.truncate(first);
+    first: Touch<D>,
+) -> Region<D> {
+    let root = pair.root(0.5 * settings.margin);
+    let slack = pair.slack(reach(&root));
+    let PairWorkspace { frontier, open, memory, .. } = workspace;
+    frontier.queue.clear();
+    BoxCell::unknown(&root).grid(&mut frontier.pending);
+    let mut search = RegionSearch {
+        pair,
+        settings,
+        budget,
+        slack,
+        open,
+        memory,
+        small: vec![],
+        middles: vec![],
+    };
+    let is_whole = engine::search(&mut search, frontier) == End::Exhausted;
+    let RegionSearch { pair, small, middles, memory, .. } = search;
+    let mut candidates = vec![first];
+    for cells in small.chunks(BLOCK) {
+        settle(pair, cells, settings, memory, &mut candidates);
+    }
+    Region { candidates, middles, is_whole }
+}
+
+/// A search for all boxes down to the spacing that the surface between the bodies crosses.
+/// It bounds no least value: no box comes before another, and all are searched.
+struct RegionSearch<'s, 'a, const D: usize> {
+    pair: &'s mut BodyPair<'a, D>,
+    settings: &'s ManifoldSettings,
+    budget: u32,
+    slack: f64,
+    open: &'s mut Vec<usize>,
+    memory: &'s mut Memory<D>,
+    /// Boxes no larger than the spacing that the surface may cross.
+    small: Vec<BoxCell<D>>,
+    middles: Vec<Middle<D>>,
+}
+
+impl<const D: usize> RegionSearch<'_, '_, D> {
+    /// Which boxes of a round the surface between may cross, within the margin, as far as
+    /// the values at their centres tell.
+    fn is_near(&mut self, round: &[BoxCell<D>]) -> [bool; BLOCK] {
+        let limit = 0.5 * self.settings.margin + self.slack;
+        let mut values = [[0.0; BLOCK]; 2];
         for (body, values) in values.iter_mut().enumerate() {
-            couple.values(body, &parts[..count], memory, values);
+            self.pair.values(body, round, self.memory, values);
         }
-        let mut is_open = [false; BLOCK];
-        for (i, part) in parts[..count].iter().enumerate() {
+        let mut is_near = [false; BLOCK];
+        for (i, part) in round.iter().enumerate() {
             let ([a, b], radius) = ([values[0][i], values[1][i]], part.radius());
-            is_open[i] = a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + slack);
+            is_near[i] =
+                a.max(b) - radius <= limit && (a - b).abs() <= 2.0 * (radius + self.slack);
         }
-        open.clear();
-        open.extend((0..count).filter(|&i| is_open[i]));
-        couple.keep_known(&parts[..count], open, memory);
+        is_near
+    }
+}
+
+impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
+    type Queue = Heap<BoxCell<D>>;
+
+    fn round_and_parts(&self) -> (usize, usize) {
+        (BLOCK, 1 << D)
+    }
+
+    fn decided(&self, _lower: f64) -> Option<Stop> {
+        None
+    }
+
+    fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
+        frontier.pending.len() + (BLOCK << D) <= ROOM
+    }
+
+    fn is_spent(&self) -> bool {
+        self.pair.evaluations >= self.budget
+    }
+
+    /// Boxes are halved once they are bounded, and their halves are pending.
+    fn can_split(&self, _queue: &Self::Queue) -> bool {
+        false
+    }
+
+    fn split(&mut self, cell: &BoxCell<D>, round: &mut Vec<BoxCell<D>>) {
+        cell.halve(round);
+    }
+
+    fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
+        let Frontier { pending, round, .. } = frontier;
+        let mut is_open = self.is_near(round);
+        self.open.clear();
+        self.open.extend((0..round.len()).filter(|&i| is_open[i]));
+        self.pair.keep_known(round, self.open, self.memory);
         for body in 0..2 {
-            couple.models(body, &parts[..count], open, memory);
+            self.pair.models(body, round, self.open, self.memory);
         }
-        for (lane, &i) in open.iter().enumerate() {
-            let models = [0, 1].map(|body| couple.model(body, memory, lane));
-            let found = look::<D>(&models, settings, slack);
+        for (lane, &i) in self.open.iter().enumerate() {
+            let models = [0, 1].map(|body| self.pair.model(body, self.memory, lane));
+            let found = look::<D>(&models, self.settings, self.slack);
             is_open[i] = found == Look::Open;
             if found == Look::Middle {
-                middles.extend(Middle::of(&parts[i], &models));
+                self.middles.extend(Middle::of(&round[i], &models));
             }
         }
-        for part in (0..count).filter(|&i| is_open[i]).map(|i| &parts[i]) {
+        let mut lanes = is_open.iter();
+        round.retain(|_| lanes.next() == Some(&true));
+        for part in round.drain(..) {
             let longest = (0..D).fold(0.0_f64, |longest, k| longest.max(part.half[k]));
-            if longest <= 0.5 * settings.spacing {
-                small.push(*part);
+            if longest <= 0.5 * self.settings.spacing {
+                self.small.push(part);
             } else {
-                let mut halves = [Cell::NOTHING; 8];
-                let count = part.halve(&mut halves, 0);
-                pending.extend_from_slice(&halves[..count]);
+                self.split(&part, pending);
             }
         }
     }
-    for cells in small.chunks(BLOCK) {
-        settle(couple, cells, settings, memory, candidates);
+
+    fn is_open(&self, _cell: &BoxCell<D>) -> bool {
+        false
     }
-    is_whole
+
+    fn close(&mut self, _cell: &BoxCell<D>, _queue: &mut Self::Queue) {}
+
+    fn closed(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
 }
 
 /// What the models of a box say of the surface between.
@@ -126,8 +205,8 @@ fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack:
 /// Moves the centres of boxes to the surface between, along the gradient of `g_a − g_b`,
 /// and appends those that get there and where the bodies face each other.
 fn settle<const D: usize>(
-    couple: &mut Couple<'_, D>,
-    cells: &[Cell<D>],
+    pair: &mut BodyPair<'_, D>,
+    cells: &[BoxCell<D>],
     settings: &ManifoldSettings,
     memory: &mut Memory<D>,
     candidates: &mut Vec<Touch<D>>,
@@ -140,7 +219,7 @@ fn settle<const D: usize>(
     let mut count = cells.len();
     let mut slopes = [[(0.0, Vector::ZERO); BLOCK]; 2];
     for step in 0..STEPS {
-        couple.block_slopes(&points[..count], memory, &mut slopes);
+        pair.block_slopes(&points[..count], memory, &mut slopes);
         let mut left = 0;
         for i in 0..count {
             let cell = &cells[from[i]];

@@ -8,7 +8,7 @@ use palpate_field::Pose;
 use super::{Manifold, ManifoldSettings, spanning};
 use crate::certified::Limits;
 use crate::error::QueryError;
-use crate::pair::couple::Couple;
+use crate::pair::body_pair::BodyPair;
 use crate::pair::{PairWorkspace, Track};
 use crate::placed::Placed;
 
@@ -32,8 +32,8 @@ impl<const D: usize> Track<D> {
         let (separation, best) = self.search(poses, goal, limits, workspace)?;
         let found = (best, separation);
         let [a, b] = self.shapes();
-        let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let mut found = spanning(couple, found, settings, limits.budget, workspace);
+        let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        let mut found = spanning(pair, found, settings, limits.budget, workspace);
         self.names.name(&mut found.contacts, poses, settings.spacing);
         Ok(found)
     }

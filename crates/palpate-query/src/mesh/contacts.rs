@@ -7,23 +7,33 @@ use super::hits::{MeshWorkspace, Undecided, find};
 use super::placed::PlacedMesh;
 use crate::certified::Limits;
 use crate::contact::Contact;
-use crate::contacts::{append, at, level};
+use crate::contacts::{self, ElementContacts, level};
+use crate::element_search::Terms;
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
-use crate::search::Terms;
+
+/// A contact of an element of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeshContact<const D: usize> {
+    /// The contact, from the field to the mesh, in world coordinates.
+    pub contact: Contact<D>,
+    /// The index of the element in the mesh.
+    pub element: u32,
+}
 
 /// All contacts of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshContacts<'a, const D: usize> {
-    /// The contacts, by their ids, in world coordinates. The upper 32 bits of an id are the
-    /// element, the lower ones count its contacts from the deepest on.
-    pub contacts: &'a [Contact<D>],
-    /// The elements that touch, ascending; each has a contact.
-    pub hits: &'a [u32],
-    /// Those of which it is not known, ascending. All others are proven free.
-    pub undecided: &'a [Undecided],
-    /// How often the field was asked; a gradient counts twice.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshContacts<const D: usize> {
+    /// The contacts, by ascending elements, and of each element from the deepest.
+    pub contacts: Vec<MeshContact<D>>,
+    /// The elements that touch, ascending; each has at least one contact.
+    pub hits: Vec<u32>,
+    /// The elements that could not be decided, ascending. All others are proven free.
+    pub undecided: Vec<Undecided>,
+    /// How often the field was evaluated; a gradient counts twice.
     pub evaluations: u32,
 }
 
@@ -31,11 +41,12 @@ pub struct MeshContacts<'a, const D: usize> {
 ///
 /// Of each element that [`mesh_hits`](crate::mesh_hits) names, all that
 /// [`contacts`](crate::contacts) finds, with the same promises; `limits` are those of each
-/// element. The first thing of a contact is the field, the second the mesh.
+/// element. Body `a` of a contact is the field, body `b` the mesh.
 ///
 /// # Errors
 ///
-/// If `gap` is negative or no number, or a pose is not finite or beyond 1e15 m.
+/// If `gap` or the tolerance is negative, NaN or too large, or a pose is not finite or
+/// beyond 1e15 m.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -47,12 +58,13 @@ pub struct MeshContacts<'a, const D: usize> {
 /// let floor = TriangleMesh::new(corners, vec![[0, 2, 1]])?;
 /// let ball = Shape::from_kernel(Ball::new(1.0)?);
 /// let above = Placed::new(&ball, Pose::translation(Vector([0.5, 0.75, 0.0])));
-/// let limits = Limits { tolerance: 1e-6, ..Limits::default() };
+/// let limits = Limits::new(1e-6);
 /// let mut workspace = MeshWorkspace::new();
 /// let touching = mesh_contacts(above, &floor, 0.0, &limits, &mut workspace)?;
-/// let [contact] = touching.contacts else { panic!("one contact") };
-/// assert!((contact.gap + 0.25).abs() < 1e-6);
-/// assert!((contact.normal - Vector([0.0, -1.0, 0.0])).norm() < 1e-2);
+/// let [touch] = touching.contacts.as_slice() else { panic!("one contact") };
+/// assert_eq!(touch.element, 0);
+/// assert!((touch.contact.gap + 0.25).abs() < 1e-6);
+/// assert!((touch.contact.normal - Vector([0.0, -1.0, 0.0])).norm() < 1e-2);
 /// # Ok(())
 /// # }
 /// ```
@@ -62,9 +74,10 @@ pub fn mesh_contacts<'a, 'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut MeshWorkspace<N, D>,
-) -> Result<MeshContacts<'w, D>, QueryError> {
+) -> Result<&'w MeshContacts<D>, QueryError> {
     let (field, placed) = (field.into(), mesh.into());
-    let mut evaluations = find(&field, &placed, gap, limits, workspace)?;
+    find(&field, &placed, gap, limits, workspace)?;
+    let mut evaluations = workspace.hits.evaluations;
     let view = placed.seen_from(&field)?;
     let terms = Terms {
         goal: Goal::least(limits.tolerance),
@@ -72,24 +85,24 @@ pub fn mesh_contacts<'a, 'w, const N: usize, const D: usize>(
         level: level(field.shape, gap)?,
         reach: view.reach,
     };
-    let MeshWorkspace { hits, contacts, search, .. } = &mut *workspace;
-    contacts.clear();
-    for &name in &*hits {
-        let first = contacts.len();
-        let element = view.element(name);
-        let answer = append(field.shape, &element, &terms, search, contacts);
-        evaluations += answer.evaluations;
-        if contacts.len() == first {
-            // It touches, and the budget did not suffice to see where it does most.
-            contacts.push(at(field.shape, answer.best));
+    let MeshWorkspace { hits, contacts: all, search, .. } = workspace;
+    all.contacts.clear();
+    for &element in &hits.hits {
+        let first = all.contacts.len() as u64;
+        contacts::find(field.shape, &view.element(element), &terms, search);
+        let ElementContacts { contacts, least } = &mut search.found;
+        evaluations += least.evaluations;
+        if contacts.is_empty() {
+            // The element touches, and the budget ended before its deepest point was found.
+            contacts.push(contacts::at(field.shape, least.best));
         }
-        for contact in &mut contacts[first..] {
-            contact.point_a = field.world_from_body.transform_point(contact.point_a);
-            contact.point_b = field.world_from_body.transform_point(contact.point_b);
-            contact.normal = field.world_from_body.transform_vector(contact.normal);
-            contact.id |= u64::from(name) << 32;
-        }
+        all.contacts.extend(contacts.iter().zip(first..).map(|(contact, id)| MeshContact {
+            contact: contact.placed(&field.world_from_body).with_id(id),
+            element,
+        }));
     }
-    let MeshWorkspace { hits, undecided, contacts, .. } = &*workspace;
-    Ok(MeshContacts { contacts, hits, undecided, evaluations })
+    all.hits.clone_from(&hits.hits);
+    all.undecided.clone_from(&hits.undecided);
+    all.evaluations = evaluations;
+    Ok(all)
 }

@@ -12,23 +12,23 @@
 //! ```
 //!
 //! What is left of the elements is looked at 64 at a time: a point lifted off the centre
-//! along the gradient frees most (see [`search`](crate::search)), the lowest corner of the
+//! along the gradient frees most (see [`search`](crate::element_search)), the lowest corner of the
 //! linear model hits most. Those that stay open are halved twice and looked at again. Few
 //! remain to be searched one by one.
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
 use palpate_mesh::FAN;
 
+use super::contacts::MeshContacts;
 use super::placed::{PlacedMesh, View};
 use crate::certified::Limits;
-use crate::contact::Contact;
 use crate::contacts::level;
 use crate::element::{Element, parts_of_one};
+use crate::element_search::{Terms, Workspace, search};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
 use crate::sampler::{Steepness, unit};
-use crate::search::{Terms, Workspace, search};
 
 /// How high points are lifted off elements, in radii.
 const HEIGHT: f64 = 4.0;
@@ -48,10 +48,9 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     open: Vec<Part<N, D>>,
     still_open: Vec<Part<N, D>>,
     marks: Marks,
-    pub(super) hits: Vec<u32>,
-    pub(super) undecided: Vec<Undecided>,
-    pub(super) contacts: Vec<Contact<D>>,
-    pub(super) search: Workspace<N, D>,
+    pub(super) hits: MeshHits,
+    pub(super) contacts: MeshContacts<D>,
+    pub(crate) search: Workspace<N, D>,
 }
 
 /// An element or a part of one, where the field sees it.
@@ -77,9 +76,8 @@ impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
             open: Vec::new(),
             still_open: Vec::new(),
             marks: Marks::default(),
-            hits: Vec::new(),
-            undecided: Vec::new(),
-            contacts: Vec::new(),
+            hits: MeshHits::default(),
+            contacts: MeshContacts::default(),
             search: Workspace::new(),
         }
     }
@@ -91,25 +89,27 @@ impl<const N: usize, const D: usize> Default for MeshWorkspace<N, D> {
     }
 }
 
-/// An element of which it is not known whether it touches.
+/// An element of which the search could not tell whether it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Undecided {
-    /// The element.
+    /// The index of the element in the mesh.
     pub element: u32,
-    /// The field is no less on it [m].
+    /// Proven lower bound of the field on the element [m].
     pub lower: f64,
-    /// The field is no more somewhere on it [m].
+    /// Upper bound of the field's least value on the element [m].
     pub upper: f64,
 }
 
-/// What is known of every element of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshHits<'a> {
+/// Which elements of a mesh touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshHits {
     /// The elements that touch, ascending.
-    pub hits: &'a [u32],
-    /// Those of which it is not known, ascending. All others are proven free.
-    pub undecided: &'a [Undecided],
-    /// How often the field was asked; a gradient counts twice.
+    pub hits: Vec<u32>,
+    /// The elements that could not be decided, ascending. All others are proven free.
+    pub undecided: Vec<Undecided>,
+    /// How often the field was evaluated; a gradient counts twice.
     pub evaluations: u32,
 }
 
@@ -126,7 +126,8 @@ pub struct MeshHits<'a> {
 ///
 /// # Errors
 ///
-/// If `gap` is negative or no number, or a pose is not finite or beyond 1e15 m.
+/// If `gap` or the tolerance is negative, NaN or too large, or a pose is not finite or
+/// beyond 1e15 m.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -140,7 +141,7 @@ pub struct MeshHits<'a> {
 /// let mut workspace = MeshWorkspace::new();
 /// // Its lowest side passes the disc at 0.5, and its long side at 1.3.
 /// let placed = PlacedMesh::new(&triangle, Pose::translation(Vector([-2.0, 0.5])));
-/// let near = mesh_hits(&disc, placed, 0.0, &Limits::default(), &mut workspace)?;
+/// let near = mesh_hits(&disc, placed, 0.0, &Limits::new(1e-4), &mut workspace)?;
 /// assert_eq!(near.hits, [0]);
 /// assert!(near.undecided.is_empty());
 /// # Ok(())
@@ -152,19 +153,20 @@ pub fn mesh_hits<'a, 'w, const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
     workspace: &'w mut MeshWorkspace<N, D>,
-) -> Result<MeshHits<'w>, QueryError> {
-    let evaluations = find(&field.into(), &mesh.into(), gap, limits, workspace)?;
-    Ok(MeshHits { hits: &workspace.hits, undecided: &workspace.undecided, evaluations })
+) -> Result<&'w MeshHits, QueryError> {
+    find(&field.into(), &mesh.into(), gap, limits, workspace)?;
+    Ok(&workspace.hits)
 }
 
-/// Finds the hits of a mesh and what is undecided, in its workspace.
+/// Finds the hits of a mesh, and writes them into the workspace.
 pub(super) fn find<const N: usize, const D: usize>(
     field: &Placed<'_, D>,
     placed: &PlacedMesh<'_, N, D>,
     gap: f64,
     limits: &Limits,
     workspace: &mut MeshWorkspace<N, D>,
-) -> Result<u32, QueryError> {
+) -> Result<(), QueryError> {
+    limits.check()?;
     let level = level(field.shape, gap)?;
     let view = placed.seen_from(field)?;
     // No element is larger than the mesh.
@@ -176,10 +178,11 @@ pub(super) fn find<const N: usize, const D: usize>(
         level,
         evaluations: 0,
     };
-    let evaluations = sweep.run(limits, workspace);
-    workspace.marks.move_to(&mut workspace.hits);
-    workspace.undecided.sort_unstable_by_key(|undecided| undecided.element);
-    Ok(evaluations)
+    workspace.hits.evaluations = sweep.run(limits, workspace);
+    let MeshWorkspace { marks, hits, .. } = workspace;
+    marks.move_to(&mut hits.hits);
+    hits.undecided.sort_unstable_by_key(|undecided| undecided.element);
+    Ok(())
 }
 
 /// A bit for each element that touches: there may be thousands, and to sort them would take
@@ -230,7 +233,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
     fn run(mut self, limits: &Limits, workspace: &mut MeshWorkspace<N, D>) -> u32 {
         workspace.marks.reset(self.view.mesh.elements().len());
         workspace.open.clear();
-        workspace.undecided.clear();
+        workspace.hits.undecided.clear();
         workspace.frontier.clear();
         // The top level is the children of one node that is not asked.
         workspace.frontier.push(0);
@@ -348,7 +351,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
             level: self.level,
             reach: self.view.reach,
         };
-        let MeshWorkspace { open, marks, undecided, search: memory, .. } = workspace;
+        let MeshWorkspace { open, marks, hits, search: memory, .. } = workspace;
         open.dedup_by_key(|part| part.name);
         for &Part { name, .. } in &*open {
             if marks.is_set(name) {
@@ -360,7 +363,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
             match answer.is_hit() {
                 Some(true) => marks.set(name),
                 Some(false) => {}
-                None => undecided.push(Undecided {
+                None => hits.undecided.push(Undecided {
                     element: name,
                     lower: answer.lower + self.level,
                     upper: answer.upper + self.level,

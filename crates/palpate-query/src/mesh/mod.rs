@@ -7,6 +7,6 @@ mod contacts;
 mod hits;
 mod placed;
 
-pub use contacts::{MeshContacts, mesh_contacts};
+pub use contacts::{MeshContact, MeshContacts, mesh_contacts};
 pub use hits::{MeshHits, MeshWorkspace, Undecided, mesh_hits};
 pub use placed::PlacedMesh;

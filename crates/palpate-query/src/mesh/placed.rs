@@ -32,8 +32,8 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
         field: &Placed<'_, D>,
     ) -> Result<View<'a, N, D>, QueryError> {
         let poses = [field.world_from_body, self.world_from_mesh];
-        if !poses.iter().all(Pose::is_finite) {
-            return Err(QueryError::Pose);
+        if let Some(index) = poses.iter().position(|pose| !pose.is_finite()) {
+            return Err(QueryError::Pose { index });
         }
         let [body, mesh] = poses.map(|pose| pose.translation.norm());
         let bounds = self.mesh.bounds();

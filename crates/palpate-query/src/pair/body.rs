@@ -53,9 +53,9 @@ impl<'a, const D: usize> Body<'a, D> {
         self.aabb
     }
 
-    /// The shape in the frame of the world.
-    pub(crate) fn in_world(placed: Placed<'a, D>) -> Result<Self, QueryError> {
-        check_pose(&placed.world_from_body)?;
+    /// The shape in the frame of the world; `index` names its pose in errors.
+    pub(crate) fn in_world(index: usize, placed: Placed<'a, D>) -> Result<Self, QueryError> {
+        check_pose(index, &placed.world_from_body)?;
         Ok(Self::new(placed.shape, placed.world_from_body.inverse()))
     }
 

@@ -6,6 +6,7 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
+use crate::engine::{Bounded, Rebound};
 use crate::larger::larger;
 
 /// Sides that are halved, as a share of the longest.
@@ -23,7 +24,7 @@ pub(crate) const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// A box, and what is known of it, in a cache line of its own.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(crate) struct Cell<const D: usize> {
+pub(crate) struct BoxCell<const D: usize> {
     /// Nothing in it is less [m].
     pub(crate) lower: f64,
     pub(crate) centre: Point<D>,
@@ -33,7 +34,21 @@ pub(crate) struct Cell<const D: usize> {
     pub(crate) level: u8,
 }
 
-impl<const D: usize> Cell<D> {
+impl<const D: usize> Bounded for BoxCell<D> {
+    #[inline]
+    fn lower(&self) -> f64 {
+        self.lower
+    }
+}
+
+impl<const D: usize> Rebound for BoxCell<D> {
+    #[inline]
+    fn with_lower(&self, lower: f64) -> Self {
+        Self { lower, ..*self }
+    }
+}
+
+impl<const D: usize> BoxCell<D> {
     pub(crate) const NOTHING: Self =
         Self { lower: f64::NEG_INFINITY, centre: Vector::ZERO, half: Vector::ZERO, level: 0 };
 
@@ -111,27 +126,24 @@ impl<const D: usize> Cell<D> {
         })
     }
 
-    /// Halves the box along its long sides, puts the parts after the first `count` of
-    /// `parts`, and says how many there are then.
+    /// Appends the parts of the box, halved along its long sides.
     #[inline]
-    pub(crate) fn halve(&self, parts: &mut [Self], count: usize) -> usize {
-        parts[count] = *self;
-        let mut end = count + 1;
+    pub(crate) fn halve(&self, parts: &mut Vec<Self>) {
+        let first = parts.len();
+        parts.push(*self);
         for (k, is_split) in self.splits().into_iter().enumerate() {
             if is_split {
-                for i in count..end {
+                for i in first..parts.len() {
                     let mut other = parts[i];
                     let half = 0.5 * other.half[k];
                     other.half[k] = half;
                     parts[i].half[k] = half;
                     parts[i].centre[k] -= half;
                     other.centre[k] += half;
-                    parts[end + i - count] = other;
+                    parts.push(other);
                 }
-                end += end - count;
             }
         }
-        end
     }
 
     /// Fills `cells` with the parts of the box, of similar sides, as many as fit into a
@@ -143,9 +155,8 @@ impl<const D: usize> Cell<D> {
         while (cells.len() - first) << D <= BLOCK {
             let end = cells.len();
             for i in first..end {
-                let mut parts = [Self::NOTHING; 8];
-                let count = cells[i].halve(&mut parts, 0);
-                cells.extend_from_slice(&parts[..count]);
+                let cell = cells[i];
+                cell.halve(cells);
             }
             if cells.len() - end == end - first {
                 // A point has no parts.
@@ -241,10 +252,10 @@ mod tests {
             let (a, b) = (model(0), model(5));
             let models = [a, b, mean(&a, &b, number(10).abs())];
             let enough = 0.3 * number(11);
-            let whole = Cell::<3> {
+            let whole = BoxCell::<3> {
                 centre: Vector([number(12), number(13), number(14)]),
                 half: Vector([0.5, 0.2, 0.1]),
-                ..Cell::NOTHING
+                ..BoxCell::NOTHING
             };
             let mut part = whole;
             part.contract(&models, enough);
@@ -268,7 +279,7 @@ mod tests {
         let rising = Model { value: 0.2, gradient: [1.0, 0.0, 0.0], lower: 0.1, upper: 0.0 };
         let falling = Model { value: 0.0, gradient: [0.0, -2.0, 0.0], lower: 0.0, upper: 0.0 };
         let half = Vector([4.0, 4.0]);
-        let mut part = Cell::<2> { half, ..Cell::NOTHING };
+        let mut part = BoxCell::<2> { half, ..BoxCell::NOTHING };
         part.contract(&[rising, falling, rising], 0.5);
         let ends = [part.centre - part.half, part.centre + part.half];
         let expected = [Vector([-4.0, -1.0]), Vector([1.6, 4.0])];

@@ -5,7 +5,7 @@
 
 use palpate_field::{Point, Vector};
 
-use super::couple::Couple;
+use super::body_pair::BodyPair;
 use crate::goal::Goal;
 
 /// Steps of a descent at most.
@@ -40,19 +40,19 @@ pub(crate) fn way<const D: usize>(
 /// values may be off by `slack`. The first step is `first` [m], or else as long as
 /// the value there.
 pub(crate) fn descend<const D: usize>(
-    couple: &mut Couple<'_, D>,
+    pair: &mut BodyPair<'_, D>,
     (start, first): (Point<D>, Option<f64>),
     goal: Goal,
     slack: f64,
 ) -> (f64, Point<D>) {
     let mut p = start;
-    let mut here = couple.slopes(p);
+    let mut here = pair.slopes(p);
     let mut value = here[0].0.max(here[1].0);
     let mut step = first.unwrap_or(value.abs().max(goal.tolerance));
     let mut small_gains = 0;
     for _ in 0..STEPS {
         let next = p - way(here, step);
-        let there = couple.slopes(next);
+        let there = pair.slopes(next);
         let next_value = there[0].0.max(there[1].0);
         if next_value < value {
             let gain = value - next_value;

@@ -32,29 +32,34 @@ const PATIENCE: u32 = 30;
 /// Beyond so many sizes of what is bounded no way out is looked for.
 const FAR: f64 = 100.0;
 
-/// A way out: after the second body has moved along it, the bodies do not overlap.
+/// A translation of the second body after which the bodies do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Escape<const D: usize> {
-    /// The way, of length one, in world coordinates.
+    /// The direction, a unit vector in world coordinates.
     pub direction: Vector<f64, D>,
-    /// How far the second body moves [m]. After that the separation is at least zero,
-    /// which is proven; that no other way is shorter is not.
+    /// How far the second body moves [m]. The separation after that is proven to be at least
+    /// zero; another direction may be shorter.
     pub length: f64,
-    /// No way out is shorter [m]: a motion changes the separation by no more than its
-    /// length.
+    /// Proven lower bound of the length in any direction [m]: a translation changes the
+    /// separation by no more than its length.
     pub at_least: f64,
-    /// How often fields were asked; a gradient counts twice.
+    /// How often fields were evaluated; a gradient counts twice.
     pub evaluations: u32,
 }
 
-/// A short way along which the second body leaves the first; of length zero if they are
-/// apart, and `None` if none was found.
+/// A short translation of the second body that parts the bodies: an upper bound of the
+/// minimum translation, which physics engines call penetration depth. Its length is zero if
+/// the bodies are apart; `None` if no translation was found.
 ///
-/// Tried are the normal, directions all around, and ever closer ones about the best,
-/// with the normals at its end; along each, the body moves on by as much as it
-/// overlaps, which never oversteps the first way out, unless that takes more than 30
-/// steps. The length is within `limits.tolerance` of the shortest along its direction
-/// otherwise, and the budget is for each separation on the way.
+/// That the bodies are apart at the end is proven, and so is [`Escape::at_least`], a lower
+/// bound of the minimum translation. That no other direction is shorter is not.
+///
+/// The search tries the normal of the overlap, directions all around, and ever closer ones
+/// about the best of them, with the normals at its end. Along a direction the body advances
+/// by as much as it overlaps, which cannot overstep the first way out; after 30 steps the
+/// strides double. Up to there the length is within `limits.tolerance` of the shortest along
+/// its direction. The budget holds for each separation on the way.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
@@ -64,7 +69,7 @@ pub struct Escape<const D: usize> {
 /// let long = Shape::from_kernel(Cuboid::new(Vector([4.0, 1.0, 1.0]))?);
 /// let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?)
 ///     .translated(Vector([0.3, 0.6, 0.0]))?;
-/// let way = escape(&long, &cube, &Limits::default(), &mut PairWorkspace::new())?;
+/// let way = escape(&long, &cube, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// let way = way.expect("both are bounded");
 /// assert!((way.direction - Vector([0.0, 1.0, 0.0])).norm() < 0.1);
 /// assert!(0.4 < way.length && way.length < 0.402);
@@ -86,9 +91,9 @@ pub fn escape<'a, const D: usize>(
         let bounds = body.shape.promise().bounds;
         bounds.map_or(0.0, |bounds| 2.0 * bounds.aabb.half_extents().norm())
     };
-    let mut search = Search {
+    let mut search = WaysOut {
         bodies: [a, b],
-        limits: Limits { tolerance: 0.5 * limits.tolerance, ..*limits },
+        limits: limits.with_tolerance(0.5 * limits.tolerance),
         workspace,
         best: None,
         longest: FAR * (size(&a) + size(&b)),
@@ -112,7 +117,7 @@ pub fn escape<'a, const D: usize>(
 }
 
 /// A search under way.
-struct Search<'a, 'w, const D: usize> {
+struct WaysOut<'a, 'w, const D: usize> {
     bodies: [Placed<'a, D>; 2],
     limits: Limits,
     workspace: &'w mut PairWorkspace<D>,
@@ -121,7 +126,7 @@ struct Search<'a, 'w, const D: usize> {
     evaluations: u32,
 }
 
-impl<const D: usize> Search<'_, '_, D> {
+impl<const D: usize> WaysOut<'_, '_, D> {
     /// The separation after the second body has moved.
     fn at(
         &mut self,

@@ -3,31 +3,19 @@
 
 //! How far two fields are apart.
 //!
-//! With `g` of each body a lower bound of the distance to it, at most as steep as one,
-//!
-//! ```text
-//! separation = 2·min over p of max(g_a(p), g_b(p)).
-//! ```
-//!
-//! Apart, that is at most the distance of the bodies, and equal to it where both are
-//! exact outside: in the middle of the shortest way both are half of it. Overlapping, it
-//! is minus the width of the widest ball in the overlap: of the right sign, continuous,
-//! and not the way that parts them.
-//!
-//! The search is best-first over boxes, 64 at a time. At its centre a box has
-//! `max(g_a, g_b) − radius` as a bound. Smaller boxes are bounded by models: each is an
-//! affine function less a remainder, so is every mean of two, and
-//! `max ≥ λ·g_a + (1 − λ)·g_b`: of all these means the largest least value is taken.
-//! Where the surfaces face each other the gradients cancel, and what remains is of
-//! second order. Points are improved by minimax proximal steps: the maximum of the two
-//! tangent planes plus a parabola is least at a step along a mean of both gradients.
+//! The search for the separation, as [`separation`] defines it, is best-first over boxes, 64
+//! at a time. At its centre a box has `max(g_a, g_b) − radius` as a bound. Smaller boxes are
+//! bounded by models: each is an affine function less a remainder, so is every mean of two,
+//! and `max ≥ λ·g_a + (1 − λ)·g_b`: of all these means the largest least value is taken.
+//! Where the surfaces face each other the gradients cancel, and what remains is of second
+//! order. Minimax proximal steps improve the best point: the maximum of the two tangent
+//! planes plus a parabola is least at a step along a mean of both gradients.
 
 pub(crate) mod body;
+pub(crate) mod body_pair;
 pub(crate) mod cell;
-pub(crate) mod couple;
 pub(crate) mod descent;
 mod escape;
-pub(crate) mod frontier;
 mod nearest;
 mod proof;
 mod rates;
@@ -38,8 +26,8 @@ use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
-use couple::Couple;
-use search::Search;
+use body_pair::BodyPair;
+use search::PairSearch;
 
 pub use escape::{Escape, escape};
 pub use nearest::Nearest;
@@ -50,6 +38,25 @@ pub use track::Track;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
+/// With `g` of each body a lower bound of the distance to it that is nowhere steeper than
+/// one, `g = max(f/L, distance to its box)`,
+///
+/// ```text
+/// separation = 2·min over p of max(g_a(p), g_b(p)).
+/// ```
+///
+/// - **Apart**, the separation is at most the distance of the bodies: `lower` is a proven
+///   lower bound of that distance. Where both fields are exact outside, the separation is
+///   the distance: in the middle of the shortest segment between them both `g` are half of
+///   its length.
+/// - **Overlapping**, it is minus the width of the widest ball in the overlap, where both
+///   fields are exact inside; else it is between that and zero. It has the right sign and is
+///   continuous as the bodies move. It is not how far a body must move to leave the other,
+///   and never below minus the width of the smaller body: that is [`escape`].
+///
+/// The answer's point is where the larger `g` is least: between the bodies, or in both.
+/// [`Nearest::contact`] finds the points of both surfaces next to it.
+///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
 /// use palpate_query::{Limits, PairWorkspace, separation};
@@ -57,7 +64,7 @@ pub use track::Track;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let a = Shape::from_kernel(Ball::new(1.0)?);
 /// let b = Shape::from_kernel(Ball::new(0.5)?).translated(Vector([1.2, 1.6]))?;
-/// let answer = separation(&a, &b, &Limits::default(), &mut PairWorkspace::new())?;
+/// let answer = separation(&a, &b, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(answer.lower <= 0.5 && 0.5 <= answer.upper);
 /// assert!(answer.upper - answer.lower <= 1e-4);
 /// # Ok(())
@@ -74,7 +81,7 @@ pub fn separation<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::least(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }
 
 /// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
@@ -92,5 +99,5 @@ pub fn overlap<'a, const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Certified<Nearest<D>>, QueryError> {
     let goal = Goal::sign(0.5 * limits.tolerance);
-    Ok(Search::new(Couple::new(a.into(), b.into())?, goal, limits)?.run(workspace))
+    Ok(PairSearch::new(BodyPair::new(a.into(), b.into())?, goal, limits)?.run(workspace))
 }

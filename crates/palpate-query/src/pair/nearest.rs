@@ -5,13 +5,14 @@
 
 use palpate_field::{Point, Vector};
 
-use super::couple::Couple;
+use super::body_pair::BodyPair;
 use crate::contact::Contact;
 use crate::placed::Placed;
 use crate::sampler::normal;
 
 /// Where two bodies are nearest, or overlap most, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearest<const D: usize> {
     /// The point between the bodies, or in both [m].
     pub point: Point<D>,
@@ -21,10 +22,10 @@ pub struct Nearest<const D: usize> {
 }
 
 impl<const D: usize> Nearest<D> {
-    /// The answer at a point of the couple's frame.
-    pub(super) fn at(couple: &mut Couple<'_, D>, p: Point<D>) -> Self {
-        let [(_, a), (_, b)] = couple.slopes(p);
-        let pose = &couple.world_from_frame;
+    /// The answer at a point of the pair's frame.
+    pub(super) fn at(pair: &mut BodyPair<'_, D>, p: Point<D>) -> Self {
+        let [(_, a), (_, b)] = pair.slopes(p);
+        let pose = &pair.world_from_frame;
         Self {
             point: pose.transform_point(p),
             normal: normal(a - b).map(|normal| pose.transform_vector(normal)),
@@ -49,7 +50,6 @@ impl<const D: usize> Nearest<D> {
             Some(pose.transform_point(placed.shape.surface_point(local)?))
         };
         let (point_a, point_b) = (surface(a.into())?, surface(b.into())?);
-        let gap = (point_b - point_a).dot(normal);
-        Some(Contact { point_a, point_b, normal, gap, id: 0 })
+        Some(Contact::new(point_a, point_b, normal))
     }
 }

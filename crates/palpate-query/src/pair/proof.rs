@@ -5,16 +5,18 @@
 
 use palpate_field::{Aabb, Pose};
 
-use super::couple::Couple;
-use super::search::Search;
+use super::body_pair::BodyPair;
+use super::search::PairSearch;
 use super::{Nearest, PairWorkspace};
 use crate::certified::{Certified, Limits};
+use crate::engine::Frontier;
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
 
 /// The separation of two bodies, and the boxes that prove it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Proof<const D: usize> {
     /// The answer, as [`separation`](crate::separation) gives it.
     pub answer: Certified<Nearest<D>>,
@@ -27,6 +29,7 @@ pub struct Proof<const D: usize> {
 
 /// A box, and what was proven of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,
@@ -47,14 +50,15 @@ pub fn proof<'a, const D: usize>(
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
 ) -> Result<Proof<D>, QueryError> {
-    let couple = Couple::new(a.into(), b.into())?;
-    let mut search = Search::new(couple, Goal::least(0.5 * limits.tolerance), limits)?;
+    let pair = BodyPair::new(a.into(), b.into())?;
+    let mut search = PairSearch::new(pair, Goal::least(0.5 * limits.tolerance), limits)?;
     search.keeps_all = true;
     let (answer, _) = search.run_within(0.0, workspace);
-    let known = workspace.pending.drain(..).chain(workspace.cells.drain());
+    let Frontier { queue, pending, .. } = &mut workspace.frontier;
+    let known = pending.drain(..).chain(queue.drain());
     let boxes = known.map(|cell| ProofBox {
         aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
         lower: 2.0 * cell.lower,
     });
-    Ok(Proof { answer, world_from_boxes: couple.world_from_frame, boxes: boxes.collect() })
+    Ok(Proof { answer, world_from_boxes: pair.world_from_frame, boxes: boxes.collect() })
 }

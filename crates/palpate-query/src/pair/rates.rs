@@ -6,7 +6,7 @@
 use palpate_field::{Point, Vector};
 
 use super::Nearest;
-use super::couple::Couple;
+use super::body_pair::BodyPair;
 use crate::error::QueryError;
 use crate::placed::Placed;
 
@@ -30,6 +30,7 @@ const STEPS: usize = 200;
 /// vanishes, and by the envelope theorem the fields' own motion alone counts: of the mean
 /// `Σ wᵢ·∇gᵢ`, the parts of one body times −2.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rates<const D: usize> {
     /// Where the separation is found [m].
     pub point: Point<D>,
@@ -42,6 +43,7 @@ pub struct Rates<const D: usize> {
 
 /// How a separation changes with the pose of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PoseDerivative<const D: usize> {
     /// By its translation, in metres a metre.
     pub translation: Vector<f64, D>,
@@ -87,7 +89,7 @@ impl<const D: usize> Rates<D> {
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let a = Shape::from_kernel(Ball::new(1.0)?);
 /// let b = Shape::from_kernel(Ball::new(1.0)?).translated(Vector([3.0, 0.0]))?;
-/// let limits = Limits { tolerance: 1e-9, ..Limits::default() };
+/// let limits = Limits::new(1e-9);
 /// let nearest = separation(&a, &b, &limits, &mut PairWorkspace::new())?.best;
 /// let of_b = rates(&a, &b, &nearest)?.derivative(1, Vector::ZERO);
 /// // Away from the first is apart, and around it neither.
@@ -105,14 +107,14 @@ pub fn rates<'a, const D: usize>(
     b: impl Into<Placed<'a, D>>,
     nearest: &Nearest<D>,
 ) -> Result<Rates<D>, QueryError> {
-    let mut couple = Couple::new(a.into(), b.into())?;
-    let pose = couple.world_from_frame;
+    let mut pair = BodyPair::new(a.into(), b.into())?;
+    let pose = pair.world_from_frame;
     let centre = pose.inverse().transform_point(nearest.point);
-    let size = couple.root(0.0).half_extents().norm();
+    let size = pair.root(0.0).half_extents().norm();
     let mut best =
         Rates { point: nearest.point, of: [Vector::ZERO; 2], residual: f64::INFINITY };
     for spread in SPREADS.map(|share| share * size) {
-        let gradients = around(&mut couple, centre, spread, NEARLY * size);
+        let gradients = around(&mut pair, centre, spread, NEARLY * size);
         let weights = shortest_mean(&gradients);
         let mut of = [Vector::ZERO; 2];
         for ((body, gradient), weight) in gradients.iter().zip(weights) {
@@ -133,7 +135,7 @@ pub fn rates<'a, const D: usize>(
 /// The gradients at a point and at points `spread` from it, and of which body they are:
 /// of fields that are the larger one there, to within `nearly`.
 fn around<const D: usize>(
-    couple: &mut Couple<'_, D>,
+    pair: &mut BodyPair<'_, D>,
     centre: Point<D>,
     spread: f64,
     nearly: f64,
@@ -147,7 +149,7 @@ fn around<const D: usize>(
     }
     let mut gradients = Vec::new();
     for (i, p) in points.into_iter().enumerate() {
-        let slopes = couple.slopes(p);
+        let slopes = pair.slopes(p);
         let larger = slopes[0].0.max(slopes[1].0);
         for (body, (value, gradient)) in slopes.into_iter().enumerate() {
             let is_known = gradients.iter().any(|(other, known): &(usize, Vector<f64, D>)| {

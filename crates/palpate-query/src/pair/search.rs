@@ -7,11 +7,11 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
-use super::cell::{Cell, least, least_of_larger, mean, reach};
-use super::couple::{Couple, Memory};
+use super::body_pair::{BodyPair, Memory};
+use super::cell::{BoxCell, least, least_of_larger, mean, reach};
 use super::descent::descend;
-use super::frontier::Frontier;
 use crate::certified::{Certified, Limits, Stop};
+use crate::engine::{self, Frontier, Heap, Problem, Queue};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::larger::larger;
@@ -33,11 +33,9 @@ const LINE: usize = 8;
 /// Boxes that a workspace holds.
 pub(crate) const ROOM: usize = 1 << 16;
 
-/// A block of boxes that is looked at.
+/// What is known of the boxes of a round, one item a box.
 #[derive(Debug)]
-struct Round<const D: usize> {
-    parts: [Cell<D>; BLOCK],
-    count: usize,
+struct Known {
     radii: [f64; BLOCK],
     /// `g` of both bodies at the centres.
     values: [[f64; BLOCK]; 2],
@@ -49,12 +47,11 @@ struct Round<const D: usize> {
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best; or all, if they are to be kept.
-    pub(super) cells: Frontier<D>,
-    /// Boxes to be looked at as they are.
-    pub(crate) pending: Vec<Cell<D>>,
+    pub(crate) frontier: Frontier<Heap<BoxCell<D>>>,
+    /// Boxes of a round that are bounded by models.
     pub(crate) open: Vec<usize>,
     pub(crate) memory: Memory<D>,
-    round: Round<D>,
+    known: Known,
 }
 
 impl<const D: usize> PairWorkspace<D> {
@@ -62,13 +59,14 @@ impl<const D: usize> PairWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: Frontier::new(ROOM, ROOM),
-            pending: Vec::with_capacity(ROOM),
+            frontier: Frontier {
+                queue: Heap::new(ROOM, ROOM),
+                pending: Vec::with_capacity(ROOM),
+                round: Vec::with_capacity(BLOCK),
+            },
             open: Vec::with_capacity(BLOCK),
             memory: Memory::new(),
-            round: Round {
-                parts: [Cell::NOTHING; BLOCK],
-                count: 0,
+            known: Known {
                 radii: [0.0; BLOCK],
                 values: [[0.0; BLOCK]; 2],
                 models: [NOTHING; BLOCK],
@@ -84,8 +82,8 @@ impl<const D: usize> Default for PairWorkspace<D> {
 }
 
 /// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
-pub(crate) struct Search<'a, const D: usize> {
-    pub(super) couple: Couple<'a, D>,
+pub(crate) struct PairSearch<'a, const D: usize> {
+    pub(super) pair: BodyPair<'a, D>,
     pub(super) goal: Goal,
     budget: u32,
     /// Whether a descent was made from a box that is no better than the best.
@@ -102,15 +100,15 @@ pub(crate) struct Search<'a, const D: usize> {
     pub(super) reserve: f64,
 }
 
-impl<'a, const D: usize> Search<'a, D> {
+impl<'a, const D: usize> PairSearch<'a, D> {
     pub(crate) fn new(
-        couple: Couple<'a, D>,
+        pair: BodyPair<'a, D>,
         goal: Goal,
         limits: &Limits,
     ) -> Result<Self, QueryError> {
         limits.check()?;
         Ok(Self {
-            couple,
+            pair,
             goal,
             budget: limits.budget,
             has_tried: false,
@@ -133,17 +131,17 @@ impl<'a, const D: usize> Search<'a, D> {
 
     /// The answer, if the boxes of both bodies are as far apart as matters.
     pub(super) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
-        let gap = self.couple.gap_of_boxes()?;
-        self.best = self.couple.root(0.0).centre();
+        let gap = self.pair.gap_of_boxes()?;
+        self.best = self.pair.root(0.0).centre();
         // One of both values is at least half of it, everywhere.
-        self.slack = self.couple.slack(self.best.norm() + gap);
+        self.slack = self.pair.slack(self.best.norm() + gap);
         let lower = 0.5 * gap - self.slack;
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
     /// Improves the best point, from `start`, with `first` as in [`descend`].
     pub(super) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
-        let (value, p) = descend(&mut self.couple, (start, first), self.goal, self.slack);
+        let (value, p) = descend(&mut self.pair, (start, first), self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
@@ -155,27 +153,28 @@ impl<'a, const D: usize> Search<'a, D> {
         margin: f64,
         workspace: &mut PairWorkspace<D>,
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
-        let both = self.couple.root(0.0);
-        self.slack = self.couple.slack(reach(&both));
+        let both = self.pair.root(0.0);
+        self.slack = self.pair.slack(reach(&both));
         self.descend(both.centre(), None);
         let root = self.root(margin);
-        self.slack = self.couple.slack(reach(&root));
-        workspace.cells.clear();
+        self.slack = self.pair.slack(reach(&root));
+        workspace.frontier.queue.clear();
         if self.goal.is_hit(self.upper + self.slack) {
             return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
         }
-        Cell::unknown(&root).grid(&mut workspace.pending);
+        BoxCell::unknown(&root).grid(&mut workspace.frontier.pending);
         (self.refine(&root, workspace), root)
     }
 
     /// Takes over the boxes of the workspace, parts of `root`, of which something is known:
     /// those of which too little is are pending.
     pub(super) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
-        workspace.pending.clear();
-        self.slack = self.couple.slack(reach(root));
+        let Frontier { queue, pending, .. } = &mut workspace.frontier;
+        pending.clear();
+        self.slack = self.pair.slack(reach(root));
         let threshold = self.threshold();
-        while workspace.cells.lowest() < threshold {
-            workspace.pending.extend(workspace.cells.pop());
+        while queue.least() < threshold {
+            queue.take_least(|cell| pending.push(*cell));
         }
     }
 
@@ -185,32 +184,23 @@ impl<'a, const D: usize> Search<'a, D> {
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
     ) -> Certified<Nearest<D>> {
+        let PairWorkspace { frontier, open, memory, known } = workspace;
         let largest = SMALL * root.half_extents().norm();
-        loop {
-            let has_pending = !workspace.pending.is_empty();
-            let decided =
-                if has_pending { f64::NEG_INFINITY } else { workspace.cells.lowest() };
-            let stop = self.goal.reached(decided.min(self.dropped), self.upper + self.slack);
-            let is_full = !workspace.cells.has_room(BLOCK);
-            let is_empty = !has_pending && workspace.cells.is_empty();
-            if stop.is_some() || is_empty || is_full || self.couple.evaluations >= self.budget {
-                let pending = workspace.pending.iter().map(|cell| cell.lower);
-                let lowest = workspace.cells.lowest().min(self.dropped);
-                let stop = stop.unwrap_or(Stop::BudgetSpent);
-                return self.answer(stop, pending.fold(lowest, f64::min));
-            }
-            self.round(workspace, largest);
-        }
+        let end = engine::search(
+            &mut PairRounds { search: self, open, memory, known, largest },
+            frontier,
+        );
+        self.answer(end.stop(), frontier.lower(self.dropped))
     }
 
     pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
         let upper = self.upper + self.slack;
         Certified {
-            best: Nearest::at(&mut self.couple, self.best),
+            best: Nearest::at(&mut self.pair, self.best),
             lower: 2.0 * lower.min(upper),
             upper: 2.0 * upper,
             stop,
-            evaluations: self.couple.evaluations,
+            evaluations: self.pair.evaluations,
         }
     }
 
@@ -222,154 +212,209 @@ impl<'a, const D: usize> Search<'a, D> {
     /// A box that holds all points that matter, and `margin` more: where neither `g` is
     /// more than the best so far, or than what is asked for. Elsewhere one is.
     pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
-        let slack = self.couple.slack(self.best.norm() + self.upper.abs());
+        let slack = self.pair.slack(self.best.norm() + self.upper.abs());
         let least = self.goal.most(self.upper);
         self.dropped = least + slack;
         let grown = (least + 2.0 * slack) * (1.0 + 1e-12) + margin;
-        self.couple.tightened(&self.couple.root(grown), grown)
-    }
-
-    /// Looks at a block of boxes: pending ones, or the parts of those of which least is
-    /// known.
-    fn round(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
-        self.gather(workspace);
-        let PairWorkspace { cells, round, memory, .. } = workspace;
-        // What the first body alone rules out, the second is not asked.
-        self.couple.values(0, &round.parts[..round.count], memory, &mut round.values[0]);
-        let threshold = self.threshold();
-        let mut kept = 0;
-        for i in 0..round.count {
-            let (mut part, radius, value) =
-                (round.parts[i], round.radii[i], round.values[0][i]);
-            let floor = self.couple.floor(0, (i, value), radius, memory);
-            part.lower = larger(part.lower, floor - self.slack);
-            if part.lower < threshold {
-                (round.parts[kept], round.radii[kept]) = (part, radius);
-                round.values[0][kept] = value;
-                memory.keep(0, i, kept);
-                kept += 1;
-            } else {
-                self.drop_cell(&part, cells);
-            }
-        }
-        round.count = kept;
-        self.couple.values(1, &round.parts[..kept], memory, &mut round.values[1]);
-        let mut least = (f64::INFINITY, 0);
-        for (i, part) in round.parts[..kept].iter_mut().enumerate() {
-            let at = (i, round.values[1][i]);
-            let floor = self.couple.floor(1, at, round.radii[i], memory);
-            part.lower = larger(part.lower, floor - self.slack);
-            let value = larger(round.values[0][i], round.values[1][i]);
-            if value < least.0 {
-                least = (value, i);
-            }
-        }
-        let (value, centre, radius) =
-            (least.0, round.parts[least.1].centre, round.radii[least.1]);
-        if value < self.upper - self.goal.tolerance {
-            self.descend(centre, None);
-        } else if self.is_worth_a_try((value, centre), radius) {
-            self.has_tried = true;
-            self.descend(centre, None);
-        }
-        if !self.goal.is_hit(self.upper + self.slack) {
-            self.model(workspace, largest);
-        }
-        let threshold = self.threshold();
-        let PairWorkspace { cells, round, .. } = workspace;
-        for part in &round.parts[..round.count] {
-            if part.lower < threshold {
-                cells.push(*part);
-            } else {
-                self.drop_cell(part, cells);
-            }
-        }
+        self.pair.tightened(&self.pair.root(grown), grown)
     }
 
     /// Whether a descent from a box may find bodies to overlap, although its centre is no
     /// better than the best: it is elsewhere, and may hold such a point.
-    fn is_worth_a_try(&self, (value, centre): (f64, Point<D>), radius: f64) -> bool {
-        let is_elsewhere = (centre - self.best).norm() > radius;
-        self.goal.is_sign() && !self.has_tried && value < radius && is_elsewhere
+    fn is_worth_a_try(&self, least: &LeastBox<D>) -> bool {
+        let is_elsewhere = (least.centre - self.best).norm() > least.radius;
+        self.goal.is_sign() && !self.has_tried && least.value < least.radius && is_elsewhere
     }
 
-    /// Takes a block of boxes, with their radii: pending ones, then parts of others.
-    fn gather(&mut self, workspace: &mut PairWorkspace<D>) {
-        let PairWorkspace { cells, pending, round, .. } = workspace;
-        let (parts, radii) = (&mut round.parts, &mut round.radii);
-        let first = pending.len().saturating_sub(BLOCK);
-        let mut count = 0;
-        for cell in pending.drain(first..) {
-            (parts[count], radii[count]) = (cell, cell.radius());
-            count += 1;
+    /// Leaves a box alone; keeps it all the same where all boxes are kept.
+    fn drop_cell(&mut self, cell: &BoxCell<D>, queue: &mut Heap<BoxCell<D>>) {
+        self.dropped = self.dropped.min(cell.lower);
+        if self.keeps_all {
+            queue.push(cell);
         }
-        let threshold = self.threshold();
-        while count + (1 << D) <= BLOCK && cells.lowest() < threshold {
-            let Some(parent) = cells.pop() else { break };
-            let end = parent.halve(parts, count);
-            // Parts of one box are of one size.
-            radii[count..end].fill(parts[count].radius());
-            count = end;
-        }
-        round.count = count;
+    }
+}
+
+/// The rounds of a search between two bodies.
+struct PairRounds<'s, 'a, const D: usize> {
+    search: &'s mut PairSearch<'a, D>,
+    open: &'s mut Vec<usize>,
+    memory: &'s mut Memory<D>,
+    known: &'s mut Known,
+    /// Boxes are bounded by models up to this radius [m].
+    largest: f64,
+}
+
+impl<const D: usize> Problem for PairRounds<'_, '_, D> {
+    type Queue = Heap<BoxCell<D>>;
+
+    #[inline]
+    fn round_and_parts(&self) -> (usize, usize) {
+        (BLOCK, 1 << D)
     }
 
-    /// Bounds by models those boxes that are small and not yet done with, again by the
-    /// first body alone before the second is asked.
-    fn model(&mut self, workspace: &mut PairWorkspace<D>, largest: f64) {
-        let threshold = self.threshold();
-        let wanted = threshold + self.reserve;
-        let PairWorkspace { cells, pending, open, memory, round, .. } = workspace;
-        let Round { parts, radii, models, count, .. } = round;
-        let parts = &mut parts[..*count];
-        open.clear();
-        let is_open = |&i: &usize| parts[i].lower < wanted && radii[i] <= largest;
-        open.extend((0..parts.len()).filter(is_open));
-        self.couple.keep_known(parts, open, memory);
-        if !self.keeps_all && cells.lowest() < threshold {
-            // The rest of a line waits for the boxes of the next round.
-            for i in open.drain(open.len() / LINE * LINE..).rev() {
-                *count -= 1;
-                pending.push(parts[i]);
-                parts[i] = parts[*count];
+    #[inline]
+    fn decided(&self, lower: f64) -> Option<Stop> {
+        let search = &self.search;
+        search.goal.reached(lower.min(search.dropped), search.upper + search.slack)
+    }
+
+    #[inline]
+    fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
+        frontier.queue.has_room(BLOCK)
+    }
+
+    #[inline]
+    fn is_spent(&self) -> bool {
+        self.search.pair.evaluations >= self.search.budget
+    }
+
+    #[inline]
+    fn can_split(&self, queue: &Self::Queue) -> bool {
+        queue.least() < self.search.threshold()
+    }
+
+    #[inline]
+    fn enter(&mut self, i: usize, cell: &BoxCell<D>) {
+        self.known.radii[i] = cell.radius();
+    }
+
+    #[inline]
+    fn split(&mut self, cell: &BoxCell<D>, round: &mut Vec<BoxCell<D>>) {
+        let first = round.len();
+        cell.halve(round);
+        // Parts of one box are of one size.
+        self.known.radii[first..round.len()].fill(round[first].radius());
+    }
+
+    /// Bounds boxes by the values of the first body, those left by the second's, and small
+    /// ones by models; descends from the best box where that may help.
+    fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
+        self.bound_by_first(frontier);
+        let least = self.bound_by_second(&mut frontier.round);
+        let Self { search, .. } = self;
+        if least.value < search.upper - search.goal.tolerance {
+            search.descend(least.centre, None);
+        } else if search.is_worth_a_try(&least) {
+            search.has_tried = true;
+            search.descend(least.centre, None);
+        }
+        if !search.goal.is_hit(search.upper + search.slack) {
+            self.bound_by_models(frontier);
+        }
+    }
+
+    #[inline]
+    fn is_open(&self, cell: &BoxCell<D>) -> bool {
+        cell.lower < self.search.threshold()
+    }
+
+    #[inline]
+    fn close(&mut self, cell: &BoxCell<D>, queue: &mut Self::Queue) {
+        self.search.drop_cell(cell, queue);
+    }
+
+    #[inline]
+    fn closed(&self) -> f64 {
+        self.search.dropped
+    }
+}
+
+/// The box of a round at whose centre the larger of both values is least.
+struct LeastBox<const D: usize> {
+    value: f64,
+    centre: Point<D>,
+    radius: f64,
+}
+
+impl<const D: usize> PairRounds<'_, '_, D> {
+    /// Closes what the first body alone rules out, which the second is not asked.
+    fn bound_by_first(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
+        let Self { search, memory, known: Known { radii, values, .. }, .. } = self;
+        let Frontier { queue, round, .. } = frontier;
+        search.pair.values(0, round, memory, &mut values[0]);
+        let threshold = search.threshold();
+        let mut kept = 0;
+        for i in 0..round.len() {
+            let (mut part, radius, value) = (round[i], radii[i], values[0][i]);
+            let floor = search.pair.floor(0, (i, value), radius, memory);
+            part.lower = larger(part.lower, floor - search.slack);
+            if part.lower < threshold {
+                (round[kept], radii[kept]) = (part, radius);
+                values[0][kept] = value;
+                memory.keep(0, i, kept);
+                kept += 1;
+            } else {
+                search.drop_cell(&part, queue);
             }
         }
-        self.couple.models(0, parts, open, memory);
+        round.truncate(kept);
+    }
+
+    /// Bounds the boxes by the values of the second body.
+    fn bound_by_second(&mut self, round: &mut [BoxCell<D>]) -> LeastBox<D> {
+        let Self { search, memory, known: Known { radii, values, .. }, .. } = self;
+        search.pair.values(1, round, memory, &mut values[1]);
+        let mut least =
+            LeastBox { value: f64::INFINITY, centre: Vector::ZERO, radius: radii[0] };
+        for (i, part) in round.iter_mut().enumerate() {
+            let at = (i, values[1][i]);
+            let floor = search.pair.floor(1, at, radii[i], memory);
+            part.lower = larger(part.lower, floor - search.slack);
+            let value = larger(values[0][i], values[1][i]);
+            if value < least.value {
+                least = LeastBox { value, centre: part.centre, radius: radii[i] };
+            }
+        }
+        least
+    }
+
+    /// Bounds by models those boxes that are small and not yet closed, again by the first
+    /// body alone before the second is asked.
+    fn bound_by_models(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
+        let Self { search, open, memory, known: Known { radii, models, .. }, largest } = self;
+        let Frontier { queue, pending, round } = frontier;
+        let threshold = search.threshold();
+        let wanted = threshold + search.reserve;
+        open.clear();
+        let is_open = |&i: &usize| round[i].lower < wanted && radii[i] <= *largest;
+        open.extend((0..round.len()).filter(is_open));
+        search.pair.keep_known(round, open, memory);
+        if !search.keeps_all && queue.least() < threshold {
+            // The rest of a line waits for the boxes of the next round.
+            for i in open.drain(open.len() / LINE * LINE..).rev() {
+                pending.push(round.swap_remove(i));
+            }
+        }
+        search.pair.models(0, round, open, memory);
         let (mut lane, mut kept) = (0, 0);
         open.retain(|&i| {
-            let model = self.couple.model(0, memory, lane);
+            let model = search.pair.model(0, memory, lane);
             lane += 1;
             // Boxes are off by a rounding where they meet.
-            parts[i].lower = larger(parts[i].lower, least::<D>(&model) - self.slack);
-            let is_open = parts[i].lower < wanted;
+            round[i].lower = larger(round[i].lower, least::<D>(&model) - search.slack);
+            let is_open = round[i].lower < wanted;
             if is_open {
                 models[kept] = model;
                 kept += 1;
             }
             is_open
         });
-        self.couple.models(1, parts, open, memory);
+        search.pair.models(1, round, open, memory);
         for (lane, &i) in open.iter().enumerate() {
-            let (a, b) = (models[lane], self.couple.model(1, memory, lane));
-            let (lower, share) = least_of_larger::<D>(&a, &b, wanted + self.slack);
-            let part = &mut parts[i];
-            part.lower = larger(part.lower, lower - self.slack);
+            let (a, b) = (models[lane], search.pair.model(1, memory, lane));
+            let (lower, share) = least_of_larger::<D>(&a, &b, wanted + search.slack);
+            let part = &mut round[i];
+            part.lower = larger(part.lower, lower - search.slack);
             if part.lower < threshold {
                 part.learn(&[a, b]);
-                if !self.keeps_all {
+                if !search.keeps_all {
                     let models = [a, b, mean(&a, &b, share)];
-                    let cut = threshold + SPARE * self.goal.tolerance;
-                    part.contract(&models, cut + self.slack);
-                    self.dropped = self.dropped.min(cut);
+                    let cut = threshold + SPARE * search.goal.tolerance;
+                    part.contract(&models, cut + search.slack);
+                    search.dropped = search.dropped.min(cut);
                 }
             }
-        }
-    }
-
-    fn drop_cell(&mut self, cell: &Cell<D>, cells: &mut Frontier<D>) {
-        self.dropped = self.dropped.min(cell.lower);
-        if self.keeps_all {
-            cells.push(*cell);
         }
     }
 }

@@ -7,11 +7,11 @@ use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
 use super::Nearest;
 use super::body::Body;
-use super::cell::reach;
-use super::couple::Couple;
-use super::frontier::Frontier;
-use super::search::{PairWorkspace, ROOM, Search};
+use super::body_pair::BodyPair;
+use super::cell::{BoxCell, reach};
+use super::search::{PairSearch, PairWorkspace, ROOM};
 use crate::certified::{Certified, Limits};
+use crate::engine::{Frontier, Heap, Queue};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::manifold::Names;
@@ -45,7 +45,7 @@ const RESERVE: f64 = 6.0;
 /// for step in 0..100 {
 ///     let apart = 1.0 + 1e-4 * f64::from(step);
 ///     let poses = [Pose::identity(), Pose::translation(Vector([apart, 0.0, 0.0]))];
-///     let answer = track.separation(poses, &Limits::default(), &mut workspace)?;
+///     let answer = track.separation(poses, &Limits::new(1e-4), &mut workspace)?;
 ///     assert!(answer.lower <= apart - 1.0 && apart - 1.0 <= answer.upper);
 /// }
 /// # Ok(())
@@ -62,7 +62,7 @@ pub struct Track<const D: usize> {
 /// may be found, and what was known of them when the bodies were at a pose.
 #[derive(Clone, Debug)]
 struct Cover<const D: usize> {
-    cells: Frontier<D>,
+    cells: Heap<BoxCell<D>>,
     root: Aabb<D>,
     best: Point<D>,
     second_from_frame: Pose<D>,
@@ -113,8 +113,8 @@ impl<const D: usize> Track<D> {
         workspace: &mut PairWorkspace<D>,
     ) -> Result<(Certified<Nearest<D>>, Point<D>), QueryError> {
         let [a, b] = &self.shapes;
-        let couple = Couple::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let mut search = Search::new(couple, goal, limits)?;
+        let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
+        let mut search = PairSearch::new(pair, goal, limits)?;
         if let Some(answer) = search.told_by_boxes() {
             return Ok((answer, search.best));
         }
@@ -124,22 +124,20 @@ impl<const D: usize> Track<D> {
         let answer = match &cover {
             Some(cover) if is_known => search.refine(&cover.root, workspace),
             _ => {
-                let size = couple.root(0.0).half_extents().norm();
+                let size = pair.root(0.0).half_extents().norm();
                 let (answer, root) = search.run_within(MARGIN * size, workspace);
-                let first = workspace.cells.len() + workspace.pending.len();
-                let (best, second_from_frame) = (search.best, couple.second_from_frame);
-                let cells =
-                    cover.take().map_or_else(|| Frontier::new(ROOM, first), |c| c.cells);
+                let first = workspace.frontier.queue.len() + workspace.frontier.pending.len();
+                let (best, second_from_frame) = (search.best, pair.second_from_frame);
+                let cells = cover.take().map_or_else(|| Heap::new(ROOM, first), |c| c.cells);
                 cover = Some(Cover { cells, root, best, second_from_frame, first });
                 answer
             }
         };
         if let Some(cover) = &mut cover {
-            (cover.best, cover.second_from_frame) = (search.best, couple.second_from_frame);
-            for cell in workspace.pending.drain(..) {
-                workspace.cells.push(cell);
-            }
-            std::mem::swap(&mut cover.cells, &mut workspace.cells);
+            (cover.best, cover.second_from_frame) = (search.best, pair.second_from_frame);
+            let Frontier { queue, pending, .. } = &mut workspace.frontier;
+            pending.drain(..).for_each(|cell| queue.push(&cell));
+            std::mem::swap(&mut cover.cells, queue);
         }
         self.cover = cover;
         Ok((answer, search.best))
@@ -149,9 +147,13 @@ impl<const D: usize> Track<D> {
 impl<const D: usize> Cover<D> {
     /// Puts into `workspace` what is still known now that the bodies have moved; `false`
     /// if they moved too far.
-    fn resume(&mut self, search: &mut Search<'_, D>, workspace: &mut PairWorkspace<D>) -> bool {
+    fn resume(
+        &mut self,
+        search: &mut PairSearch<'_, D>,
+        workspace: &mut PairWorkspace<D>,
+    ) -> bool {
         // What a body knows in a part of space alone moves with it.
-        let is_known = search.couple.bodies.iter().all(Body::is_known_everywhere);
+        let is_known = search.pair.bodies.iter().all(Body::is_known_everywhere);
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
@@ -161,11 +163,11 @@ impl<const D: usize> Cover<D> {
         if !(self.root.contains(root.min) && self.root.contains(root.max)) {
             return false;
         }
-        let slack = search.couple.slack(reach(&self.root));
-        let moved = self.displacement(&search.couple.second_from_frame) + slack;
+        let slack = search.pair.slack(reach(&self.root));
+        let moved = self.displacement(&search.pair.second_from_frame) + slack;
         self.cells.lower_all(moved);
         search.reserve = RESERVE * moved;
-        std::mem::swap(&mut self.cells, &mut workspace.cells);
+        std::mem::swap(&mut self.cells, &mut workspace.frontier.queue);
         search.resume(&self.root, workspace);
         true
     }

@@ -9,11 +9,12 @@
 //! threads change no bit of the answer.
 
 mod near;
-mod pool;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use palpate_field::{Aabb, Pose, Shape};
+#[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
 use crate::certified::{Limits, Stop};
@@ -23,8 +24,8 @@ use crate::manifold::{Manifold, ManifoldSettings};
 use crate::pair::Track;
 use crate::pair::cell::reach;
 use crate::placed::check_pose;
+use crate::pool::Pool;
 use near::pairs_near;
-use pool::Pool;
 
 /// Roundings of a placed box, relative to its largest coordinate.
 const ROUNDINGS: f64 = 16.0;
@@ -43,6 +44,7 @@ impl BodyId {
 
 /// What a world's answers are to be like.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct WorldSettings {
     /// Of each pair: the margin, how finely it is looked at, how many contacts.
     pub manifold: ManifoldSettings,
@@ -51,17 +53,24 @@ pub struct WorldSettings {
 }
 
 impl WorldSettings {
+    /// These settings for each pair.
+    #[must_use]
+    pub fn new(manifold: ManifoldSettings, limits: Limits) -> Self {
+        Self { manifold, limits }
+    }
+
     /// For bodies of about `size` [m].
     #[must_use]
     pub fn of_size(size: f64) -> Self {
         let manifold = ManifoldSettings::of_size(size);
-        let limits = Limits { tolerance: 0.5 * manifold.margin, ..Limits::default() };
+        let limits = Limits::new(0.5 * manifold.margin);
         Self { manifold, limits }
     }
 }
 
 /// What is known of two bodies that are near each other.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Neighbours<const D: usize> {
     /// The bodies, the one that was added first first.
     pub bodies: [BodyId; 2],
@@ -71,6 +80,7 @@ pub struct Neighbours<const D: usize> {
 
 /// Whether two bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// Their separation is at most the margin.
     Touching,
@@ -79,6 +89,16 @@ pub enum Verdict {
     /// The budget came to its end first, or neither is bounded: the truth is between the
     /// bounds.
     Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Touching => "touching",
+            Self::Apart => "apart",
+            Self::Undecided => "undecided",
+        })
+    }
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -211,7 +231,8 @@ impl<const D: usize> World<D> {
             aabb: None,
             has_moved: true,
         };
-        body.place(world_from_body, self.settings.manifold.margin)?;
+        check_pose(self.bodies.len(), &world_from_body)?;
+        body.place(world_from_body, self.settings.manifold.margin);
         self.bodies.push(Some(body));
         Ok(BodyId(self.bodies.len() - 1))
     }
@@ -246,10 +267,13 @@ impl<const D: usize> World<D> {
     pub fn set_poses(&mut self, poses: &[(BodyId, Pose<D>)]) -> Result<(), QueryError> {
         for (body, pose) in poses {
             self.body(*body)?;
-            check_pose(pose)?;
+            check_pose(body.0, pose)?;
         }
         let margin = self.settings.manifold.margin;
-        poses.iter().try_for_each(|(body, pose)| self.body(*body)?.place(*pose, margin))
+        for (body, pose) in poses {
+            self.body(*body)?.place(*pose, margin);
+        }
+        Ok(())
     }
 
     /// Puts a body into `groups`, a bit each, and asks it only with bodies of a group in
@@ -286,27 +310,26 @@ impl<const D: usize> World<D> {
     /// Finds what touches where bodies are now: all pairs whose boxes are within the
     /// margin and that are not proven to be farther apart, in the order of their bodies.
     ///
-    /// Runs on rayon's threads; the bits do not depend on how many there are.
+    /// With the feature `parallel` rayon's threads share the pairs; the bits do not depend on
+    /// how many there are.
     pub fn step(&mut self) -> Vec<&Neighbours<D>> {
         self.find_near();
         let (bodies, settings, pool) = (&self.bodies, &self.settings, &self.pool);
-        self.pairs.par_iter_mut().filter(|(_, pair)| pair.is_stale).for_each(
-            |([one, other], pair)| {
-                if let (Some(a), Some(b)) = (&bodies[*one], &bodies[*other]) {
-                    pool.with(|workspace| {
-                        let poses = [a.pose, b.pose];
-                        let asked = pair.track.manifold(
-                            poses,
-                            &settings.manifold,
-                            &settings.limits,
-                            workspace,
-                        );
-                        pair.found.manifold = asked.ok();
-                    });
-                }
-                pair.is_stale = false;
-            },
-        );
+        let ask = |([one, other], pair): (&[usize; 2], &mut Pair<D>)| {
+            if let (Some(a), Some(b)) = (&bodies[*one], &bodies[*other]) {
+                pool.with(|workspace| {
+                    let poses = [a.pose, b.pose];
+                    let WorldSettings { manifold, limits } = settings;
+                    let asked = pair.track.manifold(poses, manifold, limits, workspace);
+                    pair.found.manifold = asked.ok();
+                });
+            }
+            pair.is_stale = false;
+        };
+        #[cfg(feature = "parallel")]
+        self.pairs.par_iter_mut().filter(|(_, pair)| pair.is_stale).for_each(ask);
+        #[cfg(not(feature = "parallel"))]
+        self.pairs.iter_mut().filter(|(_, pair)| pair.is_stale).for_each(ask);
         for body in self.bodies.iter_mut().flatten() {
             body.has_moved = false;
         }
@@ -349,14 +372,13 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> Body<D> {
-    fn place(&mut self, pose: Pose<D>, margin: f64) -> Result<(), QueryError> {
-        check_pose(&pose)?;
+    /// Moves the body to a pose that was checked.
+    fn place(&mut self, pose: Pose<D>, margin: f64) {
         (self.pose, self.has_moved) = (pose, true);
         let bounds = self.shape.promise().bounds;
         self.aabb = bounds.map(|bounds| {
             let placed = bounds.aabb.placed(&pose);
             placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * reach(&placed))
         });
-        Ok(())
     }
 }

@@ -10,15 +10,15 @@ use crate::pair::PairWorkspace;
 /// Workspaces that nobody uses now. What one holds from before changes no answer. Each in a
 /// box, as to move one takes as long as a fifth of what is asked with it.
 #[derive(Debug)]
-pub(super) struct Pool<const D: usize>(Mutex<Vec<Box<PairWorkspace<D>>>>);
+pub(crate) struct Pool<const D: usize>(Mutex<Vec<Box<PairWorkspace<D>>>>);
 
 impl<const D: usize> Pool<D> {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Mutex::new(Vec::new()))
     }
 
     /// Runs `ask` with a workspace, a new one if all are in use.
-    pub(super) fn with(&self, ask: impl FnOnce(&mut PairWorkspace<D>)) {
+    pub(crate) fn with(&self, ask: impl FnOnce(&mut PairWorkspace<D>)) {
         let idle = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let lent = idle().pop();
         let mut workspace = lent.unwrap_or_default();

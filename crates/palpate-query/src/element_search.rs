@@ -26,8 +26,10 @@
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::contact::Contact;
+use crate::contacts::ElementContacts;
 use crate::element::{Element, parts_of_one};
+use crate::engine::{self, Bounded, Frontier, Problem};
+use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::larger::larger;
 use crate::patches::{MOST_CELLS, Patches};
@@ -60,7 +62,7 @@ const ROOM: usize = 4096;
 /// A part of the element, and what is known of it: 128 bytes of a triangle in space. What
 /// is larger is copied by a call, which takes longer than all else that is done to a cell.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cell<const N: usize, const D: usize> {
+pub(crate) struct ElementCell<const N: usize, const D: usize> {
     pub(crate) element: Element<N, D>,
     /// Nothing on the cell is less [m].
     pub(crate) lower: f64,
@@ -73,7 +75,14 @@ pub(crate) struct Cell<const N: usize, const D: usize> {
     pub(crate) level: u32,
 }
 
-impl<const N: usize, const D: usize> Cell<N, D> {
+impl<const N: usize, const D: usize> Bounded for ElementCell<N, D> {
+    #[inline]
+    fn lower(&self) -> f64 {
+        self.lower
+    }
+}
+
+impl<const N: usize, const D: usize> ElementCell<N, D> {
     /// Appends the first `count` of its halves.
     #[inline]
     pub(crate) fn halve_into(&self, count: usize, cells: &mut Vec<Self>) {
@@ -86,10 +95,10 @@ impl<const N: usize, const D: usize> Cell<N, D> {
 /// Memory of searches, to be kept between them: it is allocated once.
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
-    pub(crate) cells: Vec<Cell<N, D>>,
+    pub(crate) frontier: Frontier<Vec<ElementCell<N, D>>>,
     pub(crate) samples: Samples<D>,
     pub(crate) patches: Patches<N, D>,
-    pub(crate) contacts: Vec<Contact<D>>,
+    pub(crate) found: ElementContacts<D>,
 }
 
 impl<const N: usize, const D: usize> Workspace<N, D> {
@@ -97,10 +106,14 @@ impl<const N: usize, const D: usize> Workspace<N, D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: Vec::with_capacity(ROOM),
+            frontier: Frontier {
+                queue: Vec::with_capacity(ROOM),
+                pending: Vec::new(),
+                round: Vec::with_capacity(SHORT),
+            },
             samples: Samples::new(),
             patches: Patches::new(),
-            contacts: Vec::with_capacity(MOST_CELLS),
+            found: ElementContacts::with_capacity(MOST_CELLS),
         }
     }
 }
@@ -113,15 +126,20 @@ impl<const N: usize, const D: usize> Default for Workspace<N, D> {
 
 /// The least value of a field over an element, between bounds [m], and where it is.
 ///
-/// Stops when the bounds are no further apart than the tolerance.
+/// Stops when the bounds are no farther apart than the tolerance.
+///
+/// # Errors
+///
+/// If the tolerance is negative, NaN or too large.
 pub fn minimum<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>> {
+) -> Result<Certified<Point<D>>, QueryError> {
+    limits.check()?;
     let goal = Goal::least(limits.tolerance);
-    search(shape, element, &Terms::new(goal, limits.budget), workspace)
+    Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
 /// Whether a field is at most zero anywhere on an element.
@@ -129,14 +147,19 @@ pub fn minimum<const N: usize, const D: usize>(
 /// Stops as soon as that is known, in [`Certified::is_hit`]. A touch that is neither
 /// deeper nor further off than rounding stays unknown, and `limits.tolerance` says up to
 /// which clearance it is to be looked for.
+///
+/// # Errors
+///
+/// If the tolerance is negative, NaN or too large.
 pub fn touches<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
     workspace: &mut Workspace<N, D>,
-) -> Certified<Point<D>> {
+) -> Result<Certified<Point<D>>, QueryError> {
+    limits.check()?;
     let goal = Goal::sign(limits.tolerance);
-    search(shape, element, &Terms::new(goal, limits.budget), workspace)
+    Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
 /// What is asked of a search.
@@ -163,12 +186,12 @@ pub(crate) fn search<const N: usize, const D: usize>(
     terms: &Terms,
     workspace: &mut Workspace<N, D>,
 ) -> Certified<Point<D>> {
-    Search::new(shape, element, terms, &mut workspace.samples)
-        .run(element, &mut workspace.cells)
+    ElementSearch::new(shape, element, terms, &mut workspace.samples)
+        .run(element, &mut workspace.frontier)
 }
 
 /// A search under way.
-pub(crate) struct Search<'a, const N: usize, const D: usize> {
+pub(crate) struct ElementSearch<'a, const N: usize, const D: usize> {
     pub(crate) sampler: Sampler<'a, D>,
     pub(crate) goal: Goal,
     pub(crate) budget: u32,
@@ -186,7 +209,7 @@ pub(crate) struct Search<'a, const N: usize, const D: usize> {
     pub(crate) keeps_all: bool,
 }
 
-impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
+impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
     // Inlined always, since a search that ends at its first look is mostly this.
     #[inline(always)]
     pub(crate) fn new(
@@ -217,7 +240,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
 
     /// The radius of the smallest ball around a cell [m], which each halving halves.
     #[inline]
-    pub(crate) fn radius_of(&self, cell: &Cell<N, D>) -> f64 {
+    pub(crate) fn radius_of(&self, cell: &ElementCell<N, D>) -> f64 {
         // The power of two by its exponent.
         let share = f64::from_bits(u64::from(1023 - cell.level) << 52);
         self.radius * share
@@ -248,14 +271,14 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     fn run(
         &mut self,
         element: &Element<N, D>,
-        cells: &mut Vec<Cell<N, D>>,
+        frontier: &mut Frontier<Vec<ElementCell<N, D>>>,
     ) -> Certified<Point<D>> {
         match self.begin(element) {
             Err(answer) => answer,
             Ok(whole) => {
-                cells.clear();
-                cells.push(whole);
-                self.finish(cells)
+                frontier.queue.clear();
+                frontier.queue.push(whole);
+                self.finish(frontier)
             }
         }
     }
@@ -265,7 +288,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     pub(crate) fn begin(
         &mut self,
         element: &Element<N, D>,
-    ) -> Result<Cell<N, D>, Certified<Point<D>>> {
+    ) -> Result<ElementCell<N, D>, Certified<Point<D>>> {
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
@@ -289,7 +312,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         if let Some(flat) = &flat {
             (self.weights, self.parts) = (flat.centre_weights(), 2);
         }
-        let mut whole = Cell {
+        let mut whole = ElementCell {
             element: flat.unwrap_or(*element),
             lower,
             upper: self.upper,
@@ -304,26 +327,19 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
         Ok(whole)
     }
 
-    /// Searches cells until enough is known.
+    /// Searches the waiting cells until enough is known.
     #[inline]
-    pub(crate) fn finish(&mut self, cells: &mut Vec<Cell<N, D>>) -> Certified<Point<D>> {
-        loop {
-            let lowest =
-                cells.iter().fold(self.dropped, |low, cell| -larger(-low, -cell.lower));
-            if let Some(stop) = self.goal.reached(lowest, self.upper) {
-                return self.answer(lowest, stop);
-            }
-            let is_full = cells.len() + SHORT > cells.capacity();
-            if cells.is_empty() || is_full || self.sampler.evaluations >= self.budget {
-                return self.answer(lowest, Stop::BudgetSpent);
-            }
-            self.halve(cells);
-        }
+    pub(crate) fn finish(
+        &mut self,
+        frontier: &mut Frontier<Vec<ElementCell<N, D>>>,
+    ) -> Certified<Point<D>> {
+        let end = engine::search(self, frontier);
+        self.answer(frontier.lower(self.dropped), end.stop())
     }
 
     /// The vertices, whose values it returns, and points over the centre at several heights.
     #[inline(always)]
-    fn look_around(&mut self, cell: &mut Cell<N, D>, centre: Point<D>) -> [f64; N] {
+    fn look_around(&mut self, cell: &mut ElementCell<N, D>, centre: Point<D>) -> [f64; N] {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
         let points: [Point<D>; SHORT] = std::array::from_fn(|i| match i.checked_sub(N) {
             None => cell.element.vertices[i],
@@ -351,7 +367,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     #[inline]
     fn look_from_lowest(
         &mut self,
-        cell: &mut Cell<N, D>,
+        cell: &mut ElementCell<N, D>,
         vertices: &[f64; N],
         (centre, gradient): (Point<D>, Vector<f64, D>),
     ) {
@@ -384,32 +400,14 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
 
     /// What a value anywhere says of a cell.
     #[inline]
-    fn over(&self, cell: &Cell<N, D>, p: Point<D>, value: f64) -> f64 {
+    fn over(&self, cell: &ElementCell<N, D>, p: Point<D>, value: f64) -> f64 {
         self.sampler.steepness.bound(p, value, cell.element.farthest(p))
     }
 
-    /// Halves the cells of which least is known, a block of parts.
+    /// Bounds parts of one size, at most [`SHORT`]: by their centres, and by points lifted
+    /// off them.
     #[inline]
-    fn halve(&mut self, cells: &mut Vec<Cell<N, D>>) {
-        const { assert!(N == 2 || N == 3, "segments and triangles") };
-        let first = cells.len();
-        let halved = (SHORT / self.parts).min(first);
-        let kept = first - halved;
-        for end in (kept..first).rev() {
-            let lowest = (0..end)
-                .fold(end, |low, i| if cells[i].lower < cells[low].lower { i } else { low });
-            cells.swap(lowest, end);
-            let parent = cells[end];
-            parent.halve_into(self.parts, cells);
-        }
-        self.look_at(cells, kept, first);
-    }
-
-    /// Bounds the cells from `first` on, at most [`SHORT`], and keeps those that matter, behind
-    /// the first `kept`.
-    #[inline]
-    pub(crate) fn look_at(&mut self, cells: &mut Vec<Cell<N, D>>, kept: usize, first: usize) {
-        let parts = &mut cells[first..];
+    pub(crate) fn bound_parts(&mut self, parts: &mut [ElementCell<N, D>]) {
         let count = parts.len();
         let mut points: [Point<D>; SHORT] =
             std::array::from_fn(|i| parts[i.min(count - 1)].element.at(&self.weights));
@@ -441,22 +439,16 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
             self.settle(parts, &points, &values);
             self.lift(parts, &points, &values, &[1.0]);
         }
-        let threshold = self.threshold();
-        let mut end = kept;
-        for i in first..cells.len() {
-            if cells[i].lower < threshold && cells[i].level < MOST_LEVELS {
-                cells[end] = cells[i];
-                end += 1;
-            } else {
-                self.dropped = self.dropped.min(cells[i].lower);
-            }
-        }
-        cells.truncate(end);
     }
 
     /// Bounds parts by the values at their centres.
     #[inline]
-    fn settle(&mut self, parts: &mut [Cell<N, D>], centres: &[Point<D>], values: &[f64]) {
+    fn settle(
+        &mut self,
+        parts: &mut [ElementCell<N, D>],
+        centres: &[Point<D>],
+        values: &[f64],
+    ) {
         for ((part, centre), value) in parts.iter_mut().zip(centres).zip(values) {
             self.found(*centre, *value);
             part.upper = *value + self.sampler.steepness.slack;
@@ -470,13 +462,13 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     #[inline]
     fn lift(
         &mut self,
-        parts: &mut [Cell<N, D>],
+        parts: &mut [ElementCell<N, D>],
         centres: &[Point<D>; SHORT],
         values: &[f64; SHORT],
         shares: &[f64],
     ) {
         let threshold = self.threshold();
-        let is_open = |part: &Cell<N, D>| part.lower < threshold;
+        let is_open = |part: &ElementCell<N, D>| part.lower < threshold;
         if self.goal.is_hit(self.upper) || !parts.iter().any(is_open) {
             return;
         }
@@ -499,7 +491,7 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
     #[inline]
     fn learn(
         &mut self,
-        parts: &mut [Cell<N, D>],
+        parts: &mut [ElementCell<N, D>],
         (centres, values): (&[Point<D>], &[f64]),
         (points, lifted): (&[Point<D>], &[f64]),
         share: f64,
@@ -517,5 +509,60 @@ impl<'a, const N: usize, const D: usize> Search<'a, N, D> {
                 part.height *= SHRINK;
             }
         }
+    }
+}
+
+impl<const N: usize, const D: usize> Problem for ElementSearch<'_, N, D> {
+    type Queue = Vec<ElementCell<N, D>>;
+
+    #[inline]
+    fn round_and_parts(&self) -> (usize, usize) {
+        (SHORT, self.parts)
+    }
+
+    #[inline]
+    fn decided(&self, lower: f64) -> Option<Stop> {
+        self.goal.reached(lower, self.upper)
+    }
+
+    #[inline]
+    fn has_room(&self, frontier: &Frontier<Self::Queue>) -> bool {
+        frontier.queue.len() + SHORT <= frontier.queue.capacity()
+    }
+
+    #[inline]
+    fn is_spent(&self) -> bool {
+        self.sampler.evaluations >= self.budget
+    }
+
+    /// A block has room for the parts of several cells, and costs the same with fewer.
+    #[inline]
+    fn can_split(&self, queue: &Self::Queue) -> bool {
+        !queue.is_empty()
+    }
+
+    #[inline]
+    fn split(&mut self, cell: &ElementCell<N, D>, round: &mut Vec<ElementCell<N, D>>) {
+        cell.halve_into(self.parts, round);
+    }
+
+    #[inline]
+    fn bound(&mut self, frontier: &mut Frontier<Self::Queue>) {
+        self.bound_parts(&mut frontier.round);
+    }
+
+    #[inline]
+    fn is_open(&self, cell: &ElementCell<N, D>) -> bool {
+        cell.lower < self.threshold() && cell.level < MOST_LEVELS
+    }
+
+    #[inline]
+    fn close(&mut self, cell: &ElementCell<N, D>, _queue: &mut Self::Queue) {
+        self.dropped = self.dropped.min(cell.lower);
+    }
+
+    #[inline]
+    fn closed(&self) -> f64 {
+        self.dropped
     }
 }

@@ -7,7 +7,7 @@ use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 
 use super::body::Body;
-use super::cell::Cell;
+use super::cell::BoxCell;
 use crate::error::QueryError;
 use crate::placed::{Placed, check_pose};
 
@@ -49,7 +49,7 @@ impl<const D: usize> Memory<D> {
 /// Two bodies in the frame of the first, so that what is known of places stays true of
 /// it while both move.
 #[derive(Clone, Copy)]
-pub(crate) struct Couple<'a, const D: usize> {
+pub(crate) struct BodyPair<'a, const D: usize> {
     pub(crate) bodies: [Body<'a, D>; 2],
     /// Boxes of the frame that hold the bodies; one of them at least is there.
     aabbs: [Option<Aabb<D>>; 2],
@@ -63,10 +63,10 @@ pub(crate) struct Couple<'a, const D: usize> {
     pub(crate) evaluations: u32,
 }
 
-impl<'a, const D: usize> Couple<'a, D> {
+impl<'a, const D: usize> BodyPair<'a, D> {
     pub(crate) fn new(a: Placed<'a, D>, b: Placed<'a, D>) -> Result<Self, QueryError> {
-        check_pose(&a.world_from_body)?;
-        check_pose(&b.world_from_body)?;
+        check_pose(0, &a.world_from_body)?;
+        check_pose(1, &b.world_from_body)?;
         let second_from_frame = b.world_from_body.inverse() * a.world_from_body;
         let bodies =
             [Body::new(a.shape, Pose::identity()), Body::new(b.shape, second_from_frame)];
@@ -111,7 +111,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn values(
         &mut self,
         body: usize,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         memory: &mut Memory<D>,
         values: &mut [f64; BLOCK],
     ) {
@@ -165,7 +165,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     /// which both fields are known to be as steep as promised.
     pub(crate) fn keep_known(
         &self,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         open: &mut Vec<usize>,
         memory: &Memory<D>,
     ) {
@@ -181,7 +181,7 @@ impl<'a, const D: usize> Couple<'a, D> {
     pub(crate) fn models(
         &mut self,
         body: usize,
-        cells: &[Cell<D>],
+        cells: &[BoxCell<D>],
         open: &[usize],
         memory: &mut Memory<D>,
     ) {

@@ -14,18 +14,21 @@
 //! the model bounds the field by an affine function, so that such points lie in a
 //! half-space, and the box is no nearer than that.
 
+mod rounds;
+
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Quality, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::cut_box::distance_to_cut_box;
+use crate::engine::{self, End, Frontier, Heap, Queue};
 use crate::error::{QueryError, check_coordinates, check_length};
 use crate::goal::Goal;
 use crate::pair::body::Body;
-use crate::pair::cell::{Cell, ROUNDINGS};
-use crate::pair::frontier::Frontier;
+use crate::pair::cell::{BoxCell, ROUNDINGS};
 use crate::sampler::normal;
+use rounds::BallRounds;
 
 /// Steps of Newton's method through a surface at most.
 const MOST_STEPS: u32 = 64;
@@ -39,7 +42,13 @@ const MOST_SLIDES: u32 = 24;
 /// Memory of searches about balls, to be kept between them.
 #[derive(Debug)]
 pub struct BallWorkspace<const D: usize> {
-    cells: Frontier<D>,
+    frontier: Frontier<Heap<BoxCell<D>>>,
+    memory: Memory<D>,
+}
+
+/// Memory of questions to a field.
+#[derive(Debug)]
+struct Memory<const D: usize> {
     points: Block<f64, D, BLOCK>,
     boxes: Block<Model, D, BLOCK>,
     values: Column<f64, BLOCK>,
@@ -51,11 +60,17 @@ impl<const D: usize> BallWorkspace<D> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            cells: Frontier::new(ROOM, ROOM),
-            points: Block::zero(),
-            boxes: Block::zero(),
-            values: Column::zero(),
-            models: Column::zero(),
+            frontier: Frontier {
+                queue: Heap::new(ROOM, ROOM),
+                pending: Vec::new(),
+                round: Vec::with_capacity(BLOCK),
+            },
+            memory: Memory {
+                points: Block::zero(),
+                boxes: Block::zero(),
+                values: Column::zero(),
+                models: Column::zero(),
+            },
         }
     }
 }
@@ -77,13 +92,13 @@ impl<const D: usize> Default for BallWorkspace<D> {
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-/// use palpate_query::{Limits, BallWorkspace, Stop, ball};
+/// use palpate_query::{Limits, BallWorkspace, Stop, contact_ball};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let mut workspace = BallWorkspace::new();
 /// let square = Shape::from_kernel(Cuboid::new(Vector([2.0, 1.0]))?);
 /// let centre = Vector([1.3, 0.9]);
-/// let answer = ball(&square, centre, 0.75, &Limits::default(), &mut workspace)?;
+/// let answer = contact_ball(&square, centre, 0.75, &Limits::new(1e-4), &mut workspace)?;
 /// // Exact, and so known at once: the corner is 0.5 m from the centre.
 /// assert_eq!((answer.evaluations, answer.stop), (2, Stop::Converged));
 /// let contact = answer.best.ok_or("there is a contact")?;
@@ -94,7 +109,7 @@ impl<const D: usize> Default for BallWorkspace<D> {
 ///
 /// // A bound, a quarter of the distance here, needs a search.
 /// let ellipse = square.stretched([1.0, 4.0])?;
-/// let answer = ball(&ellipse, Vector([0.3, 6.0]), 1.0, &Limits::default(), &mut workspace)?;
+/// let answer = contact_ball(&ellipse, Vector([0.3, 6.0]), 1.0, &Limits::new(1e-4), &mut workspace)?;
 /// assert!(answer.lower <= 3.0 && 3.0 <= answer.upper && answer.upper < 3.0 + 1e-4);
 /// # Ok(())
 /// # }
@@ -103,7 +118,7 @@ impl<const D: usize> Default for BallWorkspace<D> {
 /// # Errors
 ///
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
-pub fn ball<const D: usize>(
+pub fn contact_ball<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
     radius: f64,
@@ -115,7 +130,7 @@ pub fn ball<const D: usize>(
 }
 
 /// Whether a ball and a shape touch, in [`Certified::is_hit`]; arguments and errors as of
-/// [`ball`].
+/// [`contact_ball`].
 ///
 /// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
 /// One evaluation decides where the field is exact, where it is a bound above the radius,
@@ -124,7 +139,7 @@ pub fn ball<const D: usize>(
 /// # Errors
 ///
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
-pub fn ball_touches<const D: usize>(
+pub fn touches_ball<const D: usize>(
     shape: &Shape<D>,
     centre: Point<D>,
     radius: f64,
@@ -148,7 +163,7 @@ fn search<const D: usize>(
     let promise = shape.promise();
     let is_inside = value < 0.0;
     let extent = promise.bounds.map_or(value.abs(), |bounds| bounds.radius_about_origin());
-    let mut search = Search {
+    let mut search = BallSearch {
         body: Body::new(shape, Pose::identity()),
         lipschitz: promise.lipschitz,
         centre,
@@ -181,7 +196,7 @@ fn search<const D: usize>(
 
 /// A search under way, for the nearest point at which the field has not the sign of the
 /// centre.
-struct Search<'a, const D: usize> {
+struct BallSearch<'a, const D: usize> {
     body: Body<'a, D>,
     lipschitz: f64,
     centre: Point<D>,
@@ -204,7 +219,7 @@ struct Search<'a, const D: usize> {
     evaluations: u32,
 }
 
-impl<const D: usize> Search<'_, D> {
+impl<const D: usize> BallSearch<'_, D> {
     fn run(&mut self, workspace: &mut BallWorkspace<D>) -> Certified<Option<Contact<D>>> {
         if let Some(stop) = self.reached(self.safe) {
             return self.finish(self.safe, stop);
@@ -216,26 +231,19 @@ impl<const D: usize> Search<'_, D> {
         if self.reach.is_finite() {
             self.geometry += ROUNDINGS * self.reach;
         }
-        workspace.cells.clear();
+        let BallWorkspace { frontier, memory } = workspace;
+        frontier.queue.clear();
         if let Some(root) = self.root() {
-            workspace.cells.push(Cell { lower: self.safe, ..Cell::unknown(&root) });
+            frontier.queue.push(&BoxCell { lower: self.safe, ..BoxCell::unknown(&root) });
         }
-        loop {
-            let nearest = workspace.cells.lowest();
-            let lower = nearest.min(self.dropped).max(self.safe);
-            if let Some(stop) = self.reached(lower) {
-                return self.finish(lower, stop);
-            }
-            if workspace.cells.is_empty() && self.gaps(lower).0 > 0.0 {
-                // There is no surface as far as was looked.
-                return self.finish(lower, Stop::SignKnown);
-            }
-            let is_full = !workspace.cells.has_room(BLOCK);
-            if workspace.cells.is_empty() || is_full || self.evaluations >= self.budget {
-                return self.finish(lower, Stop::BudgetSpent);
-            }
-            self.round(workspace);
-        }
+        let end = engine::search(&mut BallRounds { search: self, memory }, frontier);
+        let lower = frontier.lower(self.dropped).max(self.safe);
+        let stop = match end {
+            // There is no surface as far as was looked.
+            End::Exhausted if self.gaps(lower).0 > 0.0 => Stop::SignKnown,
+            end => end.stop(),
+        };
+        self.finish(lower, stop)
     }
 
     /// What the gap is between, if nothing is nearer than `lower`.
@@ -285,14 +293,7 @@ impl<const D: usize> Search<'_, D> {
         let distance = away.norm();
         let is_far = distance > self.geometry;
         let direction = is_far.then(|| away * (self.sign / distance)).or(self.fallback)?;
-        Some(Contact {
-            point_a: surface,
-            point_b: self.centre - direction * self.radius,
-            normal: direction,
-            gap: self.sign * distance - self.radius,
-            // A ball has one contact.
-            id: 0,
-        })
+        Some(Contact::new(surface, self.centre - direction * self.radius, direction))
     }
 
     /// What the field may be off by at a point [m].
@@ -422,85 +423,7 @@ impl<const D: usize> Search<'_, D> {
         self.goal.threshold(self.reach - self.radius) + self.radius + 2.0 * self.geometry
     }
 
-    /// Halves the nearest boxes, a block of parts, and bounds them.
-    fn round(&mut self, workspace: &mut BallWorkspace<D>) {
-        let mut parts = [Cell::NOTHING; BLOCK];
-        let mut count = 0;
-        while count + (1 << D) <= BLOCK {
-            let Some(parent) = workspace.cells.pop() else { break };
-            if parent.lower >= self.threshold() {
-                self.dropped = self.dropped.min(parent.lower);
-                continue;
-            }
-            count = parent.halve(&mut parts, count);
-        }
-        let parts = &mut parts[..count];
-        for (i, part) in parts.iter().enumerate() {
-            workspace.points.set(i, part.centre);
-        }
-        self.body.shape.block_distances(&workspace.points, count, &mut workspace.values);
-        self.evaluations += count as u32;
-        let (mut open, mut is_steep) = (0, [false; BLOCK]);
-        let mut start: Option<(f64, Point<D>)> = None;
-        for i in 0..count {
-            let mut part = parts[i];
-            let value = self.sign * workspace.values.get(i);
-            let radius = part.radius();
-            let is_known = self.body.is_known(part.centre, radius);
-            let slack = self.slack(part.centre) + self.geometry;
-            if is_known && value - self.lipschitz * radius > slack {
-                continue;
-            }
-            part.lower = part.lower.max(self.distance_to_box(&part));
-            let far = (part.centre - self.centre).norm();
-            let may_help = self.best.is_none() || self.is_through(1.0, value, slack);
-            if may_help && start.is_none_or(|(least, _)| far < least) {
-                start = Some((far, part.centre));
-            }
-            (parts[open], is_steep[open]) = (part, is_known);
-            open += 1;
-        }
-        if let Some((far, start)) = start
-            && far < self.reach - 0.25 * self.goal.tolerance
-            && let Some(found) = self.through(start, self.sign)
-        {
-            self.slide(found);
-        }
-        self.refine(&parts[..open], &is_steep, workspace);
-    }
-
-    /// Bounds parts by models, where the field is as steep as promised, and keeps what is
-    /// near.
-    fn refine(
-        &mut self,
-        parts: &[Cell<D>],
-        is_steep: &[bool; BLOCK],
-        workspace: &mut BallWorkspace<D>,
-    ) {
-        if parts.is_empty() {
-            return;
-        }
-        for (lane, part) in parts.iter().enumerate() {
-            workspace.boxes.set(lane, Vector(Model::cell(part.centre.0, part.half.0)));
-        }
-        let models = &mut workspace.models;
-        self.body.shape.block_distances(&workspace.boxes, parts.len(), models);
-        self.evaluations += parts.len() as u32;
-        for (lane, part) in parts.iter().enumerate() {
-            let mut part = *part;
-            if is_steep[lane] {
-                let room = self.distance_to_room(&part, &workspace.models.get(lane));
-                part.lower = part.lower.max(room);
-            }
-            if part.lower < self.threshold() {
-                workspace.cells.push(part);
-            } else {
-                self.dropped = self.dropped.min(part.lower);
-            }
-        }
-    }
-
-    fn distance_to_box(&self, part: &Cell<D>) -> f64 {
+    fn distance_to_box(&self, part: &BoxCell<D>) -> f64 {
         let mut away = (part.centre - self.centre).abs() - part.half;
         for x in &mut away.0 {
             *x = x.max(0.0);
@@ -510,7 +433,7 @@ impl<const D: usize> Search<'_, D> {
 
     /// How far the part of a box is in which a model leaves room for points beyond the
     /// surface, a half-space; infinite if it leaves none.
-    fn distance_to_room(&self, part: &Cell<D>, model: &Model) -> f64 {
+    fn distance_to_room(&self, part: &BoxCell<D>, model: &Model) -> f64 {
         let remainder = if self.sign > 0.0 { model.lower } else { model.upper };
         let slack = self.slack(part.centre) + self.geometry;
         let value = self.sign * model.value - remainder - slack;

@@ -1,28 +1,33 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Boxes still to be looked at, the one of which least is known first.
+//! A queue in a heap, for thousands of cells.
 
 use std::collections::BinaryHeap;
 
-use super::cell::Cell;
+use super::{Bounded, Queue};
 
-/// Boxes in a heap. What moves in the heap is a bound and a place alone: boxes themselves
-/// are four times as large.
+/// A cell whose bound can be replaced.
+pub(crate) trait Rebound: Bounded + Copy {
+    /// The same cell with another lower bound [m].
+    fn with_lower(&self, lower: f64) -> Self;
+}
+
+/// Cells in a heap. The heap moves bounds and places alone: cells are four times as large.
 #[derive(Clone, Debug)]
-pub(crate) struct Frontier<const D: usize> {
+pub(crate) struct Heap<C> {
     heap: BinaryHeap<Key>,
-    cells: Vec<Cell<D>>,
+    cells: Vec<C>,
     /// Places in `cells` that are free.
     free: Vec<u32>,
     room: usize,
-    /// By how much all bounds in the heap are too large.
+    /// What every bound in the heap exceeds the cell's own by [m].
     drift: f64,
 }
 
-/// A box's lower bound, in the upper half, and its place: all bits turned over, so that the
-/// least bound, and of equal ones the first place, is the largest key. One number, since a heap
-/// that compares numbers needs no branches.
+/// A cell's lower bound, in the upper half, and its place. All bits are inverted, so that the
+/// least bound, and of equal bounds the first place, is the largest key. One number, since a
+/// heap that compares numbers needs no branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Key(u128);
 
@@ -50,8 +55,8 @@ impl Key {
     }
 }
 
-impl<const D: usize> Frontier<D> {
-    /// Room for so many boxes, of which `now` are allocated.
+impl<C: Rebound> Heap<C> {
+    /// Room for `room` cells, of which `now` are allocated.
     pub(crate) fn new(room: usize, now: usize) -> Self {
         Self {
             heap: BinaryHeap::with_capacity(now),
@@ -62,7 +67,7 @@ impl<const D: usize> Frontier<D> {
         }
     }
 
-    /// Lowers the bounds of all boxes.
+    /// Lowers the bounds of all cells.
     pub(crate) fn lower_all(&mut self, by: f64) {
         self.drift += by;
     }
@@ -78,48 +83,49 @@ impl<const D: usize> Frontier<D> {
         self.heap.len()
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.heap.is_empty()
-    }
-
-    /// `true` if there is room for `more` boxes.
+    /// `true` if there is room for `more` cells.
     pub(crate) fn has_room(&self, more: usize) -> bool {
         self.len() + more <= self.room
     }
 
-    /// The least of the lower bounds; infinite if there are no boxes.
-    pub(crate) fn lowest(&self) -> f64 {
+    /// Takes all cells out, in no order.
+    pub(crate) fn drain(&mut self) -> impl Iterator<Item = C> {
+        let (cells, drift) = (&self.cells, self.drift);
+        self.heap
+            .drain()
+            .map(move |key| cells[key.place() as usize].with_lower(key.lower() - drift))
+    }
+}
+
+impl<C: Rebound> Queue for Heap<C> {
+    type Cell = C;
+
+    #[inline]
+    fn least(&self) -> f64 {
         self.heap.peek().map_or(f64::INFINITY, |key| key.lower() - self.drift)
     }
 
     #[inline]
-    pub(crate) fn push(&mut self, cell: Cell<D>) {
-        let place = match self.free.pop() {
-            Some(place) => {
-                self.cells[place as usize] = cell;
-                place
-            }
-            None => {
-                self.cells.push(cell);
-                self.cells.len() as u32 - 1
-            }
-        };
-        self.heap.push(Key::new(cell.lower + self.drift, place));
+    fn take_least(&mut self, then: impl FnOnce(&C)) -> bool {
+        let Some(key) = self.heap.pop() else { return false };
+        self.free.push(key.place());
+        then(&self.cells[key.place() as usize].with_lower(key.lower() - self.drift));
+        true
     }
 
     #[inline]
-    pub(crate) fn pop(&mut self) -> Option<Cell<D>> {
-        let key = self.heap.pop()?;
-        self.free.push(key.place());
-        Some(Cell { lower: key.lower() - self.drift, ..self.cells[key.place() as usize] })
-    }
-
-    /// Takes all boxes out, in no order.
-    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Cell<D>> {
-        let (cells, drift) = (&self.cells, self.drift);
-        self.heap
-            .drain()
-            .map(move |key| Cell { lower: key.lower() - drift, ..cells[key.place() as usize] })
+    fn push(&mut self, cell: &C) {
+        let place = match self.free.pop() {
+            Some(place) => {
+                self.cells[place as usize] = *cell;
+                place
+            }
+            None => {
+                self.cells.push(*cell);
+                self.cells.len() as u32 - 1
+            }
+        };
+        self.heap.push(Key::new(cell.lower() + self.drift, place));
     }
 }
 

@@ -1,0 +1,422 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! All questions behind one door.
+
+mod batch;
+mod scratch;
+mod tolerance;
+
+use palpate_field::{Aabb, Point, Pose, Shape};
+
+use crate::ball::{contact_ball, touches_ball};
+use crate::certified::{Certified, Limits};
+use crate::contact::Contact;
+use crate::contacts::{ElementContacts, contacts};
+use crate::element::Element;
+use crate::element_search::{minimum, touches};
+use crate::error::QueryError;
+use crate::manifold::{Manifold, ManifoldSettings, manifold};
+use crate::mesh::{MeshContacts, MeshHits, PlacedMesh, mesh_contacts, mesh_hits};
+use crate::pair::{Escape, Nearest, Proof, escape, overlap, proof, separation};
+use crate::placed::Placed;
+use crate::pool::Pool;
+use crate::ray::{Ray, RayHit, cast_ray};
+use batch::{Asked, Batch};
+use scratch::Scratch;
+
+pub use scratch::ElementMemory;
+pub use tolerance::Tolerance;
+
+/// All questions of this crate, with the memory that they need.
+///
+/// Answers are owned, and may be sent to other threads. Memory is allocated by the first
+/// question that needs it, and kept. Bounds are at most [`Tolerance`] apart, which is a
+/// share of the size of the bodies unless an absolute one is asked for; a search that would
+/// take more evaluations than the budget stops with [`Stop::BudgetSpent`] and what it has
+/// proven. Where nothing may be allocated, the functions that take a workspace ask the same
+/// questions.
+///
+/// [`Stop::BudgetSpent`]: crate::Stop::BudgetSpent
+///
+/// ```
+/// use palpate_field::{Shape, Vector, kernel::{Ball, Cuboid}};
+/// use palpate_query::Query;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let plate = Shape::from_kernel(Cuboid::new(Vector([0.2, 0.02, 0.2]))?);
+/// let ball = Shape::from_kernel(Ball::new(0.05)?).translated(Vector([0.0, 0.0605, 0.0]))?;
+/// let mut query = Query::new();
+/// let nearest = query.closest_points(&plate, &ball)?;
+/// let contact = nearest.best.ok_or("both have a surface")?;
+/// assert!((contact.gap - 0.0005).abs() < 2e-5);
+/// assert!(nearest.lower <= 0.0005 && 0.0005 <= nearest.upper);
+/// assert_eq!(query.overlap(&plate, &ball)?.is_hit(), Some(false));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Query<const D: usize> {
+    tolerance: Tolerance,
+    budget: u32,
+    gap: f64,
+    scratch: Scratch<D>,
+    /// Memory of batches, one a thread.
+    pool: Pool<D>,
+}
+
+impl<const D: usize> Query<D> {
+    /// The default tolerance, [`Limits::BUDGET`], and no gap.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            tolerance: Tolerance::default(),
+            budget: Limits::BUDGET,
+            gap: 0.0,
+            scratch: Scratch::new(),
+            pool: Pool::new(),
+        }
+    }
+
+    /// The same questions with another tolerance.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: Tolerance) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// The same questions with another limit of evaluations, each.
+    #[must_use]
+    pub fn with_budget(self, budget: u32) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// The same questions where elements of meshes, segments and triangles count as touching
+    /// up to this gap [m].
+    #[must_use]
+    pub fn with_gap(self, gap: f64) -> Self {
+        Self { gap, ..self }
+    }
+
+    /// The separation of two bodies, and where it is found; see [`separation`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    pub fn separation<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Certified<Nearest<D>>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        separation(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+    }
+
+    /// The points of both surfaces where the bodies are nearest, or overlap most, with the
+    /// bounds of the [`separation`]; see [`Nearest::contact`] for what they promise.
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    pub fn closest_points<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        Ok(self.separation(a, b)?.map(|nearest| nearest.contact(a, b)))
+    }
+
+    /// Whether two bodies overlap, in [`Certified::is_hit`]; see [`overlap`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    pub fn overlap<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Certified<Nearest<D>>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        overlap(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+    }
+
+    /// Contacts that span the region in which two bodies touch, with
+    /// [`ManifoldSettings::of_size`] for the smaller body; see [`manifold`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded or has a size, or a pose or the tolerance is NaN or out of
+    /// range.
+    pub fn manifold<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Manifold<D>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        let settings = ManifoldSettings::of_size(smallest(sizes(&a, &b)));
+        manifold(a, b, &settings, &self.limits(sizes(&a, &b)), self.scratch.pair())
+    }
+
+    /// A short way out of an overlap; see [`escape`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    pub fn escape<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Option<Escape<D>>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        escape(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+    }
+
+    /// The separation of two bodies with the boxes that prove it; see [`proof`].
+    ///
+    /// # Errors
+    ///
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
+    pub fn proof<'a>(
+        &mut self,
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<Proof<D>, QueryError> {
+        let (a, b) = (a.into(), b.into());
+        proof(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+    }
+
+    /// The contact of a shape with a ball about `centre` [m] of this `radius` [m]; see
+    /// [`contact_ball`].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m, or a length is negative or NaN.
+    pub fn contact_ball(
+        &mut self,
+        shape: &Shape<D>,
+        centre: Point<D>,
+        radius: f64,
+    ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+        let limits = self.limits([size(shape), Some(2.0 * radius)]);
+        contact_ball(shape, centre, radius, &limits, self.scratch.ball())
+    }
+
+    /// Whether a ball touches a shape, in [`Certified::is_hit`]; see [`touches_ball`].
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite or beyond 1e15 m, or a length is negative or NaN.
+    pub fn touches_ball(
+        &mut self,
+        shape: &Shape<D>,
+        centre: Point<D>,
+        radius: f64,
+    ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
+        let limits = self.limits([size(shape), Some(2.0 * radius)]);
+        touches_ball(shape, centre, radius, &limits, self.scratch.ball())
+    }
+
+    /// The first surface along a ray; see [`cast_ray`].
+    ///
+    /// # Errors
+    ///
+    /// If the tolerance is negative, NaN or too large.
+    pub fn cast_ray(
+        &mut self,
+        shape: &Shape<D>,
+        ray: &Ray<D>,
+    ) -> Result<Certified<Option<RayHit<D>>>, QueryError> {
+        cast_ray(shape, ray, &self.limits([size(shape), Some(ray.length())]))
+    }
+
+    /// The least value of a field on a segment or a triangle; see [`minimum`].
+    ///
+    /// # Errors
+    ///
+    /// If the tolerance is negative, NaN or too large.
+    pub fn minimum<const N: usize>(
+        &mut self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+    ) -> Result<Certified<Point<D>>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let limits = self.limits([size(shape), extent(element)]);
+        minimum(shape, element, &limits, &mut self.elements().search)
+    }
+
+    /// Whether a field is at most zero on a segment or a triangle, in
+    /// [`Certified::is_hit`]; see [`touches`].
+    ///
+    /// # Errors
+    ///
+    /// If the tolerance is negative, NaN or too large.
+    pub fn touches<const N: usize>(
+        &mut self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+    ) -> Result<Certified<Point<D>>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let limits = self.limits([size(shape), extent(element)]);
+        touches(shape, element, &limits, &mut self.elements().search)
+    }
+
+    /// All contacts of a field on a segment or a triangle, up to the gap of
+    /// [`Query::with_gap`]; see [`contacts`].
+    ///
+    /// # Errors
+    ///
+    /// If the gap or the tolerance is negative, NaN or too large.
+    pub fn contacts<const N: usize>(
+        &mut self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+    ) -> Result<ElementContacts<D>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let (limits, gap) = (self.limits([size(shape), extent(element)]), self.gap);
+        let search = &mut self.elements().search;
+        contacts(shape, element, gap, &limits, search).cloned()
+    }
+
+    /// The elements of a mesh that touch a field, up to the gap of [`Query::with_gap`]; see
+    /// [`mesh_hits`].
+    ///
+    /// # Errors
+    ///
+    /// If the gap or the tolerance is negative, NaN or too large, or a pose is not finite or
+    /// beyond 1e15 m.
+    pub fn mesh_hits<'a, const N: usize>(
+        &mut self,
+        field: impl Into<Placed<'a, D>>,
+        mesh: impl Into<PlacedMesh<'a, N, D>>,
+    ) -> Result<MeshHits, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let (field, mesh) = (field.into(), mesh.into());
+        let sizes = [size(field.shape), Some(diagonal(&mesh.mesh.bounds()))];
+        let (limits, gap) = (self.limits(sizes), self.gap);
+        mesh_hits(field, mesh, gap, &limits, self.elements()).cloned()
+    }
+
+    /// All contacts of a field with the elements of a mesh, up to the gap of
+    /// [`Query::with_gap`]; see [`mesh_contacts`].
+    ///
+    /// # Errors
+    ///
+    /// If the gap or the tolerance is negative, NaN or too large, or a pose is not finite or
+    /// beyond 1e15 m.
+    pub fn mesh_contacts<'a, const N: usize>(
+        &mut self,
+        field: impl Into<Placed<'a, D>>,
+        mesh: impl Into<PlacedMesh<'a, N, D>>,
+    ) -> Result<MeshContacts<D>, QueryError>
+    where
+        Self: ElementMemory<N, D>,
+    {
+        let (field, mesh) = (field.into(), mesh.into());
+        let sizes = [size(field.shape), Some(diagonal(&mesh.mesh.bounds()))];
+        let (limits, gap) = (self.limits(sizes), self.gap);
+        mesh_contacts(field, mesh, gap, &limits, self.elements()).cloned()
+    }
+
+    /// The separations of two bodies with the second at each of `poses`, `a_from_b`, written
+    /// to `answers` in the same order; see [`separation`].
+    ///
+    /// With the feature `parallel` rayon's threads share the work; the bits do not depend on
+    /// how many there are. `goes_on` is asked before each pose, on any thread: after it said
+    /// `false`, no further pose is begun, and its answer is `None`. Returns `true` if all
+    /// were answered.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+    /// use palpate_query::Query;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ball = Shape::from_kernel(Ball::new(0.5)?);
+    /// let poses = [1.5, 2.0, 2.5].map(|x| Pose::translation(Vector([x, 0.0, 0.0])));
+    /// let mut answers = [None; 3];
+    /// assert!(Query::new().separations([&ball, &ball], &poses, &mut answers, || true)?);
+    /// let gaps = answers.map(|answer| answer.map_or(f64::NAN, |found| found.upper));
+    /// for (gap, truth) in gaps.into_iter().zip([0.5, 1.0, 1.5]) {
+    ///     assert!((gap - truth).abs() < 1e-3);
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there are not as many places as poses, neither body is bounded, or the tolerance or
+    /// a pose is NaN or out of range; the error of a pose has its index. Then no answer is
+    /// written.
+    pub fn separations(
+        &self,
+        bodies: [&Shape<D>; 2],
+        poses: &[Pose<D>],
+        answers: &mut [Option<Certified<Nearest<D>>>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Result<bool, QueryError> {
+        self.batch(bodies, Asked::Separation).run(poses, answers, goes_on)
+    }
+
+    /// Whether two bodies overlap with the second at each of `poses`; as
+    /// [`Query::separations`], of [`overlap`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`Query::separations`].
+    pub fn overlaps(
+        &self,
+        bodies: [&Shape<D>; 2],
+        poses: &[Pose<D>],
+        answers: &mut [Option<Certified<Nearest<D>>>],
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Result<bool, QueryError> {
+        self.batch(bodies, Asked::Overlap).run(poses, answers, goes_on)
+    }
+
+    fn batch<'a>(&'a self, bodies: [&'a Shape<D>; 2], asked: Asked) -> Batch<'a, D> {
+        let limits = self.limits(bodies.map(size));
+        Batch { bodies, asked, limits, pool: &self.pool }
+    }
+
+    /// The limits of a question about bodies of these sizes.
+    fn limits(&self, sizes: [Option<f64>; 2]) -> Limits {
+        Limits::new(self.tolerance.for_size(smallest(sizes))).with_budget(self.budget)
+    }
+}
+
+impl<const D: usize> Default for Query<D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The diameter of a shape's box [m]; `None` if it is unbounded.
+fn size<const D: usize>(shape: &Shape<D>) -> Option<f64> {
+    shape.promise().bounds.map(|bounds| diagonal(&bounds.aabb))
+}
+
+fn sizes<const D: usize>(a: &Placed<'_, D>, b: &Placed<'_, D>) -> [Option<f64>; 2] {
+    [size(a.shape), size(b.shape)]
+}
+
+fn diagonal<const D: usize>(aabb: &Aabb<D>) -> f64 {
+    2.0 * aabb.half_extents().norm()
+}
+
+fn extent<const N: usize, const D: usize>(element: &Element<N, D>) -> Option<f64> {
+    Aabb::around(element.vertices().iter().copied()).map(|aabb| diagonal(&aabb))
+}
+
+/// The smaller of the sizes that are positive; zero if none is.
+fn smallest(sizes: [Option<f64>; 2]) -> f64 {
+    let known = sizes.into_iter().flatten().filter(|size| *size > 0.0);
+    known.reduce(f64::min).unwrap_or(0.0)
+}
