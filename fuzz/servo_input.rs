@@ -10,7 +10,7 @@ use palpate_haptics::{
     Bodies, Body, DeviceProfile, Guide, GuideOptions, Material, PointState, Probe, Protection,
     Renderer, Servo, ServoOptions, Surface, Touch, UnprotectedServo,
 };
-use palpate_scene::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
+use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 
 /// Numbers that break what is not ready for them.
 const JUNK: [f64; 16] = [
@@ -195,7 +195,7 @@ where
 
 /// A servo with or without a safety chain.
 enum AnyServo<const D: usize> {
-    Protected(Servo<D>),
+    Protected(Box<Servo<D>>),
     Unprotected(UnprotectedServo<D>),
 }
 
@@ -259,7 +259,7 @@ where
             ..DeviceProfile::unlimited("any")
         };
         let servo = servo.protected(&Protection::new(profile)).expect("a profile");
-        return Ok(AnyServo::Protected(servo));
+        return Ok(AnyServo::Protected(Box::new(servo)));
     }
     Ok(AnyServo::Unprotected(servo))
 }

@@ -7,7 +7,7 @@ use std::error::Error;
 
 use palpate::field::kernel::{Argument, Entry};
 use palpate::field::{Pose, Rotation, Shape, Vector};
-use palpate::scene::{Form, Node, Scene, World, WrittenRotation};
+use palpate::scene::{AnyScene, Form, Node, Scene, WrittenRotation};
 
 const P1: &str = include_str!("../../scenes/p1.json");
 const P2: &str = include_str!("../../scenes/p2.json");
@@ -51,8 +51,8 @@ pub(crate) fn thousand() -> Result<Work<3>, Box<dyn Error>> {
 fn in_space(name: &'static str, text: &str, half: f64) -> Result<Work<3>, Box<dyn Error>> {
     let scene = Scene::from_json(text)?;
     match scene.build()? {
-        World::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
-        World::Planar(_) => Err(format!("{name} is not spatial").into()),
+        AnyScene::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        AnyScene::Planar(_) => Err(format!("{name} is not spatial").into()),
     }
 }
 
@@ -70,8 +70,8 @@ pub(crate) fn planar() -> Result<Vec<Work<2>>, Box<dyn Error>> {
 fn in_the_plane(name: &'static str, text: &str, half: f64) -> Result<Work<2>, Box<dyn Error>> {
     let scene = Scene::from_json(text)?;
     match scene.build()? {
-        World::Planar(world) => Ok(Work { name, scene, shape: world.whole, half }),
-        World::Spatial(_) => Err(format!("{name} is not planar").into()),
+        AnyScene::Planar(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        AnyScene::Spatial(_) => Err(format!("{name} is not planar").into()),
     }
 }
 

@@ -10,13 +10,13 @@ use crate::command::Failure;
 /// The crates from the top layer to the bottom.
 const LAYERS: [&str; 13] = [
     "palpate-field",
-    "palpate-scene",
     "palpate-mesh",
     "palpate-query",
     "palpate-haptics",
     "palpate-vibration",
     "palpate-loop",
     "palpate-devices",
+    "palpate-scene",
     "palpate-plot",
     "palpate",
     "palpate-cli",

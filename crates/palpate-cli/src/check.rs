@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use palpate::field::Shape;
-use palpate::scene::{Scene, World};
+use palpate::scene::{AnyScene, Scene};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
@@ -37,8 +37,8 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
         }
         Ok(world) => {
             let (dimension, bodies) = match &world {
-                World::Planar(scene) => (2, described(&scene.bodies)),
-                World::Spatial(scene) => (3, described(&scene.bodies)),
+                AnyScene::Planar(scene) => (2, described(&scene.bodies)),
+                AnyScene::Spatial(scene) => (3, described(&scene.bodies)),
             };
             if options.json {
                 let answer = json!({ "ok": true, "dimension": dimension, "bodies": bodies });

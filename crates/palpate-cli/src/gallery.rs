@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::kernel::Entry;
 use palpate::field::{Aabb, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
-use palpate::scene::{Scene, World};
+use palpate::scene::{AnyScene, Scene};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -234,12 +234,12 @@ fn catalogue<const D: usize>(entries: &[Entry<D>]) -> Result<Vec<Specimen<D>>, F
 fn operators() -> Result<Vec<Specimen<3>>, Failure> {
     let world = Scene::from_json(OPERATORS).and_then(|scene| scene.build());
     match world.map_err(Failure::input)? {
-        World::Spatial(scene) => Ok(scene
+        AnyScene::Spatial(scene) => Ok(scene
             .bodies
             .into_iter()
             .map(|body| Specimen { name: body.name, shape: body.shape_in_body })
             .collect()),
-        World::Planar(_) => Ok(Vec::new()),
+        AnyScene::Planar(_) => Ok(Vec::new()),
     }
 }
 

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
-use palpate::scene::{BuiltScene, Guide, Scene, Tool, World};
+use palpate::scene::{AnyScene, BuiltScene, Scene};
 
 use crate::outcome::Failure;
 
@@ -16,9 +16,7 @@ const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
 /// A scene with the name it goes by in reports.
 pub(crate) struct Named {
     pub(crate) name: String,
-    pub(crate) world: World,
-    pub(crate) tool: Option<Tool>,
-    pub(crate) guides: Vec<Guide>,
+    pub(crate) scene: AnyScene,
 }
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
@@ -27,10 +25,8 @@ pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
         None => ("the built-in gallery".to_owned(), GALLERY.to_owned()),
         Some(path) => (path.display().to_string(), text(path)?),
     };
-    let scene = Scene::from_json(&text);
-    let built = scene.and_then(|scene| Ok((scene.build()?, scene.tool, scene.guides)));
-    match built {
-        Ok((world, tool, guides)) => Ok(Named { name, world, tool, guides }),
+    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+        Ok(scene) => Ok(Named { name, scene }),
         Err(error) => Err(Failure::input(format!("{name}: {error}"))),
     }
 }
@@ -63,15 +59,12 @@ pub(crate) fn joined(numbers: &[f64]) -> String {
     numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
+/// What is said where a scene must have bounds.
+pub(crate) const NO_BOUNDS: &str = "no body of the scene has bounds";
+
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
-    scene
-        .bodies
-        .iter()
-        .filter_map(|body| body.shape.promise().bounds)
-        .map(|bounds| bounds.aabb)
-        .reduce(|a, b| a.union(&b))
-        .ok_or_else(|| Failure::input("no body of the scene has bounds"))
+    scene.bounds().ok_or_else(|| Failure::input(NO_BOUNDS))
 }
 
 /// A promise in a few words: "exact outside, bound inside".

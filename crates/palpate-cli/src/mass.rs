@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use palpate::field::{Mass, MassLimits};
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::MassOptions;
@@ -18,9 +18,9 @@ use crate::output::{self, shown};
 /// Computes the mass of each body; the answer is no if an error is above the tolerance.
 pub(crate) fn run(options: &MassOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
-    match &named.world {
-        World::Planar(scene) => report(options, scene, ["m²", "kg/m", "kg·m"], interrupt),
-        World::Spatial(scene) => report(options, scene, ["m³", "kg", "kg·m²"], interrupt),
+    match &named.scene {
+        AnyScene::Planar(scene) => report(options, scene, ["m²", "kg/m", "kg·m"], interrupt),
+        AnyScene::Spatial(scene) => report(options, scene, ["m³", "kg", "kg·m²"], interrupt),
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
 use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::{Map, PlotOptions};
@@ -22,9 +22,9 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
     let picture = Picture::new(&mut files, &output(options))?;
     let named = input::scene(Some(&options.scene))?;
-    match &named.world {
-        World::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
-        World::Spatial(scene) => {
+    match &named.scene {
+        AnyScene::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
+        AnyScene::Spatial(scene) => {
             let plot = Plot::of(options, &picture, scene)?;
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());

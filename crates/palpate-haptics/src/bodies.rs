@@ -46,8 +46,13 @@ impl<const D: usize> Body<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Shape`] if the shape cannot carry the texture of the surface.
-    pub fn new(shape: Shape<D>, surface: Surface<D>) -> Result<Self, HapticsError> {
+    /// [`HapticsError::Shape`] if the shape cannot carry the texture of the surface; as
+    /// [`Surface::new`] for a material.
+    pub fn new(
+        shape: Shape<D>,
+        surface: impl TryInto<Surface<D>, Error: Into<HapticsError>>,
+    ) -> Result<Self, HapticsError> {
+        let surface = surface.try_into().map_err(Into::into)?;
         let shape = surface.carved(shape)?;
         Ok(Self::of(shape, surface))
     }
@@ -396,6 +401,22 @@ impl<const D: usize> Bodies<D> {
             }
         }
         Nearby { bodies: self, list: list.get(..count), centre, horizon }
+    }
+}
+
+impl<const D: usize> TryFrom<Vec<Body<D>>> for Bodies<D> {
+    type Error = HapticsError;
+
+    fn try_from(bodies: Vec<Body<D>>) -> Result<Self, HapticsError> {
+        Self::new(bodies)
+    }
+}
+
+impl<const D: usize, const N: usize> TryFrom<[Body<D>; N]> for Bodies<D> {
+    type Error = HapticsError;
+
+    fn try_from(bodies: [Body<D>; N]) -> Result<Self, HapticsError> {
+        Self::new(bodies.into())
     }
 }
 

@@ -3,6 +3,8 @@
 
 //! What can be wrong with a material, a hand path or a servo.
 
+use std::convert::Infallible;
+
 /// Why something cannot be touched as asked. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -152,6 +154,12 @@ pub enum HapticsError {
     /// A tour finds nothing to touch in its box.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,
+}
+
+impl From<Infallible> for HapticsError {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
 }
 
 /// Checks that `value` is positive and finite.

@@ -49,6 +49,7 @@ mod handoff;
 mod impedance;
 mod limit;
 mod live;
+mod material;
 mod nearby;
 mod planes;
 mod protection;
@@ -74,8 +75,10 @@ pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff};
 pub use impedance::Impedance;
 pub use limit::limited;
 pub use live::{Progress, Snapshot};
+pub use material::{
+    Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
+};
 pub use nearby::Nearby;
-pub use palpate_scene::{Impact, Material};
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use rotation::{turn_between, turned};

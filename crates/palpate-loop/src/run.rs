@@ -60,6 +60,65 @@ impl<const D: usize> RunOptions<'_, D> {
     }
 }
 
+/// A time for which a servo runs [s].
+///
+/// ```
+/// use palpate_loop::{RunOptions, Seconds};
+///
+/// assert_eq!(RunOptions::<3>::from(Seconds(10.0)).duration, 10.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seconds(pub f64);
+
+impl<const D: usize> From<Seconds> for RunOptions<'_, D> {
+    /// In real time, without rehearsals, recorder and watch.
+    fn from(duration: Seconds) -> Self {
+        Self::new(duration.0)
+    }
+}
+
+/// Runs a servo; implemented by [`Servo`] alone, which is protected.
+pub trait Run<const D: usize> {
+    /// Runs the servo with `device` as [`run`] does, for a time or with options.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::Shape;
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{Run as _, Seconds};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let press = HandPath::new(vec![0.0, 0.05], ends, Interpolation::Smooth)?;
+    /// let mut device = RecordedDevice::new(vec![press])?;
+    /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
+    /// assert_eq!(servo.run(&mut device, Seconds(0.05))?.ticks, 50);
+    /// # Ok(())
+    /// # }
+    /// ```
+    fn run<'a>(
+        &mut self,
+        device: &mut dyn Device<D>,
+        options: impl Into<RunOptions<'a, D>>,
+    ) -> Result<RunReport, HapticsError>;
+}
+
+impl<const D: usize> Run<D> for Servo<D> {
+    fn run<'a>(
+        &mut self,
+        device: &mut dyn Device<D>,
+        options: impl Into<RunOptions<'a, D>>,
+    ) -> Result<RunReport, HapticsError> {
+        run(self, device, options.into())
+    }
+}
+
 impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RunOptions")

@@ -3,7 +3,8 @@
 
 //! What guides the hand in free space.
 
-use palpate_field::LARGEST_LENGTH;
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
+use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,10 +18,10 @@ use crate::schema::VectorSchema;
 /// It has one of `point`, `line`, `segment`, `plane`, `curve` and `well`; all in the world.
 ///
 /// ```
-/// use palpate_scene::Guide;
+/// use palpate_scene::WrittenGuide;
 ///
 /// # fn main() -> Result<(), serde_json::Error> {
-/// let ruler: Guide = serde_json::from_str(
+/// let ruler: WrittenGuide = serde_json::from_str(
 ///     r#"{ "line": { "through": [0, 0.1, 0], "direction": [1, 0, 0] }, "snap_distance": 0.01 }"#,
 /// )?;
 /// assert_eq!((ruler.stiffness, ruler.max_force), (300.0, 2.0));
@@ -29,11 +30,12 @@ use crate::schema::VectorSchema;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
+#[schemars(rename = "Guide")]
 #[schemars(extend("oneOf" = [
     { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
 ]))]
-pub struct Guide {
+pub struct WrittenGuide {
     /// What it is for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
@@ -76,7 +78,7 @@ pub struct Guide {
     pub max_force: f64,
 }
 
-impl Default for Guide {
+impl Default for WrittenGuide {
     fn default() -> Self {
         Self {
             description: None,
@@ -170,7 +172,7 @@ pub struct GuideWell {
     pub reach: f64,
 }
 
-impl Guide {
+impl WrittenGuide {
     /// What is wrong with the numbers, in a scene of `dimension`.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
         positive("stiffness", self.stiffness, "N/m")?;
@@ -298,4 +300,105 @@ impl GuideCurve {
 /// `true` if there is a way from `a` to `b`.
 fn differ(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).any(|(a, b)| (b - a).abs() >= f64::MIN_POSITIVE)
+}
+
+impl WrittenGuide {
+    /// The guide that is meant.
+    ///
+    /// # Errors
+    ///
+    /// As the constructor of its kind; [`HapticsError::GuideTargets`] without exactly one target,
+    /// [`HapticsError::Number`] if a vector has not `D` numbers. A scene that was built has
+    /// neither.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_scene::Scene;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "table", "shape": { "ball": { "radius": 0.5 } } } ],
+    ///          "guides": [ { "plane": { "through": [0, 0.75], "normal": [0, 2] },
+    ///                        "stiffness": 256 } ] }"#,
+    /// )?;
+    /// let mut guide = scene.guides[0].guide::<2>()?;
+    /// let force = guide.force(Vector([0.3, 0.75390625]), Vector::ZERO); // 1/256 m above
+    /// assert_eq!(force, Vector([0.0, -1.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, HapticsError> {
+        let options = GuideOptions {
+            stiffness: self.stiffness,
+            damping: self.damping,
+            snap_distance: self.snap_distance.unwrap_or(f64::INFINITY),
+            release_distance: self.release_distance,
+            max_force: self.max_force,
+        };
+        let point =
+            self.point.iter().map(|point| Guide::to_point(vector("point", point)?, options));
+        let line = self.line.iter().map(|line| {
+            let through = vector("through", &line.through)?;
+            Guide::along_line(through, vector("direction", &line.direction)?, options)
+        });
+        let segment = self.segment.iter().map(|segment| {
+            let from = vector("from", &segment.from)?;
+            Guide::along_segment(from, vector("to", &segment.to)?, options)
+        });
+        let plane = self.plane.iter().map(|plane| {
+            let through = vector("through", &plane.through)?;
+            Guide::on_plane(through, vector("normal", &plane.normal)?, options)
+        });
+        let curve = self.curve.iter().map(|curve| {
+            let points: Result<Vec<Point<D>>, _> =
+                curve.points.iter().map(|point| vector("points", point)).collect();
+            let points = points?;
+            let curve =
+                if curve.smooth { Curve::smooth(&points) } else { Curve::polyline(&points) };
+            Guide::along_curve(curve?, options)
+        });
+        let well = self
+            .well
+            .iter()
+            .map(|well| Guide::well(vector("center", &well.center)?, well.reach, options));
+        let mut guides = point.chain(line).chain(segment).chain(plane).chain(curve).chain(well);
+        match (guides.next(), guides.count()) {
+            (Some(guide), 0) => guide,
+            (guide, more) => {
+                let count = usize::from(guide.is_some()) + more;
+                Err(HapticsError::GuideTargets { count })
+            }
+        }
+    }
+}
+
+fn vector<const D: usize>(
+    parameter: &'static str,
+    numbers: &[f64],
+) -> Result<Vector<f64, D>, HapticsError> {
+    let components = numbers.try_into().map_err(|_| HapticsError::Number {
+        parameter,
+        rule: "one number for each dimension",
+        value: numbers.len() as f64,
+        unit: "numbers",
+    })?;
+    Ok(Vector(components))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_guide_can_mean_is_refused() {
+        let none = WrittenGuide::default();
+        let error = none.guide::<2>().unwrap_err();
+        assert_eq!(error.to_string(), "a guide needs one target, got 0");
+        let flat = WrittenGuide { point: Some(vec![0.0; 3]), ..none };
+        let error = flat.guide::<2>().unwrap_err();
+        let expected = "point must be one number for each dimension, got 3 numbers";
+        assert_eq!(error.to_string(), expected);
+        assert!(flat.guide::<3>().is_ok());
+    }
 }

@@ -5,7 +5,7 @@
 //!
 //! A [`Scene`] is read from JSON with [`Scene::from_json`], which names the path
 //! and the line of whatever is wrong; it is plain data, written back with
-//! [`Scene::to_json`] without loss. [`Scene::build`] makes [`World`]: bodies with
+//! [`Scene::to_json`] without loss. [`Scene::build`] makes [`AnyScene`]: bodies with
 //! their [`Shape`](palpate_field::Shape)s.
 //!
 //! Shapes are [`Node`]s: primitives of the catalogue of `palpate-field`,
@@ -13,11 +13,12 @@
 //! listed nowhere in this crate: reading, writing and the [`schema`] follow the
 //! catalogue.
 //!
-//! [`Material`], [`Tool`], [`Guide`], [`Motion`] and [`View`] are data that other crates
-//! give a meaning to.
+//! Materials are those of `palpate-haptics`; a scene makes its bodies, world and servo with
+//! [`BuiltScene::bodies`], [`BuiltScene::world`] and [`BuiltScene::servo`]. [`Motion`] and [`View`]
+//! are data that other crates give a meaning to.
 //!
 //! ```
-//! use palpate_scene::{Scene, World};
+//! use palpate_scene::{Scene, AnyScene};
 //!
 //! # fn main() -> Result<(), palpate_scene::SceneError> {
 //! let scene = Scene::from_json(
@@ -29,7 +30,7 @@
 //!                        "pose": { "translation": [0, 0.01, 0] },
 //!                        "material": { "stiffness": 800 } } ] }"#,
 //! )?;
-//! let World::Spatial(world) = scene.build()? else { unreachable!("dimension is 3") };
+//! let AnyScene::Spatial(world) = scene.build()? else { unreachable!("dimension is 3") };
 //! assert_eq!(world.bodies[0].material.stiffness, 800.0);
 //! assert_eq!(world.whole.distance([0.0, 0.01, 0.0]), 0.004);
 //! # Ok(())
@@ -47,23 +48,23 @@ mod material;
 mod motion;
 mod node;
 mod pose;
-mod presets;
 mod problem;
 mod scene;
 mod schema;
 mod tool;
+mod touch;
 mod view;
 mod written_material;
 
-pub use build::{BuiltBody, BuiltScene, World};
+pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
 pub use error::SceneError;
-pub use guide::{Guide, GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell};
-pub use material::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
+pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
 pub use node::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Row, Rows};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
-pub use scene::{Body, Dimension, Scene};
+pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};
-pub use tool::{Coupling, Tool, Workspace};
+pub use tool::{WrittenCoupling, WrittenTool, WrittenWorkspace};
+pub use touch::ServoSettings;
 pub use view::{FreePlane, View, ViewPlane};
 pub use written_material::WrittenMaterial;

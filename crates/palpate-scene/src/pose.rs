@@ -289,7 +289,7 @@ pub(crate) fn array<const D: usize>(numbers: &[f64]) -> Result<[f64; D], Problem
 }
 
 /// The numbers of a vector of `D` dimensions, each within the range of lengths.
-fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, Problem> {
+pub(crate) fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, Problem> {
     let components: [f64; D] = array(numbers)?;
     // Written so that NaN is refused.
     let accepted = |x: f64| x.abs() <= palpate_field::LARGEST_LENGTH;

@@ -11,14 +11,14 @@ use schemars::JsonSchema;
 use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::build::{self, World};
+use crate::build::{self, AnyScene};
 use crate::error::SceneError;
-use crate::guide::Guide;
+use crate::guide::WrittenGuide;
 use crate::json::{self, Document};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::pose::WrittenPose;
-use crate::tool::Tool;
+use crate::tool::WrittenTool;
 use crate::view::View;
 use crate::written_material::WrittenMaterial;
 
@@ -53,7 +53,7 @@ impl fmt::Display for Dimension {
 /// Plain data: [`build`](Self::build) checks it and makes the shapes.
 ///
 /// ```
-/// use palpate_scene::{Scene, World};
+/// use palpate_scene::{Scene, AnyScene};
 ///
 /// # fn main() -> Result<(), palpate_scene::SceneError> {
 /// let scene = Scene::from_json(
@@ -62,7 +62,7 @@ impl fmt::Display for Dimension {
 ///                        "pose": { "translation": [1, 0] } } ] }"#,
 /// )?;
 /// assert_eq!(Scene::from_json(&scene.to_json())?, scene);
-/// if let World::Planar(world) = scene.build()? {
+/// if let AnyScene::Planar(world) = scene.build()? {
 ///     assert_eq!(world.whole.distance([3.0, 0.0]), 1.5);
 /// }
 /// # Ok(())
@@ -85,13 +85,13 @@ pub struct Scene {
     pub shapes: IndexMap<String, Node>,
     /// What is there to be touched; at least one.
     #[schemars(length(min = 1))]
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<WrittenBody>,
     /// What touches: the tip of a stylus, fingers, a shape held in the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tool: Option<Tool>,
+    pub tool: Option<WrittenTool>,
     /// What guides the hand in free space.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub guides: Vec<Guide>,
+    pub guides: Vec<WrittenGuide>,
     /// How bodies move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
@@ -103,7 +103,8 @@ pub struct Scene {
 /// A shape with its place in the world and what it feels like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
-pub struct Body {
+#[schemars(rename = "Body")]
+pub struct WrittenBody {
     /// The name, unlike that of any other body.
     #[schemars(length(min = 1))]
     pub name: String,
@@ -122,7 +123,7 @@ pub struct Body {
     pub material: Option<WrittenMaterial>,
 }
 
-impl Body {
+impl WrittenBody {
     /// A body of the default material at the origin.
     pub fn new(name: impl Into<String>, shape: Node) -> Self {
         Self { name: name.into(), description: None, shape, pose: None, material: None }
@@ -199,7 +200,7 @@ impl Scene {
     ///
     /// What is wrong, with its path; lines are known to
     /// [`from_json`](Self::from_json) alone.
-    pub fn build(&self) -> Result<World, SceneError> {
+    pub fn build(&self) -> Result<AnyScene, SceneError> {
         build::world(self).map_err(|problem| problem.located(None))
     }
 }

@@ -3,6 +3,7 @@
 
 //! What touches the scene.
 
+use palpate_haptics::ToolOptions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +19,10 @@ use crate::schema::VectorSchema;
 /// with a shape is felt as a whole, with force and torque.
 ///
 /// ```
-/// use palpate_scene::Tool;
+/// use palpate_scene::WrittenTool;
 ///
 /// # fn main() -> Result<(), serde_json::Error> {
-/// let fingers: Tool = serde_json::from_str(
+/// let fingers: WrittenTool = serde_json::from_str(
 ///     r#"{ "radius": 0.008, "points": [[-0.02, 0, 0], [0, 0, 0], [0.02, 0, 0]] }"#,
 /// )?;
 /// assert_eq!(fingers.points.len(), 3);
@@ -30,7 +31,8 @@ use crate::schema::VectorSchema;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-pub struct Tool {
+#[schemars(rename = "Tool")]
+pub struct WrittenTool {
     /// What it is meant to be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
@@ -48,10 +50,10 @@ pub struct Tool {
     pub shape: Option<Node>,
     /// How the tool hangs on the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub coupling: Option<Coupling>,
+    pub coupling: Option<WrittenCoupling>,
     /// How the device's space lies in the world.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub workspace: Option<Workspace>,
+    pub workspace: Option<WrittenWorkspace>,
     /// The greatest force on the hand [N]; the device's own limit if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -63,7 +65,8 @@ pub struct Tool {
 /// engine from the device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-pub struct Coupling {
+#[schemars(rename = "Coupling")]
+pub struct WrittenCoupling {
     /// Why it is as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
@@ -88,7 +91,8 @@ pub struct Coupling {
 /// How the device's space lies in the world: scaled, turned, then moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
-pub struct Workspace {
+#[schemars(rename = "Workspace")]
+pub struct WrittenWorkspace {
     /// Why it is there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
@@ -101,13 +105,13 @@ pub struct Workspace {
     pub pose: Option<WrittenPose>,
 }
 
-impl Default for Workspace {
+impl Default for WrittenWorkspace {
     fn default() -> Self {
         Self { description: None, scale: 1.0, pose: None }
     }
 }
 
-impl Tool {
+impl WrittenTool {
     /// What is wrong with the numbers, the shape and the pose aside.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
         at_least("radius", self.radius, 0.0, "m")?;
@@ -132,7 +136,7 @@ impl Tool {
     }
 }
 
-impl Coupling {
+impl WrittenCoupling {
     fn check(&self) -> Result<(), Problem> {
         positive_if("stiffness", self.stiffness, "N/m")?;
         positive_if("angular_stiffness", self.angular_stiffness, "N·m/rad")?;
@@ -143,5 +147,23 @@ impl Coupling {
             value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))?;
         }
         Ok(())
+    }
+}
+
+impl WrittenTool {
+    /// The options of the tool with a shape that is meant: what is left out is that of
+    /// [`ToolOptions::default`].
+    #[must_use]
+    pub fn options(&self) -> ToolOptions {
+        let default = ToolOptions::default();
+        let coupling = self.coupling.clone().unwrap_or_default();
+        ToolOptions {
+            stiffness: coupling.stiffness.unwrap_or(default.stiffness),
+            angular_stiffness: coupling.angular_stiffness.or(default.angular_stiffness),
+            damping: coupling.damping.unwrap_or(default.damping),
+            angular_damping: coupling.angular_damping.unwrap_or(default.angular_damping),
+            max_force: self.max_force.unwrap_or(default.max_force),
+            ..default
+        }
     }
 }

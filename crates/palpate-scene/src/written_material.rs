@@ -9,19 +9,20 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::material::Material;
-use crate::presets::preset;
-use crate::problem::Problem;
+use palpate_haptics::Material;
+
+use crate::problem::{Problem, unknown};
 
 /// What a body feels like: the name of a preset, or numbers of its own.
 ///
 /// ```
-/// use palpate_scene::{Material, WrittenMaterial};
+/// use palpate_haptics::Material;
+/// use palpate_scene::WrittenMaterial;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let written: WrittenMaterial = serde_json::from_str(r#""rubber""#)?;
 /// assert_eq!(written, WrittenMaterial::Preset("rubber".into()));
-/// assert_eq!(written.material()?, Material::preset("rubber")?);
+/// assert_eq!(written.material()?, Material::rubber());
 /// # Ok(())
 /// # }
 /// ```
@@ -38,7 +39,7 @@ impl WrittenMaterial {
     ///
     /// # Errors
     ///
-    /// As [`Material::preset`].
+    /// If there is no preset of that name: those there are.
     pub fn material(&self) -> Result<Material, crate::SceneError> {
         self.known().map_err(|problem| problem.located(None))
     }
@@ -46,7 +47,10 @@ impl WrittenMaterial {
     /// The material that is meant, unchecked.
     pub(crate) fn known(&self) -> Result<Material, Problem> {
         match self {
-            Self::Preset(name) => preset(name),
+            Self::Preset(name) => Material::preset(name).map_err(|_| {
+                let names: Vec<_> = Material::preset_names().collect();
+                Problem::new(unknown("material", name, &names))
+            }),
             Self::Own(material) => Ok(Material::clone(material)),
         }
     }
@@ -88,5 +92,21 @@ impl<'de> Visitor<'de> for MaterialVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<WrittenMaterial, A::Error> {
         Material::deserialize(MapAccessDeserializer::new(map)).map(WrittenMaterial::from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_is_none_is_answered_with_the_nearest_or_with_those_there_are() {
+        let refused = |name: &str| {
+            WrittenMaterial::Preset(name.into()).material().unwrap_err().to_string()
+        };
+        assert_eq!(refused("glas"), "unknown material `glas`, did you mean `glass`?");
+        let error = refused("plasma");
+        assert!(error.starts_with("unknown material `plasma`; known are `rubber`, `wood`"));
+        assert!(error.ends_with("and `layered_tissue`"), "{error}");
     }
 }

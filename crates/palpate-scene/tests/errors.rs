@@ -6,7 +6,7 @@
 
 mod refusal;
 
-use palpate_scene::{Body, Dimension, Node, Scene};
+use palpate_scene::{Dimension, Node, Scene, WrittenBody};
 use refusal::Schema::{Accepts, Refuses};
 use refusal::check_all;
 
@@ -45,7 +45,7 @@ fn a_negative_radius_is_found_in_its_line() {
 #[test]
 fn without_a_file_there_is_a_path_and_no_line() {
     let mut scene = Scene::new(Dimension::Two);
-    scene.bodies.push(Body::new("a", Node::reference("b")));
+    scene.bodies.push(WrittenBody::new("a", Node::reference("b")));
     let error = scene.build().unwrap_err();
     assert_eq!(error.to_string(), "bodies[0].shape: unknown shape `b`; there are none here");
 }

@@ -5,7 +5,8 @@
 
 use std::collections::BTreeSet;
 
-use palpate_scene::{Dimension, Material, Scene, World, WrittenMaterial};
+use palpate_haptics::Material;
+use palpate_scene::{AnyScene, Dimension, Scene, WrittenMaterial};
 
 #[test]
 fn every_name_is_shown_and_documented() {
@@ -33,6 +34,6 @@ fn a_name_is_built_to_its_numbers_and_written_as_a_name() {
     let scene = Scene::from_json(text).unwrap();
     assert_eq!(scene.dimension(), Dimension::Two);
     assert!(scene.to_json().contains(r#""material": "foam""#));
-    let World::Planar(world) = scene.build().unwrap() else { panic!("dimension is 2") };
+    let AnyScene::Planar(world) = scene.build().unwrap() else { panic!("dimension is 2") };
     assert_eq!(world.bodies[0].material, Material::preset("foam").unwrap());
 }

@@ -9,7 +9,7 @@ mod random;
 use arbtest::arbtest;
 use palpate_field::Shape;
 use palpate_field::kernel::Entry;
-use palpate_scene::{Body, Dimension, Scene, World, schema};
+use palpate_scene::{AnyScene, Dimension, Scene, WrittenBody, schema};
 use random::{Generator, Known, known};
 
 /// Set to write the scenes as they should be instead of comparing them.
@@ -67,7 +67,7 @@ fn random_scenes_come_back_and_are_judged_alike() {
 /// A scene with one primitive.
 fn alone(known: &Known, dimension: Dimension) -> Scene {
     let mut scene = Scene::new(dimension);
-    scene.bodies.push(Body::new("alone", known.node()));
+    scene.bodies.push(WrittenBody::new("alone", known.node()));
     scene
 }
 
@@ -88,14 +88,14 @@ fn every_primitive_comes_back_as_the_same_field() {
     };
     for (entry, known) in Entry::<2>::ALL.iter().zip(known(Entry::<2>::ALL)) {
         let scene = Scene::from_json(&alone(&known, Dimension::Two).to_json()).unwrap();
-        let World::Planar(world) = scene.build().unwrap() else { panic!("not planar") };
+        let AnyScene::Planar(world) = scene.build().unwrap() else { panic!("not planar") };
         let shape: Shape<2> = entry.build(&known.arguments).unwrap();
         let at = |shape: &Shape<2>, i: usize| shape.distance([samples[i][0], samples[i][1]]);
         check(known.name, &|i| at(&world.whole, i), &|i| at(&shape, i));
     }
     for (entry, known) in Entry::<3>::ALL.iter().zip(known(Entry::<3>::ALL)) {
         let scene = Scene::from_json(&alone(&known, Dimension::Three).to_json()).unwrap();
-        let World::Spatial(world) = scene.build().unwrap() else { panic!("not spatial") };
+        let AnyScene::Spatial(world) = scene.build().unwrap() else { panic!("not spatial") };
         let shape: Shape<3> = entry.build(&known.arguments).unwrap();
         let at = |shape: &Shape<3>, i: usize| shape.distance(samples[i]);
         check(known.name, &|i| at(&world.whole, i), &|i| at(&shape, i));
@@ -123,8 +123,8 @@ fn the_scenes_are_finite_everywhere_on_a_grid() {
     }
     for (name, text) in common::files("scenes") {
         match Scene::from_json(&text).unwrap().build().unwrap() {
-            World::Planar(world) => grid(&name, &world.whole),
-            World::Spatial(world) => grid(&name, &world.whole),
+            AnyScene::Planar(world) => grid(&name, &world.whole),
+            AnyScene::Spatial(world) => grid(&name, &world.whole),
         }
     }
 }

@@ -3,31 +3,60 @@
 
 //! Signed distance functions that can be touched.
 //!
-//! One crate for everything: the [`field`]s and their promises, [`scene`] files,
-//! [`query`] for where things touch, the [`haptics`] proxy and servo, [`devices`] to touch
-//! with, and [`plot`]s. Each is a crate of its own; this one only gathers them.
+//! One crate for everything, of which each part is a crate of its own: the [`field`]s and their
+//! promises, [`query`] for where things touch, [`mesh`]es, the [`haptics`] proxy and servo,
+//! [`devices`] to touch with, [`scene`] files, [`plot`]s. The [`prelude`] has what most programs
+//! need.
+//!
+//! # Examples
 //!
 //! ```
-//! use palpate::field::kernel::{Ball, Cuboid};
-//! use palpate::field::{Shape, ShapeError, Vector};
+//! use palpate::devices::{Hand, SimulatedDevice, profile_named};
+//! use palpate::prelude::*;
 //!
-//! # fn main() -> Result<(), ShapeError> {
-//! let ball = Shape::from_kernel(Ball::new(0.05)?);
-//! let plate = Shape::from_kernel(Cuboid::new(Vector([0.2, 0.02, 0.2]))?);
-//! let world = Shape::union([ball.translated(Vector([0.0, 0.06, 0.0]))?, plate])?;
-//! let (distance, gradient) = world.distance_gradient(Vector([0.0, 0.131, 0.0]));
-//! assert!((distance - 0.021).abs() < 1e-15); // above the ball [m]
-//! assert_eq!(gradient, Vector([0.0, 1.0, 0.0]));
+//! # fn main() -> Result<(), Error> {
+//! let plate = Shape::cuboid([0.2, 0.02, 0.2])?;
+//! let ball = Shape::ball(0.05)?.translated([0.0, 0.0595, 0.0])?;
+//! let both = &plate | &ball; // union; & and - likewise
+//! assert!((both.distance([0.0, 0.13, 0.0]) - 0.0205).abs() < 1e-15); // above the ball [m]
+//!
+//! let mut query = Query::new();
+//! let nearest = query.closest_points(&plate, &ball)?; // with its bounds
+//! assert!(nearest.lower <= -0.0005 && -0.0005 <= nearest.upper); // 0.5 mm deep
+//! let touch = query.manifold(&plate, &ball)?;
+//! assert_eq!(touch.contacts.len(), 1);
+//!
+//! let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
+//! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
+//! let mut servo = Servo::for_device([Body::new(plate, Material::wood())?], &device)?;
+//! let report = servo.run(&mut device, Seconds(0.01))?; // in real time
+//! assert_eq!(report.ticks, 10);
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Features
+//!
+//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares batches and worlds
+//! among threads; `plot` draws; `scene` reads and writes scene files; `serde` makes data readable
+//! and writable; `std-loop` runs servos on the machine's clock and in threads; `vibration` turns
+//! touches into vibration. Off by default: `local` has the published searches that prove nothing,
+//! `mint` and `glam` convert vectors and poses.
 
+mod error;
+pub mod prelude;
+
+pub use error::{Error, ErrorKind};
 pub use palpate_devices as devices;
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
+#[cfg(feature = "std-loop")]
 pub use palpate_loop as servo_loop;
 pub use palpate_mesh as mesh;
+#[cfg(feature = "plot")]
 pub use palpate_plot as plot;
 pub use palpate_query as query;
+#[cfg(feature = "scene")]
 pub use palpate_scene as scene;
+#[cfg(feature = "vibration")]
 pub use palpate_vibration as vibration;

@@ -8,7 +8,7 @@ mod question;
 mod report;
 
 use palpate::query::Verdict;
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::ContactOptions;
 use crate::input;
@@ -26,9 +26,9 @@ const FEW: usize = 12;
 /// Finds what touches; the answer is no if nothing does.
 pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
-    match &named.world {
-        World::Planar(scene) => answer(options, scene, interrupt),
-        World::Spatial(scene) => answer(options, scene, interrupt),
+    match &named.scene {
+        AnyScene::Planar(scene) => answer(options, scene, interrupt),
+        AnyScene::Spatial(scene) => answer(options, scene, interrupt),
     }
 }
 

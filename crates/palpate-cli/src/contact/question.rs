@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
     Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
-    Verdict, World, WorldSettings, proof, separation,
+    Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -44,13 +44,7 @@ impl Question {
         asked: &ContactQuestion,
         scene: &BuiltScene<D>,
     ) -> Result<Self, Failure> {
-        let sizes = scene.bodies.iter().filter_map(|body| {
-            let half = body.shape_in_body.promise().bounds?.aabb.half_extents();
-            Some(2.0 * half.0.into_iter().fold(0.0, f64::max))
-        });
-        let smallest = sizes.fold(f64::INFINITY, f64::min);
-        let size = if smallest.is_finite() && smallest > 0.0 { smallest } else { 1.0 };
-        let usual = ManifoldSettings::of_size(size);
+        let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
         let margin = length("--margin", asked.margin.unwrap_or(usual.margin), 0.0)?;
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;
@@ -65,12 +59,7 @@ impl Question {
         &self,
         scene: &BuiltScene<D>,
     ) -> Result<Vec<Pair<D>>, Failure> {
-        let mut world = World::new(self.settings).map_err(Failure::input)?;
-        for body in &scene.bodies {
-            world
-                .add(body.shape_in_body.clone(), body.world_from_body)
-                .map_err(|error| Failure::input(format!("body {:?}: {error}", body.name)))?;
-        }
+        let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
         let margin = self.settings.manifold.margin;
         let pairs = world.step().into_iter().map(|found| {
             let manifold = found.manifold.as_ref();

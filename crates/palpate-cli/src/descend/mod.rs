@@ -14,7 +14,7 @@ use palpate::field::{Point, Shape, Vector};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
 use palpate::query::local::{Descent, ElementMethod};
 use palpate::query::{Certified, Element, Limits, QueryError, Workspace, minimum};
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::DescendOptions;
@@ -34,9 +34,9 @@ pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
-    match &input::scene(Some(&options.scene))?.world {
-        World::Planar(scene) => over_points(options, scene, picture.as_ref()),
-        World::Spatial(scene) => over_points(options, scene, picture.as_ref()),
+    match &input::scene(Some(&options.scene))?.scene {
+        AnyScene::Planar(scene) => over_points(options, scene, picture.as_ref()),
+        AnyScene::Spatial(scene) => over_points(options, scene, picture.as_ref()),
     }
 }
 

@@ -9,7 +9,7 @@ mod stream;
 use std::io::Write;
 
 use palpate::query;
-use palpate::scene::{BuiltScene, World};
+use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::EvalOptions;
 use crate::input::{self, promise_in_words};
@@ -23,9 +23,9 @@ pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcom
         Some(path) => Files::reading(inputs.into_iter().flatten()).output(path)?,
         None => Destination::standard(),
     };
-    match &input::scene(Some(&options.scene))?.world {
-        World::Planar(scene) => evaluate(scene, options, &destination, interrupt),
-        World::Spatial(scene) => evaluate(scene, options, &destination, interrupt),
+    match &input::scene(Some(&options.scene))?.scene {
+        AnyScene::Planar(scene) => evaluate(scene, options, &destination, interrupt),
+        AnyScene::Spatial(scene) => evaluate(scene, options, &destination, interrupt),
     }
 }
 

@@ -10,27 +10,22 @@ use palpate::scene::BuiltScene;
 
 use super::tool::Held;
 use crate::arguments::DeviceChoice;
-use crate::input;
 use crate::outcome::Failure;
 
 /// Where the workspace of the device lies: where the scene says, or else, that of a simulated
 /// device, so that it holds the scene, or what holds the places of a tool.
 pub(super) fn map<const D: usize>(
-    (scene, tool): (&BuiltScene<D>, Option<&Held<D>>),
+    scene: &BuiltScene<D>,
+    tool: Option<&Held<D>>,
     choice: &DeviceChoice,
 ) -> Result<WorkspaceMap<D>, Failure> {
-    let map = match (scene.workspace, choice) {
-        (Some((pose, scale)), _) => WorkspaceMap::new(pose, scale),
-        (None, DeviceChoice::Simulated(profile)) => {
-            let bounds = match tool {
-                Some(tool) => tool.bounds,
-                None => input::bounds(scene)?,
-            };
-            WorkspaceMap::fitting(bounds, profile.workspace_radius)
+    match choice {
+        DeviceChoice::Simulated(profile) => {
+            let tool = tool.map(|held| &held.tool);
+            scene.workspace_of(profile, tool).map_err(Failure::input)
         }
-        (None, _) => return Ok(WorkspaceMap::default()),
-    };
-    map.map_err(Failure::input)
+        DeviceChoice::Recorded | DeviceChoice::Glove => Ok(scene.workspace.unwrap_or_default()),
+    }
 }
 
 /// The device, with a hand on each path of the world, which turns one that turns by `turns`.

@@ -17,12 +17,9 @@ use std::time::Duration;
 
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
-use palpate::field::{Rotation, Vector};
-use palpate::haptics::{
-    Acceptance, Accepted, Bodies, Body, Guide, HapticsError, Probe, Progress, Protection,
-    ServoOptions, Surface, UnprotectedServo,
-};
-use palpate::scene::{BuiltBody, BuiltScene, Tool, World};
+use palpate::field::Vector;
+use palpate::haptics::{Acceptance, Accepted, Probe, Progress, ToolOptions};
+use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
@@ -62,9 +59,9 @@ const LIVE_EVERY: Duration = Duration::from_millis(100);
 pub(crate) fn run(options: &FeelOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let outputs = Outputs::of(options)?;
     let named = input::scene(options.scene.as_deref())?;
-    match &named.world {
-        World::Planar(scene) => feel(&named, scene, options, &outputs, interrupt),
-        World::Spatial(scene) => feel(&named, scene, options, &outputs, interrupt),
+    match &named.scene {
+        AnyScene::Planar(scene) => feel(&named, scene, options, &outputs, interrupt),
+        AnyScene::Spatial(scene) => feel(&named, scene, options, &outputs, interrupt),
     }
 }
 
@@ -86,16 +83,15 @@ where
             DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
         }
     };
-    let servo_options =
-        servo_options(named.tool.as_ref(), (options, &choice)).map_err(Failure::input)?;
+    let scene = &asked(scene, options);
     // Before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
-    let tool = tool::of_scene(named, scene, options)?;
+    let tool = tool::of_scene(scene, options)?;
     let paths = match &tool {
         Some(tool) if options.path.is_none() => {
             vec![tool.path(options.duration.unwrap_or(DURATION))?]
         }
-        _ => paths(scene, (named.tool.as_ref(), options), &servo_options)?,
+        _ => paths(scene, options)?,
     };
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
@@ -104,25 +100,11 @@ where
         Some(_) if options.path.is_none() => Some(tool::turns(duration)?),
         _ => None,
     };
-    let map = held::map((scene, tool.as_ref()), &choice)?;
-    let servo = bodies(scene, options)
-        .and_then(|bodies| match tool {
-            Some(held) => {
-                let tool = held.tool_for(&choice, map.scale())?;
-                UnprotectedServo::with_tool(bodies, tool, servo_options)
-            }
-            None => UnprotectedServo::new(bodies, contacts, servo_options),
-        })
-        .map_err(Failure::input)?;
+    let map = held::map(scene, tool.as_ref(), &choice)?;
     let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
-    let protection = Protection {
-        map,
-        acceptance: if options.strict { Acceptance::Strict } else { Acceptance::Scaled },
-        ..Protection::new(device.profile().clone())
-    };
-    let mut servo = servo.protected(&protection).map_err(Failure::input)?;
-    let guides: Result<Vec<_>, _> = named.guides.iter().map(Guide::from_data).collect();
-    servo.guide(&guides.map_err(Failure::input)?);
+    let acceptance = if options.strict { Acceptance::Strict } else { Acceptance::Scaled };
+    let settings = ServoSettings::default().with_rate(options.rate).with_acceptance(acceptance);
+    let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
     let accepted = servo.accepted().to_vec();
 
     let ticks = ticks(duration, options.rate)?;
@@ -207,53 +189,39 @@ fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
     Ok(ticks)
 }
 
-/// What the command line says, else the scene, else the default.
-fn servo_options(
-    tool: Option<&Tool>,
-    (options, choice): (&FeelOptions, &DeviceChoice),
-) -> Result<ServoOptions, HapticsError> {
-    let default = match choice {
-        DeviceChoice::Simulated(profile) => {
-            ServoOptions { max_force: profile.max_force, ..ServoOptions::default() }
-        }
-        DeviceChoice::Recorded | DeviceChoice::Glove => ServoOptions::default(),
-    };
-    let radius = options.radius.or(tool.map(|tool| tool.radius));
-    let max_force = options.max_force.or(tool.and_then(|tool| tool.max_force));
-    Ok(ServoOptions {
-        rate: options.rate,
-        probe: Probe::new(radius.unwrap_or(default.probe.radius()))?,
-        max_force: max_force.unwrap_or(default.max_force),
-        ..default
-    })
-}
-
-/// The bodies of the scene, each with its own material, but for what the command line says.
-fn bodies<const D: usize>(
-    scene: &BuiltScene<D>,
-    options: &FeelOptions,
-) -> Result<Bodies<D>, HapticsError> {
-    let body = |body: &BuiltBody<D>| {
-        let mut material = body.material.clone();
+/// The scene with what the command line says in place of it: materials and what touches.
+fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltScene<D> {
+    let mut scene = scene.clone();
+    for body in &mut scene.bodies {
+        let material = &mut body.material;
         material.stiffness = options.stiffness.unwrap_or(material.stiffness);
         material.damping = options.damping.unwrap_or(material.damping);
-        Body::new(body.shape_in_body.clone(), Surface::new(&material)?)?
-            .at(body.world_from_body)
-    };
-    Bodies::new(scene.bodies.iter().map(body).collect::<Result<_, _>>()?)
+    }
+    if options.radius.is_some() || options.max_force.is_some() {
+        let tool = scene.tool.get_or_insert_with(|| BuiltTool {
+            radius: Probe::default().radius(),
+            points: Vec::new(),
+            shape: None,
+            options: ToolOptions::default(),
+            max_force: None,
+        });
+        tool.radius = options.radius.unwrap_or(tool.radius);
+        tool.max_force = options.max_force.or(tool.max_force);
+        tool.options.max_force = options.max_force.unwrap_or(tool.options.max_force);
+    }
+    scene
 }
 
 /// The paths of the contact points: from the file, or tours of the scene, those of the tool's
 /// points beside each other, others one behind the other.
 fn paths<const D: usize>(
     scene: &BuiltScene<D>,
-    (tool, options): (Option<&Tool>, &FeelOptions),
-    servo: &ServoOptions,
+    options: &FeelOptions,
 ) -> Result<Vec<HandPath<D>>, Failure> {
     if let Some(path) = &options.path {
         return hand_csv::read(path);
     }
-    let beside = beside(scene, tool.filter(|_| options.points.is_none()));
+    let beside = if options.points.is_some() { Vec::new() } else { beside(scene) };
     let default = if options.scene.is_none() { FINGERS } else { 1 };
     let points = if beside.is_empty() { options.points.unwrap_or(default) } else { 1 };
     if points > MOST_CONTACTS {
@@ -262,8 +230,9 @@ fn paths<const D: usize>(
     }
     let duration = options.duration.unwrap_or(DURATION);
     let lag = LAG * points.saturating_sub(1) as f64;
+    let radius = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);
     let tour = Tour::new(input::bounds(scene)?, duration + lag)
-        .and_then(|tour| tour.with_probe_radius(servo.probe.radius()))
+        .and_then(|tour| tour.with_probe_radius(radius))
         .and_then(|tour| tour.over(&scene.whole))
         .map_err(Failure::input)?;
     let moved = |ahead: f64, by: Vector<f64, D>| {
@@ -279,10 +248,8 @@ fn paths<const D: usize>(
 }
 
 /// Where the contact points of a tool are, from where the hand is; none if it has none.
-fn beside<const D: usize>(scene: &BuiltScene<D>, tool: Option<&Tool>) -> Vec<Vector<f64, D>> {
-    let rotation = scene.workspace.map_or_else(Rotation::identity, |(pose, _)| pose.rotation);
-    let points = tool.map_or(&[][..], |tool| tool.points.as_slice());
-    // A scene that was built has points of its own dimension.
-    let arm = |point: &Vec<f64>| point.as_slice().try_into().ok().map(Vector);
-    points.iter().filter_map(arm).map(|arm| rotation.rotate(arm)).collect()
+fn beside<const D: usize>(scene: &BuiltScene<D>) -> Vec<Vector<f64, D>> {
+    let rotation = scene.device_rotation();
+    let points = scene.tool.as_ref().map_or(&[][..], |tool| tool.points.as_slice());
+    points.iter().map(|arm| rotation.rotate(*arm)).collect()
 }

@@ -4,12 +4,12 @@
 //! The tool of a scene, if it has a shape, and where the built-in hand takes it.
 
 use palpate::devices::{HandPath, Interpolation, Tour};
-use palpate::field::{Aabb, Rotation, Shape, Vector};
-use palpate::haptics::{HapticsError, Tool};
-use palpate::scene::BuiltScene;
+use palpate::field::{Aabb, Shape, Vector};
+use palpate::haptics::Tool;
+use palpate::scene::{BuiltScene, BuiltTool};
 
-use crate::arguments::{DeviceChoice, FeelOptions};
-use crate::input::{self, Named};
+use crate::arguments::FeelOptions;
+use crate::input;
 use crate::outcome::Failure;
 
 /// Points of the tool that the built-in hand thinks of: those of the coarsest shell.
@@ -33,51 +33,27 @@ pub(super) struct Held<const D: usize> {
     pub(super) bounds: Aabb<D>,
 }
 
-/// The tool of the scene; none if contact points touch.
+/// The tool of the scene; `None` if contact points touch.
 pub(super) fn of_scene<const D: usize>(
-    named: &Named,
     scene: &BuiltScene<D>,
     options: &FeelOptions,
 ) -> Result<Option<Held<D>>, Failure> {
-    let Some((data, shape)) = named.tool.as_ref().zip(scene.tool.as_ref()) else {
-        return Ok(None);
-    };
+    let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand);
+    let Some(tool) = tool.map_err(Failure::input)? else { return Ok(None) };
     if options.points.is_some() {
         let problem = "--points is for contact points: the tool of the scene has a shape";
         return Err(Failure::input(problem));
     }
-    let mut data = data.clone();
-    data.radius = options.radius.unwrap_or(data.radius);
-    let tool = Tool::from_data(&data, shape).map_err(Failure::input)?;
     // As the device holds it.
-    let rotation = scene.workspace.map_or_else(Rotation::identity, |(pose, _)| pose.rotation);
+    let rotation = scene.device_rotation();
     let obstacle =
         tool.shell().obstacle(&rotation, &scene.whole, POINTS).map_err(Failure::input)?;
-    let bodies = input::bounds(scene)?;
-    let bounds = tool.shell().points().iter().fold(bodies, |all, point| {
-        let arm = rotation.rotate(point.centre);
-        all.union(&Aabb { min: bodies.min - arm, max: bodies.max - arm })
-    });
+    let bounds = scene.bounds_with(&tool);
+    let bounds = bounds.ok_or_else(|| Failure::input(input::NO_BOUNDS))?;
     Ok(Some(Held { tool, obstacle, bounds }))
 }
 
 impl<const D: usize> Held<D> {
-    /// The tool with the torque that a device gives, if it does: arms in the world are `scale`
-    /// times those at the device.
-    pub(super) fn tool_for(
-        self,
-        choice: &DeviceChoice,
-        scale: f64,
-    ) -> Result<Tool<D>, HapticsError> {
-        let DeviceChoice::Simulated(profile) = choice else { return Ok(self.tool) };
-        match &profile.turning {
-            Some(turning) if turning.max_torque > 0.0 => {
-                self.tool.with_max_torque(scale * turning.max_torque)
-            }
-            _ => Ok(self.tool),
-        }
-    }
-
     /// A tour of `duration` [s] that presses the tool as deep as it would a probe.
     pub(super) fn path(&self, duration: f64) -> Result<HandPath<D>, Failure> {
         let radius = self.tool.shell().points().first().map_or(0.0, |point| point.radius);

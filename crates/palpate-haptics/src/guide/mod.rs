@@ -9,7 +9,6 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod curve;
-mod from_data;
 pub(crate) mod limit;
 mod slope;
 mod target;

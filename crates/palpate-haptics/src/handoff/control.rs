@@ -55,9 +55,9 @@ impl<const D: usize> Control<D> {
     /// [`Servo::accept`](crate::Servo::accept).
     pub fn replace_bodies(
         &mut self,
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
     ) -> Result<Vec<Accepted>, HapticsError> {
-        let bodies = bodies.into();
+        let bodies = bodies.try_into().map_err(Into::into)?;
         let count = bodies.bodies().len();
         if count > self.most_bodies {
             return Err(HapticsError::TooManyBodies { bodies: count, most: self.most_bodies });

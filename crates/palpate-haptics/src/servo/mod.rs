@@ -96,7 +96,7 @@ impl<const D: usize> Servo<D> {
     /// # }
     /// ```
     pub fn for_device(
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         device: &(impl Device<D> + ?Sized),
     ) -> Result<Self, HapticsError> {
         let options = ServoOptions::of_device(device.profile());
@@ -110,7 +110,7 @@ impl<const D: usize> Servo<D> {
     ///
     /// As [`for_device`](Self::for_device).
     pub fn for_tool(
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         tool: Tool<D>,
         device: &(impl Device<D> + ?Sized),
     ) -> Result<Self, HapticsError> {
@@ -139,10 +139,14 @@ impl<const D: usize> Servo<D> {
     /// As [`Protection::accept`].
     pub fn accept(
         &self,
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
     ) -> Result<AcceptedBodies<D>, HapticsError> {
         let coupling = self.renderer.requested_coupling();
-        self.protection.accepted_bodies(bodies.into(), coupling, self.options().rate)
+        self.protection.accepted_bodies(
+            bodies.try_into().map_err(Into::into)?,
+            coupling,
+            self.options().rate,
+        )
     }
 
     /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped

@@ -28,7 +28,7 @@ impl Default for ServoOptions {
 }
 
 impl ServoOptions {
-    /// The defaults, with the largest force of `device`.
+    /// The defaults, with the largest force of `device` if it has a limit.
     ///
     /// ```
     /// use palpate_haptics::{DeviceProfile, ServoOptions};
@@ -38,8 +38,12 @@ impl ServoOptions {
     /// ```
     #[must_use]
     pub fn of_device(device: &DeviceProfile) -> Self {
-        // A device without force feedback: its protection gives no force.
-        let max_force = if device.max_force > 0.0 { device.max_force } else { f64::INFINITY };
-        Self { max_force, ..Self::default() }
+        let default = Self::default();
+        // A device without force feedback has a protection that gives no force.
+        let has_limit = device.max_force > 0.0 && device.max_force < f64::INFINITY;
+        Self {
+            max_force: if has_limit { device.max_force } else { default.max_force },
+            ..default
+        }
     }
 }

@@ -57,11 +57,17 @@ impl<const D: usize> UnprotectedServo<D> {
     /// [`HapticsError::NoContactPoint`] if there are none; [`HapticsError::Number`] if the
     /// rate, the rise time or the largest force is not positive.
     pub fn new(
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         points: usize,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
-        Ok(Self { renderer: Renderer::of_points(bodies.into(), points, options)? })
+        Ok(Self {
+            renderer: Renderer::of_points(
+                bodies.try_into().map_err(Into::into)?,
+                points,
+                options,
+            )?,
+        })
     }
 
     /// A servo that renders `bodies` to a tool with a shape, which is coupled to the one contact
@@ -126,11 +132,13 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # }
     /// ```
     pub fn with_tool(
-        bodies: impl Into<Bodies<D>>,
+        bodies: impl TryInto<Bodies<D>, Error: Into<HapticsError>>,
         tool: Tool<D>,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
-        Ok(Self { renderer: Renderer::of_tool(bodies.into(), tool, options)? })
+        Ok(Self {
+            renderer: Renderer::of_tool(bodies.try_into().map_err(Into::into)?, tool, options)?,
+        })
     }
 
     /// A servo for a device: a safety chain stands between every contact point and it. States

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_scene::Magnet;
+use crate::material::Magnet;
 
 use crate::error::{HapticsError, positive};
 

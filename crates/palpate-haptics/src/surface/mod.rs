@@ -10,8 +10,8 @@ mod ring;
 mod ripples;
 mod strata;
 
+use crate::material::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
-use palpate_scene::{Material, TextureKind};
 
 use crate::bend::way_over;
 use crate::error::{HapticsError, not_negative, positive};
@@ -81,6 +81,22 @@ pub struct Surface<const D: usize> {
     /// A texture of kind *displacement*.
     relief: Option<Ripples<D>>,
     impact: Option<Ring>,
+}
+
+impl<const D: usize> TryFrom<&Material> for Surface<D> {
+    type Error = HapticsError;
+
+    fn try_from(material: &Material) -> Result<Self, HapticsError> {
+        Self::new(material)
+    }
+}
+
+impl<const D: usize> TryFrom<Material> for Surface<D> {
+    type Error = HapticsError;
+
+    fn try_from(material: Material) -> Result<Self, HapticsError> {
+        Self::new(&material)
+    }
 }
 
 impl<const D: usize> Surface<D> {

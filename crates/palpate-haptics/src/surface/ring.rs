@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_scene::Impact;
+use crate::material::Impact;
 
 use crate::error::{HapticsError, not_negative, positive};
 

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_scene::Material;
+use crate::material::Material;
 
 use crate::error::{HapticsError, not_negative, positive};
 use crate::impedance::Impedance;
@@ -74,7 +74,7 @@ impl Strata {
 
     /// The layers of a material, unchecked: what a layer leaves out is as in the one above.
     pub(crate) fn of(material: &Material) -> Self {
-        let pop_through = |pop: &Option<palpate_scene::PopThrough>| {
+        let pop_through = |pop: &Option<crate::material::PopThrough>| {
             pop.as_ref().map(|pop| PopThrough { force: pop.force, distance: pop.distance })
         };
         let outermost = Stratum {
@@ -193,7 +193,7 @@ impl Strata {
 
 #[cfg(test)]
 mod tests {
-    use palpate_scene::Layer;
+    use crate::material::Layer;
 
     use super::*;
 

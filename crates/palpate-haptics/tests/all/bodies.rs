@@ -181,7 +181,7 @@ fn a_body_far_away_is_not_in_the_way() {
 #[test]
 fn a_membrane_pops_and_holds_again() {
     let pop_through =
-        Some(palpate_scene::PopThrough { description: None, force: 2.0, distance: 0.003 });
+        Some(palpate_haptics::PopThrough { description: None, force: 2.0, distance: 0.003 });
     let material =
         Material { stiffness: 1000.0, damping: 0.0, pop_through, ..Material::default() };
     let surface = Surface::new(&material).unwrap();
@@ -210,7 +210,8 @@ fn a_membrane_pops_and_holds_again() {
 
 #[test]
 fn a_magnet_pulls_from_outside_alone() {
-    let magnet = Some(palpate_scene::Magnet { description: None, force: 1.0, distance: 0.008 });
+    let magnet =
+        Some(palpate_haptics::Magnet { description: None, force: 1.0, distance: 0.008 });
     let material = Material { stiffness: 1000.0, damping: 0.0, magnet, ..Material::default() };
     let surface = Surface::new(&material).unwrap();
     let floor = half_space([0.0, 1.0, 0.0], 0.0);

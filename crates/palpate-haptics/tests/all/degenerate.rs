@@ -10,7 +10,7 @@ use palpate_field::{BoundingBall, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
 };
-use palpate_scene::{Layer, Magnet, Texture, TextureKind};
+use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
 
 /// Two springs of nothing, a wall of honey, glue, and other things.
 fn materials() -> Vec<(&'static str, Material)> {

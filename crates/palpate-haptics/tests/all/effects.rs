@@ -7,29 +7,33 @@
 use crate::common::ball;
 use assert_no_alloc::assert_no_alloc;
 use palpate_field::{Shape, Vector};
-use palpate_haptics::{Guide, PointState, ServoOptions, UnprotectedServo};
-use palpate_scene::{Material, Scene};
+use palpate_haptics::{
+    Curve, Guide, GuideOptions, Material, PointState, ServoOptions, UnprotectedServo,
+};
 use palpate_vibration::{
     ActuatorArray, Cue, Mapping, MappingOptions, Publisher, Synthesiser, Tap, Voice,
     one_channel, two_channels,
 };
 
-/// A guide of each kind, as a scene has them.
+/// A guide of each kind.
 fn guides() -> Vec<Guide<3>> {
-    let scene = Scene::from_json(
-        r#"{ "palpate": 1, "dimension": 3,
-             "bodies": [ { "name": "b", "shape": { "ball": { "radius": 0.05 } } } ],
-             "guides": [
-               { "point": [0, 0.06, 0], "snap_distance": 0.01, "release_distance": 0.02 },
-               { "line": { "through": [0, 0.06, 0], "direction": [1, 0, 1] } },
-               { "segment": { "from": [0, 0.06, 0], "to": [0.1, 0.06, 0] } },
-               { "plane": { "through": [0, 0.06, 0], "normal": [0, 3, 0] } },
-               { "curve": { "points": [[0, 0.06, 0], [0.05, 0.07, 0], [0.1, 0.05, 0]] } },
-               { "curve": { "smooth": true,
-                            "points": [[0, 0.06, 0], [0.05, 0.07, 0], [0.1, 0.05, 0]] } },
-               { "well": { "center": [0, 0.06, 0], "reach": 0.02 } } ] }"#,
-    );
-    scene.unwrap().guides.iter().map(|guide| Guide::from_data(guide).unwrap()).collect()
+    let place = Vector([0.0, 0.06, 0.0]);
+    let bends = [place, Vector([0.05, 0.07, 0.0]), Vector([0.1, 0.05, 0.0])];
+    let options = GuideOptions::default();
+    let point = GuideOptions {
+        snap_distance: 0.01,
+        release_distance: Some(0.02),
+        ..GuideOptions::default()
+    };
+    vec![
+        Guide::to_point(place, point).unwrap(),
+        Guide::along_line(place, Vector([1.0, 0.0, 1.0]), options).unwrap(),
+        Guide::along_segment(place, Vector([0.1, 0.06, 0.0]), options).unwrap(),
+        Guide::on_plane(place, Vector([0.0, 3.0, 0.0]), options).unwrap(),
+        Guide::along_curve(Curve::polyline(&bends).unwrap(), options).unwrap(),
+        Guide::along_curve(Curve::smooth(&bends).unwrap(), options).unwrap(),
+        Guide::well(place, 0.02, options).unwrap(),
+    ]
 }
 
 /// The hand at a time [s]: it taps on a ball of 50 mm from above 5 times a second, and slides.

@@ -10,7 +10,7 @@ use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{
     Bodies, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
 };
-use palpate_scene::{Layer, Magnet, Texture, TextureKind};
+use palpate_haptics::{Layer, Magnet, Texture, TextureKind};
 
 /// The most that may be gained over a closed path [J].
 const MOST: f64 = 1e-9;

@@ -11,7 +11,7 @@ use palpate_haptics::{
     Bodies, Body, EventKind, Material, PointState, Probe, ServoOptions, Surface,
     UnprotectedServo,
 };
-use palpate_scene::{Layer, PopThrough};
+use palpate_haptics::{Layer, PopThrough};
 
 /// Plays a wild scene, and checks every event against the state before it.
 fn events_are_in_order<const D: usize>(count: usize) {

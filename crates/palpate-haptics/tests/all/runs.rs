@@ -14,8 +14,8 @@ use palpate_haptics::{
     Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
     Servo, ServoOptions, Surface, UnprotectedServo,
 };
+use palpate_haptics::{Impact, Layer, PopThrough};
 use palpate_loop::{Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on};
-use palpate_scene::{Impact, Layer, PopThrough};
 
 /// A clock on which looking costs a microsecond and waiting nothing more.
 #[derive(Default)]

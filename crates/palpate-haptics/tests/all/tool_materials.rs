@@ -7,10 +7,10 @@
 use crate::common::tools::{STIFFNESS, at, box_mesh, on_a_loop, rest, rough, smooth, springs};
 use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Pose, Rotation, Vector};
+use palpate_haptics::Layer;
 use palpate_haptics::{
     Bodies, Body, EventKind, Material, Shell, Surface, Tool, ToolOptions, ToolState, ToolTouch,
 };
-use palpate_scene::Layer;
 
 #[test]
 fn a_box_tells_where_it_slips_and_where_it_sticks_again() {

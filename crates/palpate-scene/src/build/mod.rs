@@ -9,17 +9,19 @@ mod shape_error;
 mod size;
 
 use indexmap::IndexSet;
-use palpate_field::{Pose, Shape};
+use palpate_field::{Point, Pose, Shape};
 
-use crate::material::Material;
-use crate::pose::{Turning, Turns};
+use palpate_haptics::{Guide, Material, ToolOptions, WorkspaceMap};
+
+use crate::guide::WrittenGuide;
+use crate::pose::{Turning, Turns, vector};
 use crate::problem::Problem;
 use crate::scene::{Dimension, Scene};
 use builder::{Builder, Space};
 
 /// A scene that can be asked, in its dimension.
 #[derive(Clone, Debug)]
-pub enum World {
+pub enum AnyScene {
     /// A scene in the plane.
     Planar(BuiltScene<2>),
     /// A scene in space.
@@ -33,11 +35,27 @@ pub struct BuiltScene<const D: usize> {
     pub bodies: Vec<BuiltBody<D>>,
     /// The union of the bodies in the world.
     pub whole: Shape<D>,
-    /// The shape of the tool in its own coordinates, if it has one.
-    pub tool: Option<Shape<D>>,
-    /// How the tool's device lies in the world: its pose, and metres in the world for each of
-    /// the device; none if the scene does not say.
-    pub workspace: Option<(Pose<D>, f64)>,
+    /// What touches, if the scene says.
+    pub tool: Option<BuiltTool<D>>,
+    /// What guides the hand in free space.
+    pub guides: Vec<Guide<D>>,
+    /// How the device's space lies in the world; `None` if the scene does not say.
+    pub workspace: Option<WorkspaceMap<D>>,
+}
+
+/// What touches the bodies of a scene.
+#[derive(Clone, Debug)]
+pub struct BuiltTool<const D: usize> {
+    /// The radius of each contact point, or by how much the shape is thicker [m].
+    pub radius: f64,
+    /// The contact points in the tool's own coordinates [m]; none if one at the origin is meant.
+    pub points: Vec<Point<D>>,
+    /// The shape in the tool's own coordinates, instead of points.
+    pub shape: Option<Shape<D>>,
+    /// The coupling of a tool with a shape, and its largest force.
+    pub options: ToolOptions,
+    /// The largest force on the hand [N]; `None` if the scene leaves it to the device.
+    pub max_force: Option<f64>,
 }
 
 /// A body with its shape.
@@ -56,10 +74,10 @@ pub struct BuiltBody<const D: usize> {
 }
 
 /// Checks and builds a scene.
-pub(crate) fn world(scene: &Scene) -> Result<World, Problem> {
+pub(crate) fn world(scene: &Scene) -> Result<AnyScene, Problem> {
     match scene.dimension() {
-        Dimension::Two => built(scene).map(World::Planar),
-        Dimension::Three => built(scene).map(World::Spatial),
+        Dimension::Two => built(scene).map(AnyScene::Planar),
+        Dimension::Three => built(scene).map(AnyScene::Spatial),
     }
 }
 
@@ -74,13 +92,11 @@ where
     let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
         .map_err(|error| Problem::new(error.to_string()).under("bodies"))?;
     let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
-    for (i, guide) in scene.guides.iter().enumerate() {
-        guide.check(D).map_err(|problem| problem.at(i).under("guides"))?;
-    }
+    let guides = guides(scene).map_err(|problem| problem.under("guides"))?;
     check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
     check_views(scene, D).map_err(|problem| problem.under("views"))?;
     let workspace = workspace(scene).map_err(|problem| problem.under("tool"))?;
-    Ok(BuiltScene { bodies, whole, tool, workspace })
+    Ok(BuiltScene { bodies, whole, tool, guides, workspace })
 }
 
 fn bodies<'a, const D: usize>(
@@ -114,7 +130,8 @@ where
                 Some(written) => written.known().map_err(|p| p.under("material"))?,
                 None => Material::default(),
             };
-            material.check(D).map_err(|problem| problem.under("material"))?;
+            crate::material::check(&material, D)
+                .map_err(|problem| problem.under("material"))?;
             let name = body.name.clone();
             Ok(BuiltBody { name, shape, shape_in_body, world_from_body, material })
         };
@@ -124,7 +141,7 @@ where
 }
 
 /// How the tool's device lies in the world.
-fn workspace<const D: usize>(scene: &Scene) -> Result<Option<(Pose<D>, f64)>, Problem>
+fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap<D>>, Problem>
 where
     Turns: Turning<D>,
 {
@@ -132,13 +149,14 @@ where
     let Some(workspace) = workspace else { return Ok(None) };
     let pose = workspace.pose.as_ref().map(|pose| pose.built::<D>()).transpose();
     let pose = pose.map_err(|problem| problem.under("pose").under("workspace"))?;
-    Ok(Some((pose.unwrap_or_else(Pose::identity), workspace.scale)))
+    let map = WorkspaceMap::new(pose.unwrap_or_else(Pose::identity), workspace.scale);
+    map.map(Some).map_err(|error| Problem::new(error.to_string()).under("workspace"))
 }
 
 fn tool<'a, const D: usize>(
     scene: &'a Scene,
     builder: &mut Builder<'a>,
-) -> Result<Option<Shape<D>>, Problem>
+) -> Result<Option<BuiltTool<D>>, Problem>
 where
     Builder<'a>: Space<'a, D>,
     Turns: Turning<D>,
@@ -146,7 +164,21 @@ where
     let Some(tool) = &scene.tool else { return Ok(None) };
     tool.check(D)?;
     let shape = tool.shape.as_ref().map(|node| builder.shape(node)).transpose();
-    shape.map_err(|problem| problem.under("shape"))
+    Ok(Some(BuiltTool {
+        radius: tool.radius,
+        points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
+        shape: shape.map_err(|problem| problem.under("shape"))?,
+        options: tool.options(),
+        max_force: tool.max_force,
+    }))
+}
+
+fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problem> {
+    let guide = |(i, guide): (usize, &WrittenGuide)| {
+        guide.check(D).map_err(|problem| problem.at(i))?;
+        guide.guide().map_err(|error| Problem::new(error.to_string()).at(i))
+    };
+    scene.guides.iter().enumerate().map(guide).collect()
 }
 
 fn check_motions<const D: usize>(scene: &Scene) -> Result<(), Problem>

@@ -212,7 +212,7 @@ pub(crate) fn plane(generator: &mut SchemaGenerator) -> Schema {
 
 /// The schema of a body's material.
 pub(crate) fn material(generator: &mut SchemaGenerator) -> Schema {
-    let own = generator.subschema_for::<crate::material::Material>();
-    let names: Vec<_> = crate::material::Material::preset_names().collect();
+    let own = generator.subschema_for::<palpate_haptics::Material>();
+    let names: Vec<_> = palpate_haptics::Material::preset_names().collect();
     json_schema!({ "anyOf": [{ "enum": names }, own] })
 }

@@ -12,7 +12,7 @@ mod thread;
 use std::path::Path;
 
 use palpate_field::kernel::Entry;
-use palpate_scene::{Scene, World, schema};
+use palpate_scene::{AnyScene, Scene, schema};
 
 /// Set to write the scenes instead of comparing them.
 const UPDATE: &str = "PALPATE_UPDATE_SCENES";
@@ -95,7 +95,7 @@ fn the_thousand_primitives_are_current() {
 #[test]
 fn the_nut_is_current_and_clear_of_the_bolt() {
     assert_current("nut_on_bolt.json", &thread::scene());
-    let World::Spatial(world) = Scene::from_json(&thread::scene()).unwrap().build().unwrap()
+    let AnyScene::Spatial(world) = Scene::from_json(&thread::scene()).unwrap().build().unwrap()
     else {
         panic!("not spatial")
     };
@@ -121,7 +121,7 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
 #[test]
 fn the_gears_are_current_and_mesh_without_overlap() {
     assert_current("gears.json", &gears::scene());
-    let World::Planar(world) = Scene::from_json(&gears::scene()).unwrap().build().unwrap()
+    let AnyScene::Planar(world) = Scene::from_json(&gears::scene()).unwrap().build().unwrap()
     else {
         panic!("not planar")
     };

@@ -5,12 +5,12 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
+use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
-    Axis, AxisAngle, Body, Boolean, Coupling, Dimension, Factor, Form, FreePlane, Guide,
-    GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, Impact, Layer, Magnet,
-    Material, Motion, Node, PopThrough, Profile, Repeat, Row, Rows, Scene, Texture,
-    TextureKind, Tool, View, ViewPlane, Workspace, WrittenMaterial, WrittenPose,
-    WrittenRotation,
+    Axis, AxisAngle, Boolean, Dimension, Factor, Form, FreePlane, GuideCurve, GuideLine,
+    GuidePlane, GuideSegment, GuideWell, Motion, Node, Profile, Repeat, Row, Rows, Scene, View,
+    ViewPlane, WrittenBody, WrittenCoupling, WrittenGuide, WrittenMaterial, WrittenPose,
+    WrittenRotation, WrittenTool, WrittenWorkspace,
 };
 
 /// A primitive of the catalogue with the keys of its parameters in files.
@@ -120,7 +120,7 @@ impl Generator {
         }
         let shapes = scene.shapes.len();
         for i in 0..u.int_in_range(1..=3)? {
-            let mut body = Body::new(format!("body {i}"), self.node(u, d, 4, shapes)?);
+            let mut body = WrittenBody::new(format!("body {i}"), self.node(u, d, 4, shapes)?);
             body.description = text(u)?;
             body.pose = maybe(u, |u| pose(u, d))?;
             body.material = maybe(u, |u| {
@@ -217,16 +217,16 @@ impl Generator {
         })
     }
 
-    fn tool(&self, u: Random, d: usize, shapes: usize) -> Result<Tool> {
+    fn tool(&self, u: Random, d: usize, shapes: usize) -> Result<WrittenTool> {
         let shape = maybe(u, |u| self.node(u, d, 2, shapes))?;
         let points = if shape.is_some() { 0 } else { u.int_in_range(0..=3)? };
-        Ok(Tool {
+        Ok(WrittenTool {
             description: text(u)?,
             radius: length(u)?,
             points: (0..points).map(|_| numbers(u, d)).collect::<Result<_>>()?,
             shape,
             coupling: maybe(u, |u| {
-                Ok(Coupling {
+                Ok(WrittenCoupling {
                     description: text(u)?,
                     stiffness: maybe(u, length)?,
                     damping: maybe(u, length)?,
@@ -236,7 +236,7 @@ impl Generator {
             })?,
             workspace: maybe(u, |u| {
                 let pose = maybe(u, |u| pose(u, d))?;
-                Ok(Workspace { description: text(u)?, scale: length(u)?, pose })
+                Ok(WrittenWorkspace { description: text(u)?, scale: length(u)?, pose })
             })?,
             max_force: maybe(u, length)?,
         })
@@ -361,18 +361,18 @@ fn material(u: Random, d: usize) -> Result<Material> {
     })
 }
 
-fn guide(u: Random, d: usize) -> Result<Guide> {
+fn guide(u: Random, d: usize) -> Result<WrittenGuide> {
     let direction = |u: Random| Ok(direction::<3>(u)?[..d].to_vec());
     let (stiffness, max_force) = (length(u)?, length(u)?);
     let snap_distance = maybe(u, length)?;
-    let mut guide = Guide {
+    let mut guide = WrittenGuide {
         description: text(u)?,
         stiffness,
         damping: length(u)?,
         snap_distance,
         release_distance: snap_distance.map(|snap| 2.0 * snap),
         max_force,
-        ..Guide::default()
+        ..WrittenGuide::default()
     };
     let description = text(u)?;
     match u.int_in_range(0..=5)? {

@@ -9,7 +9,7 @@ use palpate_haptics::{
     Bodies, Body, Guide, GuideOptions, Material, PointState, Probe, ServoOptions, Surface,
     UnprotectedServo,
 };
-use palpate_scene::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
+use palpate_haptics::{Impact, Layer, Magnet, PopThrough, Texture, TextureKind};
 
 use super::{ball, cuboid};
 

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! From a built scene to what can be touched: bodies, a world, a servo.
+
+use palpate_field::{Aabb, Rotation};
+use palpate_haptics::{
+    Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Servo,
+    ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
+};
+use palpate_query::{QueryError, World, WorldSettings};
+
+use crate::build::{BuiltScene, BuiltTool};
+
+/// Points on the surface of a tool that is neither a ball nor a capsule. More feel finer things,
+/// and cost more; a face of 1 cm² of a tool as large as a hand has a few.
+const POINTS: usize = 500;
+
+/// How a servo renders a scene, beside what the scene says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ServoSettings {
+    /// Ticks a second [Hz].
+    pub rate: f64,
+    /// What is done with materials that the device cannot render.
+    pub acceptance: Acceptance,
+}
+
+impl Default for ServoSettings {
+    /// 1 kHz; materials are scaled where they must be.
+    fn default() -> Self {
+        Self { rate: ServoOptions::default().rate, acceptance: Acceptance::Scaled }
+    }
+}
+
+impl ServoSettings {
+    /// At `rate` [Hz].
+    #[must_use]
+    pub fn with_rate(self, rate: f64) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// With another way to deal with materials that the device cannot render.
+    #[must_use]
+    pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
+        Self { acceptance, ..self }
+    }
+}
+
+impl<const D: usize> BuiltTool<D> {
+    /// The tool with a shape, as it is felt; `None` for contact points.
+    ///
+    /// A ball and a capsule are felt as they are, any other shape as 500 points on its surface
+    /// ([`Shell::of_shape`]).
+    ///
+    /// # Errors
+    ///
+    /// As [`Shell::of_shape`] and [`Tool::new`].
+    pub fn in_hand(&self) -> Result<Option<Tool<D>>, HapticsError> {
+        let Some(shape) = &self.shape else { return Ok(None) };
+        let shell = Shell::of_shape(shape, POINTS, self.radius)?;
+        Tool::new(shell, self.options).map(Some)
+    }
+}
+
+impl<const D: usize> BuiltScene<D> {
+    /// The box around all bodies that have bounds; `None` if none has.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Aabb<D>> {
+        let boxes = self.bodies.iter().filter_map(|body| body.shape.promise().bounds);
+        boxes.map(|bounds| bounds.aabb).reduce(|a, b| a.union(&b))
+    }
+
+    /// The box around all bodies that have bounds and the places from which `tool` touches
+    /// them: where its origin can be.
+    #[must_use]
+    pub fn bounds_with(&self, tool: &Tool<D>) -> Option<Aabb<D>> {
+        let bodies = self.bounds()?;
+        let rotation = self.device_rotation();
+        Some(tool.shell().points().iter().fold(bodies, |all, point| {
+            let arm = rotation.rotate(point.centre);
+            all.union(&Aabb { min: bodies.min - arm, max: bodies.max - arm })
+        }))
+    }
+
+    /// How the device's axes lie in the world.
+    #[must_use]
+    pub fn device_rotation(&self) -> Rotation<D> {
+        self.workspace.map_or_else(Rotation::identity, |map| map.rotation())
+    }
+
+    /// Where the workspace of a device lies: where the scene says, or else so that it holds the
+    /// scene, and the places from which a `tool` touches it. A device without a radius, or a
+    /// scene without bounds, lies in the world as it is.
+    ///
+    /// # Errors
+    ///
+    /// As [`WorkspaceMap::fitting`].
+    pub fn workspace_of(
+        &self,
+        device: &DeviceProfile,
+        tool: Option<&Tool<D>>,
+    ) -> Result<WorkspaceMap<D>, HapticsError> {
+        if let Some(map) = self.workspace {
+            return Ok(map);
+        }
+        let bounds = tool.map_or_else(|| self.bounds(), |tool| self.bounds_with(tool));
+        match bounds {
+            Some(bounds) if device.workspace_radius < f64::INFINITY => {
+                WorkspaceMap::fitting(bounds, device.workspace_radius)
+            }
+            _ => Ok(WorkspaceMap::default()),
+        }
+    }
+
+    /// The bodies with their materials, for a servo.
+    ///
+    /// # Errors
+    ///
+    /// As [`Surface::new`], [`Body::new`] and [`Bodies::new`].
+    pub fn bodies(&self) -> Result<Bodies<D>, HapticsError> {
+        let body = |body: &crate::BuiltBody<D>| {
+            Body::new(body.shape_in_body.clone(), Surface::new(&body.material)?)?
+                .at(body.world_from_body)
+        };
+        Bodies::new(self.bodies.iter().map(body).collect::<Result<_, _>>()?)
+    }
+
+    /// The bodies in a world, whose margins are shares of the smallest bounded body; the numbers
+    /// of its bodies are their places in the scene.
+    ///
+    /// # Errors
+    ///
+    /// As [`World::new`] and [`World::add`].
+    pub fn world(&self) -> Result<World<D>, QueryError> {
+        self.world_with(WorldSettings::of_size(self.smallest_size().unwrap_or(1.0)))
+    }
+
+    /// The bodies in a world with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// As [`World::new`] and [`World::add`].
+    pub fn world_with(&self, settings: WorldSettings) -> Result<World<D>, QueryError> {
+        let mut world = World::new(settings)?;
+        for body in &self.bodies {
+            world.add(body.shape_in_body.clone(), body.world_from_body)?;
+        }
+        Ok(world)
+    }
+
+    /// The largest edge of the box of the body for which that is least [m]; `None` if no body
+    /// has bounds.
+    #[must_use]
+    pub fn smallest_size(&self) -> Option<f64> {
+        let sizes = self.bodies.iter().filter_map(|body| {
+            let half = body.shape_in_body.promise().bounds?.aabb.half_extents();
+            Some(2.0 * half.0.into_iter().fold(0.0, f64::max))
+        });
+        sizes.reduce(f64::min).filter(|size| *size > 0.0)
+    }
+
+    /// A servo that renders the scene to `device`, protected: with its bodies, materials, guides,
+    /// and tool.
+    ///
+    /// # Errors
+    ///
+    /// As [`Servo::for_device`], and if a tool has no surface.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_devices::{Hand, SimulatedDevice, profile_named};
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 3,
+    ///          "bodies": [ { "name": "table", "shape": { "ball": { "radius": 0.05 } },
+    ///                        "material": "wood" } ] }"#,
+    /// )?;
+    /// let AnyScene::Spatial(scene) = scene.build()? else { unreachable!("dimension is 3") };
+    /// let hand = Hand::resting([0.0, 0.06, 0.0].into())?;
+    /// let device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
+    /// let servo = scene.servo(&device)?;
+    /// assert_eq!(servo.accepted().len(), 1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn servo(&self, device: &(impl Device<D> + ?Sized)) -> Result<Servo<D>, HapticsError> {
+        self.servo_with(device, ServoSettings::default())
+    }
+
+    /// The same with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// As [`servo`](Self::servo).
+    pub fn servo_with(
+        &self,
+        device: &(impl Device<D> + ?Sized),
+        settings: ServoSettings,
+    ) -> Result<Servo<D>, HapticsError> {
+        let profile = device.profile();
+        let tool = self.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand)?;
+        let map = self.workspace_of(profile, tool.as_ref())?;
+        let options = self.servo_options(profile, settings.rate)?;
+        let servo = match tool {
+            None => UnprotectedServo::new(self.bodies()?, device.points(), options)?,
+            Some(tool) => {
+                let tool = match &profile.turning {
+                    // Torques in the world are so many times those at the device.
+                    Some(turning) if turning.max_torque > 0.0 => {
+                        tool.with_max_torque(map.scale() * turning.max_torque)?
+                    }
+                    _ => tool,
+                };
+                UnprotectedServo::with_tool(self.bodies()?, tool, options)?
+            }
+        };
+        let acceptance = settings.acceptance;
+        let protection = Protection { map, acceptance, ..Protection::new(profile.clone()) };
+        let mut servo = servo.protected(&protection)?;
+        servo.guide(&self.guides);
+        Ok(servo)
+    }
+
+    /// The options of a servo: the probe and the largest force of the tool, as far as the scene
+    /// names them.
+    fn servo_options(
+        &self,
+        device: &DeviceProfile,
+        rate: f64,
+    ) -> Result<ServoOptions, HapticsError> {
+        let mut options = ServoOptions { rate, ..ServoOptions::of_device(device) };
+        if let Some(tool) = &self.tool {
+            options.probe = Probe::new(tool.radius)?;
+            options.max_force = tool.max_force.unwrap_or(options.max_force);
+        }
+        Ok(options)
+    }
+}

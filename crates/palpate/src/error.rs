@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! One error for programs that use several crates of palpate.
+
+use palpate_devices::{DeviceLost, UnknownDevice};
+use palpate_field::ShapeError;
+use palpate_haptics::{HapticsError, UnknownMaterial};
+use palpate_mesh::MeshError;
+use palpate_query::QueryError;
+
+/// What went wrong in any crate of palpate.
+///
+/// Each error of those crates becomes one by `?`, its text is the same, and what it says is there
+/// as data: see [`kind`](Self::kind), [`parameter`](Self::parameter), [`value`](Self::value),
+/// [`path`](Self::path) and [`line`](Self::line).
+///
+/// ```
+/// use palpate::{Error, ErrorKind};
+/// use palpate::field::Shape;
+///
+/// let error: Error = Shape::<3>::ball(-1.0).unwrap_err().into();
+/// assert_eq!(error.to_string(), "radius must be positive, got -1 m");
+/// assert_eq!((error.kind(), error.parameter()), (ErrorKind::Shape, Some("radius")));
+/// assert_eq!((error.value(), error.unit()), (Some(-1.0), Some("m")));
+/// ```
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+#[non_exhaustive]
+pub enum Error {
+    /// A shape cannot be built.
+    Shape(#[from] ShapeError),
+    /// A question cannot be asked.
+    Query(#[from] QueryError),
+    /// Something cannot be touched as asked.
+    Haptics(#[from] HapticsError),
+    /// Vertices and faces are no mesh.
+    Mesh(#[from] MeshError),
+    /// A mesh file cannot be read.
+    #[cfg(feature = "mesh-files")]
+    MeshFile(#[from] palpate_mesh::ReadError),
+    /// A scene cannot be read or built.
+    #[cfg(feature = "scene")]
+    Scene(#[from] palpate_scene::SceneError),
+    /// A picture cannot be drawn.
+    #[cfg(feature = "plot")]
+    Plot(#[from] palpate_plot::PlotError),
+    /// There is no device of that name.
+    UnknownDevice(#[from] UnknownDevice),
+    /// There is no material of that name.
+    UnknownMaterial(#[from] UnknownMaterial),
+    /// A device no longer answers.
+    DeviceLost(#[from] DeviceLost),
+    /// A file cannot be read or written.
+    File(#[from] std::io::Error),
+}
+
+/// What an [`Error`] is about: a name for each of its variants, without their data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A shape cannot be built.
+    Shape,
+    /// A question cannot be asked.
+    Query,
+    /// Something cannot be touched as asked.
+    Haptics,
+    /// Vertices and faces are no mesh, or a mesh file cannot be read.
+    Mesh,
+    /// A scene cannot be read or built.
+    Scene,
+    /// A picture cannot be drawn.
+    Plot,
+    /// There is no device or material of that name.
+    UnknownName,
+    /// A device no longer answers.
+    DeviceLost,
+    /// A file cannot be read or written.
+    File,
+}
+
+impl Error {
+    /// What the error is about.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Shape(_) => ErrorKind::Shape,
+            Self::Query(_) => ErrorKind::Query,
+            Self::Haptics(_) => ErrorKind::Haptics,
+            Self::Mesh(_) => ErrorKind::Mesh,
+            #[cfg(feature = "mesh-files")]
+            Self::MeshFile(_) => ErrorKind::Mesh,
+            #[cfg(feature = "scene")]
+            Self::Scene(_) => ErrorKind::Scene,
+            #[cfg(feature = "plot")]
+            Self::Plot(_) => ErrorKind::Plot,
+            Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
+            Self::DeviceLost(_) => ErrorKind::DeviceLost,
+            Self::File(_) => ErrorKind::File,
+        }
+    }
+
+    /// The name of the parameter that is wrong, as in scene files.
+    #[must_use]
+    pub fn parameter(&self) -> Option<&str> {
+        match self.shape_error() {
+            Some(
+                ShapeError::Number { parameter, .. } | ShapeError::Count { parameter, .. },
+            ) => Some(parameter),
+            _ => match self {
+                Self::Haptics(HapticsError::Number { parameter, .. }) => Some(parameter),
+                Self::Haptics(HapticsError::OtherDevice { limit, .. }) => Some(limit),
+                Self::Query(
+                    QueryError::Coordinate { what, .. } | QueryError::Setting { what, .. },
+                ) => Some(what),
+                _ => None,
+            },
+        }
+    }
+
+    /// The number that is wrong, in its [unit](Self::unit).
+    #[must_use]
+    pub fn value(&self) -> Option<f64> {
+        match self.shape_error() {
+            Some(ShapeError::Number { value, .. }) => Some(value.0),
+            Some(ShapeError::Count { count, .. }) => Some(*count as f64),
+            _ => match self {
+                Self::Haptics(HapticsError::Number { value, .. }) => Some(*value),
+                Self::Haptics(HapticsError::OtherDevice { device, .. }) => Some(*device),
+                Self::Query(
+                    QueryError::Coordinate { value, .. }
+                    | QueryError::Setting { value, .. }
+                    | QueryError::Length { value },
+                ) => Some(*value),
+                _ => None,
+            },
+        }
+    }
+
+    /// The unit of the [value](Self::value): "m", "N/m"; empty for a plain number.
+    #[must_use]
+    pub fn unit(&self) -> Option<&'static str> {
+        match self.shape_error() {
+            Some(ShapeError::Number { value, .. }) => Some(value.1.symbol()),
+            Some(ShapeError::Count { .. }) => Some(""),
+            _ => match self {
+                Self::Haptics(
+                    HapticsError::Number { unit, .. } | HapticsError::OtherDevice { unit, .. },
+                ) => Some(unit),
+                Self::Query(
+                    QueryError::Coordinate { .. }
+                    | QueryError::Setting { .. }
+                    | QueryError::Length { .. },
+                ) => Some("m"),
+                _ => None,
+            },
+        }
+    }
+
+    /// Where in a scene: keys joined by dots, places in lists in brackets.
+    #[must_use]
+    pub fn path(&self) -> Option<&str> {
+        match self {
+            #[cfg(feature = "scene")]
+            Self::Scene(error) if !error.path.is_empty() => Some(&error.path),
+            _ => None,
+        }
+    }
+
+    /// The line of a scene file, from 1.
+    #[must_use]
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            #[cfg(feature = "scene")]
+            Self::Scene(error) if error.line > 0 => Some(error.line),
+            _ => None,
+        }
+    }
+
+    fn shape_error(&self) -> Option<&ShapeError> {
+        match self {
+            Self::Shape(error) | Self::Haptics(HapticsError::Shape(error)) => Some(error),
+            _ => None,
+        }
+    }
+}
