@@ -26,8 +26,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use float::Float;
-pub use model::Model;
 pub(crate) use model::TurnedBoxes;
+pub use model::{AffineModel, Model};
 
 use crate::vector::array;
 
