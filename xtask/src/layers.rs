@@ -13,6 +13,7 @@ const LAYERS: &[&str] = &[
     "palpate-scene",
     "palpate-mesh",
     "palpate-query",
+    "palpate-local",
     "palpate-haptics",
     "palpate-devices",
     "palpate-plot",

@@ -3,7 +3,7 @@
 
 //! Answers with their bounds.
 
-use crate::error::{QueryError, check_length};
+use crate::error::QueryError;
 
 /// The answer of a search: the true value lies in `[lower, upper]`, rounding included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,6 @@ impl<T> Certified<T> {
 
 /// Why a search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Stop {
     /// The bounds are no farther apart than the tolerance.
     Converged,
@@ -100,6 +99,6 @@ impl Limits {
 
     /// Refuses a tolerance that is negative, NaN or too large.
     pub(crate) fn check(&self) -> Result<(), QueryError> {
-        check_length(self.tolerance)
+        QueryError::check_length(self.tolerance)
     }
 }

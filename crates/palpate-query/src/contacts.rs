@@ -19,16 +19,18 @@ use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{normal as direction, unit};
 
-/// Heights over and under the centre of an element from which it is seen to be plain, in
-/// radii: half a block each.
+/// Heights over and under the centre of an element, in radii, from which [`is_plain`] proves
+/// that the element has one minimum: half a block each.
+///
+/// [`is_plain`]: ElementSearch::is_plain
 const HEIGHTS: [f64; SHORT / 2] = [1.5, 4.0, 12.0, 40.0];
 
-/// An element that is not plain is looked at in as many cells at least: 8 to the edge of a
-/// triangle. Bumps that are narrower may hide between their centres.
+/// An element that is not plain is divided into at least this many cells: 8 along the edge of
+/// a triangle. Narrower bumps may hide between the centres of cells.
 const FEW_CELLS: usize = 64;
 
-/// A point is this much off the surface, in parts of the coordinates, before the way to
-/// the surface is a direction.
+/// From this distance on, as a share of the coordinates, the vector to the surface gives the
+/// normal.
 const DIRECTION: f64 = 1e-9;
 
 /// All contacts of one element.
@@ -117,7 +119,7 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     Ok(&workspace.found)
 }
 
-/// What values are compared with for a gap [m].
+/// The value of the field that stands for a gap [m].
 pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, QueryError> {
     if !(0.0..=LARGEST_LENGTH).contains(&gap) {
         return Err(QueryError::Length { value: gap });
@@ -151,7 +153,7 @@ pub(crate) fn find<const N: usize, const D: usize>(
 }
 
 impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
-    /// Tells what is known of each patch of an element, and returns what is known of all.
+    /// Hands the answer of each patch to `tell`, and returns the answer for the element.
     fn patches(
         &mut self,
         element: &Element<N, D>,
@@ -185,7 +187,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
             let deepest = patches.copy(patch, &mut frontier.queue);
             self.dropped = f64::INFINITY;
             if !is_whole {
-                // What was found is at the centre.
+                // The least value of a patch was found at the centre of its deepest cell.
                 (self.upper, self.best) = (deepest.upper, deepest.element.at(&self.weights));
             }
             let answer = self.finish(frontier);
@@ -201,8 +203,8 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
         Certified { evaluations: self.sampler.evaluations, ..all }
     }
 
-    /// Halves all cells until there are as many patches as their values let expect, or as
-    /// many cells as are looked at together.
+    /// Halves all cells until the bounds prove as many patches as the values suggest, or there
+    /// are [`MOST_CELLS`].
     fn refine(
         &mut self,
         tolerance: f64,

@@ -15,7 +15,6 @@
 //! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
 //!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
-//! - [`local`] has the searches of the literature that prove nothing, for comparison.
 //!
 //! ```
 //! use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
@@ -50,7 +49,6 @@ mod engine;
 mod error;
 mod goal;
 mod larger;
-pub mod local;
 mod manifold;
 mod mesh;
 mod pair;
@@ -61,6 +59,7 @@ mod pool;
 mod query;
 mod ray;
 mod sampler;
+mod track;
 #[cfg(feature = "world")]
 mod world;
 
@@ -77,12 +76,13 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
-    overlap, proof, rates, separation,
+    DistanceBound, Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
+    escape, minimax_step, overlap, proof, rates, separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
+pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

@@ -25,6 +25,8 @@
 pub use palpate_devices as devices;
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
+#[cfg(feature = "local")]
+pub use palpate_local as local;
 pub use palpate_mesh as mesh;
 pub use palpate_plot as plot;
 pub use palpate_query as query;
