@@ -114,7 +114,7 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
     for (quarters, [x, z]) in [[out, 0.0], [0.0, -out], [-out, 0.0]].into_iter().enumerate() {
         let y = thread::MIDDLE + thread::PITCH * quarters as f64 / 4.0;
         assert!(bolt.distance([x, y, z]) < 0.0, "no crest after {quarters} quarters");
-        assert!(bolt.distance([-x, y, -z].into()) > 0.0, "no root after {quarters} quarters");
+        assert!(bolt.distance([-x, y, -z]) > 0.0, "no root after {quarters} quarters");
     }
 }
 
