@@ -9,6 +9,7 @@ use crate::vector::{Point, Vector, array, unrolled};
 
 /// A box along the axes, `min ≤ p ≤ max` in each coordinate [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aabb<const D: usize> {
     /// The corner with the smallest coordinates.
     pub min: Point<D>,
@@ -81,6 +82,7 @@ impl<const D: usize> Aabb<D> {
 
 /// A ball that bounds a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BoundingBall<const D: usize> {
     /// The centre [m].
     pub centre: Point<D>,
@@ -108,6 +110,7 @@ impl<const D: usize> BoundingBall<D> {
 
 /// A box and a ball, each of which holds the set `f ≤ 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds<const D: usize> {
     /// The box.
     pub aabb: Aabb<D>,

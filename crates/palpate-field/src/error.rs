@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a shape's parameters.
+//! Errors of shapes, and the limits of parameters.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -48,17 +48,46 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Why a shape cannot be built.
+/// What kind of [`ShapeError`] an error is, for callers that map kinds to something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ShapeErrorKind {
+    /// A number breaks the rule of its parameter.
+    Number,
+    /// A list is too short or too long.
+    Count,
+    /// Operators are nested too deeply.
+    TooDeep,
+    /// An operator needs something that its shape does not have.
+    Unsuitable,
+}
+
+impl ShapeErrorKind {
+    /// The name of the kind, which stays the same: `"number"`, `"count"`, `"too_deep"` or
+    /// `"unsuitable"`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Number => "number",
+            Self::Count => "count",
+            Self::TooDeep => "too_deep",
+            Self::Unsuitable => "unsuitable",
+        }
+    }
+}
+
+/// Why a shape cannot be built; the fields say it as data.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ShapeError {
     /// A number breaks the rule of its parameter.
     #[error("{parameter} must be {rule}, got {value}")]
     Number {
         /// The parameter's name, as in scene files.
         parameter: Cow<'static, str>,
-        /// What it must be: "positive", "at most the radius 0.1 m".
+        /// The rule: "positive", "at most the radius 0.1 m".
         rule: Cow<'static, str>,
-        /// What it was.
+        /// The number given.
         value: Quantity,
     },
     /// A list is too short or too long.
@@ -66,15 +95,15 @@ pub enum ShapeError {
     Count {
         /// The parameter's name, as in scene files.
         parameter: Cow<'static, str>,
-        /// What it must have: "at least 3 points".
+        /// The rule: "at least 3 points".
         rule: Cow<'static, str>,
-        /// How many there were.
+        /// The number of items given.
         count: usize,
     },
     /// Operators are nested too deeply.
     #[error("shapes are nested {depth} deep, at most {limit} are allowed")]
     TooDeep {
-        /// The depth after nested unions were flattened.
+        /// The depth, after nested booleans were flattened.
         depth: usize,
         /// The largest depth allowed.
         limit: usize,
@@ -84,12 +113,33 @@ pub enum ShapeError {
     Unsuitable {
         /// The operator's name, as in scene files.
         operator: &'static str,
-        /// What is missing: "a shape with bounds".
+        /// The missing property: "a shape with bounds".
         needs: Cow<'static, str>,
     },
 }
 
 impl ShapeError {
+    /// The kind of the error.
+    ///
+    /// ```
+    /// use palpate_field::{Quantity, Shape, ShapeError, ShapeErrorKind, Unit};
+    ///
+    /// let error = Shape::sphere(-0.02).unwrap_err();
+    /// assert_eq!(error.kind(), ShapeErrorKind::Number);
+    /// let ShapeError::Number { parameter, rule, value, .. } = error else { unreachable!() };
+    /// assert_eq!((&*parameter, &*rule), ("radius", "positive"));
+    /// assert_eq!(value, Quantity(-0.02, Unit::Metre));
+    /// ```
+    #[must_use]
+    pub const fn kind(&self) -> ShapeErrorKind {
+        match self {
+            Self::Number { .. } => ShapeErrorKind::Number,
+            Self::Count { .. } => ShapeErrorKind::Count,
+            Self::TooDeep { .. } => ShapeErrorKind::TooDeep,
+            Self::Unsuitable { .. } => ShapeErrorKind::Unsuitable,
+        }
+    }
+
     /// `parameter` breaks `rule`.
     pub fn number(
         parameter: impl Into<Cow<'static, str>>,

@@ -5,27 +5,34 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod bounds;
+pub mod catalogue;
+mod convert;
 mod error;
 pub mod field;
 pub mod kernel;
 mod machine;
 mod mass;
+pub mod node;
 pub mod operator;
 mod pose;
 mod promise;
 pub mod scalar;
 mod shape;
+mod strided;
 mod vector;
 
 pub use bounds::{Aabb, BoundingBall, Bounds};
-pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, Unit};
+pub use error::{LARGEST_LENGTH, Quantity, SMALLEST_LENGTH, ShapeError, ShapeErrorKind, Unit};
 pub use field::CustomField;
+pub use field::MAX_DEPTH;
 pub use kernel::Kernel;
 pub use machine::{
     BLOCK, Block, Column, Gradients, InstructionSet, Lane, LaneArray, Lanes, ModelLanes, SHORT,
 };
 pub use mass::{Mass, MassLimits};
+pub use node::Node;
 pub use pose::{Pose, Rotation};
 pub use promise::{Promise, Quality, Rounding};
-pub use shape::{MAX_DEPTH, Shape};
+pub use shape::Shape;
+pub use strided::{Layout, Strided, StridedMut};
 pub use vector::{Point, Vector};

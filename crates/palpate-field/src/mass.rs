@@ -25,20 +25,21 @@ use crate::scalar::Model;
 use crate::shape::Shape;
 use crate::vector::{Point, Vector};
 
-/// What the gradient of a model is raised to, in parts of its largest component, so
-/// that no division is by zero; the planes are moved apart by as much.
+/// The least component of a model's gradient, relative to the largest: smaller ones are
+/// raised to it, so that nothing is divided by zero, and the planes are moved apart to
+/// make up for it.
 const FLATTEST: f64 = 1e-4;
 
 /// Rounding of the closed form, in parts of the volume of the cell: its terms are up to
 /// [`FLATTEST`]⁻² times as large as their sum.
 const CANCELLATION: f64 = 1e-7;
 
-/// How far to go.
+/// The error at which [`Shape::mass`] stops, and the work after which it gives up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassLimits {
-    /// The error of the volume, in parts of it, at which to stop.
+    /// The relative error of the volume at which to stop.
     pub tolerance: f64,
-    /// The most cells that are looked at.
+    /// The largest number of cells evaluated.
     pub cells: usize,
 }
 
@@ -53,6 +54,7 @@ impl Default for MassLimits {
 ///
 /// In the plane a body is one metre thick: mass is in kg for each metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Mass<const D: usize> {
     /// The volume [m³], or area [m²].
     pub volume: f64,
@@ -244,7 +246,7 @@ impl<const D: usize> MassCell<D> {
     }
 }
 
-/// What is inside of a cell.
+/// The part of a cell that is inside.
 #[derive(Clone, Copy, Debug)]
 struct Filling<const D: usize> {
     cell: MassCell<D>,
@@ -369,8 +371,8 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// Which cells to cut so that what is unsure of the others is at most `left`: those with
-/// at least so much; `most` of them at most, infinity if none.
+/// The unsure volume from which on cells are cut, so that the other cells together have
+/// at most `left` and no more than `most` are cut; infinity if none is.
 fn worth_cutting<const D: usize>(fillings: &[Filling<D>], left: f64, most: usize) -> f64 {
     let mut unsure: Vec<f64> =
         fillings.iter().map(|filling| filling.unsure).filter(|unsure| *unsure > 0.0).collect();
@@ -391,7 +393,7 @@ fn worth_cutting<const D: usize>(fillings: &[Filling<D>], left: f64, most: usize
     unsure.get(larger).copied().unwrap_or(f64::INFINITY)
 }
 
-/// What was summed so far.
+/// The sum over the cells that are done.
 struct Total<const D: usize> {
     moments: Moments<D>,
     unsure: f64,

@@ -9,10 +9,11 @@
 use std::ops::Mul;
 
 use crate::error::{ShapeError, Unit, finite};
+use crate::scalar::{Float, Scalar};
 use crate::vector::{Point, Vector, array};
 
-/// How far the columns of a matrix may be from orthonormal to be taken as a
-/// rotation: what remains of numbers written with seven digits.
+/// The largest deviation from orthonormal at which a matrix is accepted as a rotation:
+/// the rounding of numbers written with seven digits.
 const ORTHONORMAL_TOLERANCE: f64 = 1e-6;
 
 /// A rotation about the origin.
@@ -63,6 +64,17 @@ impl<const D: usize> Rotation<D> {
         }
         let determinant = determinant(&matrix);
         if determinant > 0.0 { Ok(Self { matrix }) } else { Err(wrong(determinant)) }
+    }
+
+    /// The rotation whose matrix has exactly these rows: those of another rotation, which
+    /// [`matrix`](Self::matrix) gave.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_matrix`](Self::from_matrix), which makes rows orthonormal that are not.
+    pub fn from_rows(rows: [[f64; D]; D]) -> Result<Self, ShapeError> {
+        Self::from_matrix(rows)?;
+        Ok(Self { matrix: rows })
     }
 
     /// The rotation that undoes this one.
@@ -213,6 +225,7 @@ impl Rotation<3> {
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<const D: usize> {
     /// The rotation, applied first.
     pub rotation: Rotation<D>,
@@ -245,14 +258,14 @@ impl<const D: usize> Pose<D> {
         Self::new(rotation, Vector::ZERO)
     }
 
-    /// Where the motion takes a point.
+    /// The image of a point.
     #[inline]
     #[must_use]
     pub fn transform_point(&self, point: Point<D>) -> Point<D> {
         self.rotation.rotate(point) + self.translation
     }
 
-    /// Where the motion takes a direction: the rotation alone.
+    /// The image of a direction: rotated, not moved.
     #[inline]
     #[must_use]
     pub fn transform_vector(&self, vector: Vector<f64, D>) -> Vector<f64, D> {
@@ -296,56 +309,56 @@ impl<const D: usize> Mul for Pose<D> {
     }
 }
 
-impl From<glam::DAffine2> for Pose<2> {
-    /// Takes the angle of the matrix: scale and shear are dropped.
-    fn from(affine: glam::DAffine2) -> Self {
-        let (_, angle, translation) = affine.to_scale_angle_translation();
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let rotation = Rotation { matrix: [[cos, -sin], [sin, cos]] };
-        Self::new(rotation, translation.into())
-    }
+/// The change of coordinates from the world to a placed body.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<const D: usize> {
+    /// The pose it was made from.
+    pub world_from_body: Pose<D>,
+    /// The same numbers in single precision.
+    single: Single<D>,
 }
 
-impl From<Pose<2>> for glam::DAffine2 {
-    fn from(pose: Pose<2>) -> Self {
-        Self::from_angle_translation(pose.rotation.angle(), pose.translation.into())
-    }
+/// A pose in single precision.
+#[derive(Clone, Copy, Debug)]
+struct Single<const D: usize> {
+    translation: [f32; D],
+    rows: [[f32; D]; D],
 }
 
-impl From<Pose<3>> for glam::DAffine3 {
-    fn from(pose: Pose<3>) -> Self {
-        Self::from_rotation_translation(pose.rotation.into(), pose.translation.into())
-    }
+/// A column of a matrix, of its rows.
+#[inline(always)]
+fn column<S: Float, const D: usize>(rows: &[[S; D]; D], k: usize) -> [S; D] {
+    array!(i < D => rows[i][k])
 }
 
-impl TryFrom<glam::DAffine3> for Pose<3> {
-    type Error = ShapeError;
-
-    /// The matrix must be a rotation: scale and shear are refused.
-    fn try_from(affine: glam::DAffine3) -> Result<Self, ShapeError> {
-        Ok(Self::new(affine.matrix3.try_into()?, affine.translation.into()))
+impl<const D: usize> Placement<D> {
+    /// The change of coordinates to a body at `world_from_body`.
+    #[must_use]
+    pub fn new(world_from_body: Pose<D>) -> Self {
+        let mut rows = [[0.0; D]; D];
+        for (single, row) in rows.iter_mut().zip(world_from_body.rotation.matrix()) {
+            *single = array!(i < D => row[i] as f32);
+        }
+        let translation = array!(i < D => world_from_body.translation[i] as f32);
+        Self { world_from_body, single: Single { translation, rows } }
     }
-}
 
-impl From<Rotation<3>> for glam::DQuat {
-    fn from(rotation: Rotation<3>) -> Self {
-        Self::from_array(rotation.quaternion())
+    /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
+    #[inline(always)]
+    pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
+        let Pose { rotation, translation } = &self.world_from_body;
+        let single = &self.single;
+        let q = array!(i < D => p.0[i].minus_stored(translation[i], single.translation[i]));
+        Vector(array!(k < D => {
+            S::stored_sum(q, &column(rotation.matrix(), k), &column(&single.rows, k))
+        }))
     }
-}
 
-impl TryFrom<glam::DQuat> for Rotation<3> {
-    type Error = ShapeError;
-
-    fn try_from(quaternion: glam::DQuat) -> Result<Self, ShapeError> {
-        Self::from_quaternion(quaternion.to_array())
-    }
-}
-
-impl TryFrom<glam::DMat3> for Rotation<3> {
-    type Error = ShapeError;
-
-    fn try_from(matrix: glam::DMat3) -> Result<Self, ShapeError> {
-        Self::from_matrix(matrix.transpose().to_cols_array_2d())
+    /// `R·v`: a gradient in the body's frame, back in the world's.
+    #[inline(always)]
+    pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
+        let rows = self.world_from_body.rotation.matrix();
+        Vector(array!(i < D => T::stored_sum(v.0, &rows[i], &self.single.rows[i])))
     }
 }
 
@@ -371,17 +384,21 @@ mod tests {
         ] {
             let rotation = Rotation::from_quaternion(q).unwrap();
             let again = Rotation::from_quaternion(rotation.quaternion()).unwrap();
-            let pose = Pose::new(rotation, Vector([1.0, 2.0, 3.0]));
-            let from_glam = Pose::try_from(glam::DAffine3::from(pose)).unwrap();
-            assert_eq!(from_glam.translation, pose.translation);
-            let from_glam = from_glam.rotation;
             for i in 0..3 {
                 for k in 0..3 {
                     assert!((rotation.matrix[i][k] - again.matrix[i][k]).abs() < 1e-15);
-                    assert!((rotation.matrix[i][k] - from_glam.matrix[i][k]).abs() < 1e-15);
                 }
             }
         }
+    }
+
+    #[test]
+    fn rows_are_kept_to_the_bit() {
+        let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.8).unwrap();
+        let turn = turn * turn * turn;
+        assert_eq!(Rotation::from_rows(*turn.matrix()), Ok(turn));
+        assert!(Rotation::from_rows([[1.0, 0.1], [0.0, 1.0]]).is_err());
+        assert!(Rotation::from_rows([[f64::NAN, 0.0], [0.0, 1.0]]).is_err());
     }
 
     #[test]

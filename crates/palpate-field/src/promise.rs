@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a field's distance says about the true distance.
+//! Promises: how a field's value relates to the true distance.
+
+use std::fmt;
 
 use crate::bounds::{BoundingBall, Bounds};
 use crate::pose::Pose;
 use crate::scalar::Scalar;
 use crate::vector::Point;
 
-/// What the value `f` of a field says about `d`, the distance to its surface.
+/// How the value `f` of a field relates to `d`, the distance to its surface.
 ///
 /// Ordered from the strongest promise to the weakest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
     /// `|f| = d`.
     Exact,
@@ -20,6 +23,16 @@ pub enum Quality {
     /// `|f| ≤ L·d` with the field's Lipschitz constant `L`: divide before
     /// stepping.
     Lipschitz,
+}
+
+impl fmt::Display for Quality {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Exact => "exact",
+            Self::Bound => "a bound",
+            Self::Lipschitz => "Lipschitz",
+        })
+    }
 }
 
 impl Quality {
@@ -44,6 +57,7 @@ impl Quality {
 /// Composed per node from the count of its rounded operations, and checked
 /// against double-double arithmetic on random trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rounding {
     /// The error at the origin [m].
     pub constant: f64,
@@ -104,8 +118,9 @@ impl Rounding {
     }
 }
 
-/// What a field promises about its values.
+/// All that a field promises about its values.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Promise<const D: usize> {
     /// The quality where `f > 0`.
     pub outside: Quality,
@@ -113,17 +128,18 @@ pub struct Promise<const D: usize> {
     pub inside: Quality,
     /// The least known `L` with `|f(p) − f(q)| ≤ L‖p − q‖`.
     pub lipschitz: f64,
-    /// Where `lipschitz` holds; everywhere if `None`.
+    /// The ball in which `lipschitz` holds; everywhere if `None`.
     pub region: Option<BoundingBall<D>>,
     /// Bounds of the set `f ≤ 0`; `None` if it has none.
     pub bounds: Option<Bounds<D>>,
     /// `true` if `f` is at least the distance to both bounds, everywhere outside
-    /// them. Exact fields are; what is not is guarded by
-    /// [`operator::guard`](crate::operator::guard) where an operator needs it.
+    /// them. Exact fields are; others are raised to the distance to
+    /// their box where an operator needs it.
     pub above_bounds: bool,
     /// `true` if `f` is a convex function.
     pub convex: bool,
     /// For each axis, `true` if mirroring the axis changes nothing.
+    #[cfg_attr(feature = "serde", serde(with = "crate::convert::serde"))]
     pub symmetric: [bool; D],
     /// `true` if points with `f < 0` may exist.
     pub has_interior: bool,
@@ -132,6 +148,37 @@ pub struct Promise<const D: usize> {
     pub reach: f64,
     /// The absolute error of `distance` in double precision.
     pub rounding: Rounding,
+}
+
+impl<const D: usize> fmt::Display for Promise<D> {
+    /// Says the qualities, the Lipschitz constant and the bounds.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let row = Shape::circle(0.5)? | Shape::circle(0.5)?.translated([1.5, 0.0])?;
+    /// assert_eq!(
+    ///     row.promise().to_string(),
+    ///     "exact outside, a bound inside, Lipschitz constant 1, \
+    ///      within [-0.5, -0.5] to [2.0, 0.5] m",
+    /// );
+    /// # Ok(())
+    /// # }
+    /// ```
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { outside, inside, lipschitz, .. } = self;
+        write!(f, "{outside} outside, {inside} inside, Lipschitz constant {lipschitz}")?;
+        if let Some(region) = self.region {
+            write!(f, " within {} m of {:?}", region.radius, region.centre.0)?;
+        }
+        match self.bounds {
+            Some(Bounds { aabb, .. }) => {
+                write!(f, ", within {:?} to {:?} m", aabb.min.0, aabb.max.0)
+            }
+            None => f.write_str(", without bounds"),
+        }
+    }
 }
 
 impl<const D: usize> Promise<D> {

@@ -231,30 +231,6 @@ impl<const D: usize> SubAssign for Vector<f64, D> {
     }
 }
 
-impl From<glam::DVec2> for Vector<f64, 2> {
-    fn from(v: glam::DVec2) -> Self {
-        Self(v.to_array())
-    }
-}
-
-impl From<Vector<f64, 2>> for glam::DVec2 {
-    fn from(v: Vector<f64, 2>) -> Self {
-        Self::from_array(v.0)
-    }
-}
-
-impl From<glam::DVec3> for Vector<f64, 3> {
-    fn from(v: glam::DVec3) -> Self {
-        Self(v.to_array())
-    }
-}
-
-impl From<Vector<f64, 3>> for glam::DVec3 {
-    fn from(v: Vector<f64, 3>) -> Self {
-        Self::from_array(v.0)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::Vector;

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Entry, RegularStar, Torus};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::scalar::{Model, Scalar};
 use palpate_field::{
     BLOCK, Block, Column, Gradients, Point, Pose, Promise, Rotation, SHORT, Shape, ShapeError,
@@ -140,15 +140,15 @@ fn every_operator<const D: usize>(
         Shape::intersection([Shape::union(pair())?, wavy])?,
         leaf.clone().difference([moved.clone()])?,
         Shape::symmetric_difference(pair())?,
-        Shape::smooth_union(pair(), Smooth::Quadratic, 0.05)?,
-        Shape::smooth_union([moved.clone(), other.clone()], Smooth::Cubic, 0.05)?,
+        Shape::smooth_union(pair(), Profile::Quadratic, 0.05)?,
+        Shape::smooth_union([moved.clone(), other.clone()], Profile::Cubic, 0.05)?,
         leaf.clone().offset(0.1)?.shell(0.05)?,
         moved.elongated([0.3; D])?.offset(0.05)?,
         other.clone().translated(Vector::constant(0.5))?.mirrored(0)?,
         leaf.scaled(0.5)?,
         crowd(64)?,
     ];
-    Shape::smooth_union([Shape::union(parts)?, other], Smooth::Quadratic, 0.01)
+    Shape::smooth_union([Shape::union(parts)?, other], Profile::Quadratic, 0.01)
 }
 
 #[test]

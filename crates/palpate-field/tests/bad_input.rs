@@ -14,7 +14,7 @@ use palpate_field::kernel::{
     RoundedCylinder, RoundedRectangle, RoundedX, Sheet, Simplex, SolidAngle, Stairs, Torus,
     Tunnel, UnevenCapsule, Vesica, VesicaSegment,
 };
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::scalar::Model;
 use palpate_field::{
     BLOCK, Block, Column, Gradients, MAX_DEPTH, Point, Pose, Rotation, Shape, ShapeError,
@@ -192,8 +192,8 @@ fn messages_of_operators_name_the_number_and_its_unit() -> Outcome {
         message(ball()?.offset(NAN)),
         message(ball()?.shell(-0.02)),
         message(ball()?.shell(0.0)),
-        message(Shape::smooth_union([ball()?, ball()?], Smooth::Quadratic, -0.02)),
-        message(Shape::smooth_union([ball()?], Smooth::Cubic, NAN)),
+        message(Shape::smooth_union([ball()?, ball()?], Profile::Quadratic, -0.02)),
+        message(Shape::smooth_union([ball()?], Profile::Cubic, NAN)),
         message(ball()?.scaled(0.0)),
         message(ball()?.scaled(-1.0)),
         message(ball()?.stretched([1.0, NAN, 1.0])),
@@ -205,7 +205,7 @@ fn messages_of_operators_name_the_number_and_its_unit() -> Outcome {
         message(Shape::union(none.clone())),
         message(Shape::intersection(none.clone())),
         message(Shape::symmetric_difference(none.clone())),
-        message(Shape::smooth_union(none, Smooth::Cubic, 0.1)),
+        message(Shape::smooth_union(none, Profile::Cubic, 0.1)),
         message(Rotation::from_angle(INFINITY)),
         message(Rotation::from_axis_angle(Vector([0.0; 3]), 1.0)),
         message(Rotation::from_quaternion([0.0; 4])),
@@ -324,7 +324,7 @@ fn bad_arguments_of_every_operator_are_refused() -> Outcome {
         assert!(ball()?.shell(x).is_err(), "shell {x}");
         assert!(ball()?.scaled(x).is_err(), "scaled {x}");
         assert!(flat.extruded(x).is_err(), "extruded {x}");
-        for smooth in [Smooth::Quadratic, Smooth::Root, Smooth::CircularGeometrical] {
+        for smooth in [Profile::Quadratic, Profile::Root, Profile::CircularGeometrical] {
             assert!(Shape::smooth_union(pair()?, smooth, x).is_err(), "smooth union {x}");
         }
         for axis in 0..3 {
@@ -372,7 +372,7 @@ fn nesting_beyond_the_limit_is_refused() -> Outcome {
         ("intersection", Shape::intersection(both())),
         ("difference", shape.clone().difference([ball()?])),
         ("symmetric difference", Shape::symmetric_difference(both())),
-        ("smooth union", Shape::smooth_union(both(), Smooth::Cubic, 0.1)),
+        ("smooth union", Shape::smooth_union(both(), Profile::Cubic, 0.1)),
         ("scaled", shape.clone().scaled(2.0)),
         ("stretched", shape.clone().stretched([1.0, 2.0, 1.0])),
         ("elongated", shape.clone().elongated([0.1; 3])),

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use palpate_field::kernel::{
     Ball, Cone, Cuboid, Cylinder, Ellipsoid, HalfSpace, Polygon, Segment, Simplex, Torus,
 };
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Mass, MassLimits, Point, Pose, Rotation, Shape, ShapeError, Vector};
 
 const TOLERANCE: f64 = 2e-3;
@@ -126,7 +126,7 @@ fn bounds_are_enough() -> Result<(), ShapeError> {
     let [a, b] = balls;
     let (a, b) = (a?, b?);
     let sharp = mass(&Shape::union([a.clone(), b.clone()])?, 1.0);
-    let smooth = mass(&Shape::smooth_union([a, b], Smooth::Cubic, 0.02)?, 1.0);
+    let smooth = mass(&Shape::smooth_union([a, b], Profile::Cubic, 0.02)?, 1.0);
     assert!(smooth.volume - smooth.volume_error > sharp.volume + sharp.volume_error);
     assert!(smooth.volume < 4.0 / 3.0 * PI * 0.45_f64.powi(3));
     Ok(())

@@ -7,7 +7,7 @@ use palpate_field::kernel::{
     Arc, Ball, CoolS, CuboidFrame, CylinderApproximation, DeathStar, Ellipsoid, HexagonalPrism,
     Moon, Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
 };
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::scalar::{Cubic, Model, Scalar};
 use palpate_field::{
     BLOCK, Block, Column, Kernel, Point, Quantity, Shape, ShapeError, Unit, Vector,
@@ -281,7 +281,7 @@ fn models_of_nested_smooth_unions_stay_near_their_members() -> Outcome {
     let ball = || Ball::new(0.5).map(Shape::<3>::from_kernel);
     let mut shape = ball()?;
     for _ in 0..12 {
-        shape = Shape::smooth_union([shape, ball()?], Smooth::Cubic, 1e-3)?;
+        shape = Shape::smooth_union([shape, ball()?], Profile::Cubic, 1e-3)?;
     }
     let over = model(&shape, Vector([3.0, 0.5, -0.5]), [1.0, 4.0, 2.0]);
     assert!(over.lower < 100.0 && over.upper < 100.0, "{over:?}");

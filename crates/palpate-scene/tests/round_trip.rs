@@ -90,15 +90,14 @@ fn every_primitive_comes_back_as_the_same_field() {
         let scene = Scene::from_json(&alone(&known, Dimension::Two).to_json()).unwrap();
         let World::Planar(world) = scene.build().unwrap() else { panic!("not planar") };
         let shape: Shape<2> = entry.build(&known.arguments).unwrap();
-        let at =
-            |shape: &Shape<2>, i: usize| shape.distance([samples[i][0], samples[i][1]].into());
+        let at = |shape: &Shape<2>, i: usize| shape.distance([samples[i][0], samples[i][1]]);
         check(known.name, &|i| at(&world.whole, i), &|i| at(&shape, i));
     }
     for (entry, known) in Entry::<3>::ALL.iter().zip(known(Entry::<3>::ALL)) {
         let scene = Scene::from_json(&alone(&known, Dimension::Three).to_json()).unwrap();
         let World::Spatial(world) = scene.build().unwrap() else { panic!("not spatial") };
         let shape: Shape<3> = entry.build(&known.arguments).unwrap();
-        let at = |shape: &Shape<3>, i: usize| shape.distance(samples[i].into());
+        let at = |shape: &Shape<3>, i: usize| shape.distance(samples[i]);
         check(known.name, &|i| at(&world.whole, i), &|i| at(&shape, i));
     }
 }
@@ -116,7 +115,7 @@ fn the_scenes_are_finite_everywhere_on_a_grid() {
                 let extent = bounds.max[axis] - bounds.min[axis];
                 bounds.min[axis] + extent * (1.5 * step - 0.25)
             });
-            let (distance, gradient) = whole.distance_gradient(point.into());
+            let (distance, gradient) = whole.distance_gradient(point);
             assert!(distance.is_finite() && gradient.is_finite(), "{name} at {point:?}");
             inside += usize::from(distance < 0.0);
         }

@@ -9,7 +9,7 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Parameter, ParameterKind};
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Copies, Profile};
 use palpate_field::{Point, Pose, Rotation, Shape, Vector};
 
 use crate::kernels::{Dimension, IntoShape, Space};
@@ -270,15 +270,15 @@ fn copies(u: &mut Unstructured<'_>, width: f64) -> Result<Copies> {
 }
 
 /// A profile of smooth booleans.
-fn profile(u: &mut Unstructured<'_>) -> Result<Smooth> {
+fn profile(u: &mut Unstructured<'_>) -> Result<Profile> {
     Ok(*u.choose(&[
-        Smooth::Quadratic,
-        Smooth::Cubic,
-        Smooth::Quartic,
-        Smooth::Circular,
-        Smooth::Root,
-        Smooth::Exponential,
-        Smooth::CircularGeometrical,
+        Profile::Quadratic,
+        Profile::Cubic,
+        Profile::Quartic,
+        Profile::Circular,
+        Profile::Root,
+        Profile::Exponential,
+        Profile::CircularGeometrical,
     ])?)
 }
 

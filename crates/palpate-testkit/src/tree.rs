@@ -8,7 +8,7 @@
 //! `palpate-field` must agree with.
 
 use palpate_field::kernel::{Argument, Primitive};
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Copies, Profile};
 use palpate_field::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
 use palpate_field::{Pose, Shape, ShapeError, Vector};
 
@@ -37,7 +37,7 @@ pub enum Tree<const D: usize> {
     /// What is in an odd number.
     SymmetricDifference(Vec<Self>),
     /// A boolean with its creases filled or cut off by a width [m].
-    Smooth(Boolean, Vec<Self>, Smooth, f64),
+    Smooth(Boolean, Vec<Self>, Profile, f64),
     /// Grown by a distance [m].
     Offset(Box<Self>, f64),
     /// A shell of a thickness [m].
@@ -327,15 +327,15 @@ where
 }
 
 /// The smooth minimum of a profile by its width.
-fn smooth_min<S: Scalar>(profile: Smooth, a: S, b: S, width: f64) -> S {
+fn smooth_min<S: Scalar>(profile: Profile, a: S, b: S, width: f64) -> S {
     match profile {
-        Smooth::Quadratic => a.smooth_min::<Quadratic>(b, 4.0 * width),
-        Smooth::Cubic => a.smooth_min::<Cubic>(b, 6.0 * width),
-        Smooth::Quartic => a.smooth_min::<Quartic>(b, 16.0 / 3.0 * width),
-        Smooth::Circular => a.smooth_min::<Circular>(b, CIRCLE * width),
-        Smooth::Root => a.smooth_min::<Root>(b, 2.0 * width),
-        Smooth::Exponential => a.smooth_min::<Exponential>(b, width),
-        Smooth::CircularGeometrical => {
+        Profile::Quadratic => a.smooth_min::<Quadratic>(b, 4.0 * width),
+        Profile::Cubic => a.smooth_min::<Cubic>(b, 6.0 * width),
+        Profile::Quartic => a.smooth_min::<Quartic>(b, 16.0 / 3.0 * width),
+        Profile::Circular => a.smooth_min::<Circular>(b, CIRCLE * width),
+        Profile::Root => a.smooth_min::<Root>(b, 2.0 * width),
+        Profile::Exponential => a.smooth_min::<Exponential>(b, width),
+        Profile::CircularGeometrical => {
             let (zero, radius) = (S::constant(0.0), S::constant(CIRCLE * width));
             radius.max(a.min(b)) - S::norm([(radius - a).max(zero), (radius - b).max(zero)])
         }

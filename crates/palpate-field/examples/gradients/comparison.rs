@@ -11,7 +11,7 @@
 use std::fmt::Write;
 
 use palpate_field::kernel::{Ball, Cuboid, RegularStar};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Point, Shape, ShapeError, Vector};
 
 /// A direction of length one; none where a method has none.
@@ -51,7 +51,7 @@ pub(crate) fn cases() -> Result<[Case; 4], ShapeError> {
     let star = Shape::from_kernel(star).translated(Vector(STAR.0))?;
     let rectangle = Shape::from_kernel(Cuboid::new(Vector(BOX.1) * 2.0)?);
     let both = [star.clone(), disc.clone()];
-    let joined = Shape::smooth_union(both, Smooth::Quadratic, 0.25 * REACH)?;
+    let joined = Shape::smooth_union(both, Profile::Quadratic, 0.25 * REACH)?;
     let case = |name, shape, truth, has_closest_vector| Case {
         name,
         shape,

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that fold an operation over their children's answers.
+//! Fields that fold an operation over their children's answers.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+    placed,
+};
+use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
-use crate::shape::Shape;
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// An operation on two answers.
@@ -20,12 +23,40 @@ pub(crate) trait Combine: Debug + Send + Sync + 'static {
     fn combine<S: Scalar>(&self, a: S, b: S) -> S;
 }
 
+/// Union: `min(a, b)`.
+#[derive(Clone, Debug)]
+pub(crate) struct Minimum;
+
+impl Combine for Minimum {
+    #[inline(always)]
+    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
+        a.min(b)
+    }
+}
+
 /// `((c₀ ∘ c₁) ∘ c₂) ∘ …` over at least one child.
 #[derive(Debug)]
 pub(crate) struct Combined<O, const D: usize> {
-    pub(crate) operation: O,
-    pub(crate) children: Vec<Shape<D>>,
-    pub(crate) promise: Promise<D>,
+    operation: O,
+    children: Vec<SharedField<D>>,
+    promise: Promise<D>,
+    depth: usize,
+}
+
+impl<O: Combine + Clone, const D: usize> Combined<O, D> {
+    /// The operation over at least one child.
+    ///
+    /// # Errors
+    ///
+    /// If the children are nested too deeply.
+    pub(crate) fn shared(
+        operation: O,
+        children: Vec<SharedField<D>>,
+        promise: Promise<D>,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let depth = depth_over(&children)?;
+        Ok(Arc::new(Self { operation, children, promise, depth }))
+    }
 }
 
 #[inline(always)]
@@ -65,18 +96,18 @@ where
     dyn Field<D>: EvaluatePoint<T, D>,
 {
     fn distance(&self, x: T, y: T, z: T) -> T {
-        let mut distance = self.children[0].field().distance(x, y, z);
+        let mut distance = self.children[0].distance(x, y, z);
         for child in &self.children[1..] {
-            distance = self.operation.combine(distance, child.field().distance(x, y, z));
+            distance = self.operation.combine(distance, child.distance(x, y, z));
         }
         distance
     }
 
     fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
-        let mut distance = self.children[0].field().distance_gradient(x, y, z, gradient);
+        let mut distance = self.children[0].distance_gradient(x, y, z, gradient);
         let mut other = Vector([T::constant(0.0); D]);
         for child in &self.children[1..] {
-            let value = child.field().distance_gradient(x, y, z, &mut other);
+            let value = child.distance_gradient(x, y, z, &mut other);
             (distance, *gradient) =
                 differentiate(&self.operation, (distance, *gradient), (value, other));
         }
@@ -110,7 +141,7 @@ impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
 
     pub(super) fn push<const D: usize>(
         &mut self,
-        child: &Shape<D>,
+        child: &SharedField<D>,
         p: &Block<S, D, W>,
         count: usize,
     ) where
@@ -118,10 +149,10 @@ impl<'a, S: Lane, O: Combine, const W: usize> ValueFold<'a, S, O, W> {
     {
         if self.empty {
             let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
-            child.field().distances(p, count, first);
+            child.distances(p, count, first);
             self.empty = false;
         } else {
-            child.field().distances(p, count, &mut self.next);
+            child.distances(p, count, &mut self.next);
             let job = Values(self.operation);
             if self.in_out {
                 run(&job, &*self.out, &self.next, count, &mut self.scratch);
@@ -165,13 +196,13 @@ where
         Self { operation, out, scratch, next, empty: true, in_out }
     }
 
-    pub(super) fn push(&mut self, child: &Shape<D>, p: &Block<T, D, W>, count: usize) {
+    pub(super) fn push(&mut self, child: &SharedField<D>, p: &Block<T, D, W>, count: usize) {
         if self.empty {
             let first = if self.in_out { &mut *self.out } else { &mut self.scratch };
-            child.field().distances_gradients(p, count, first);
+            child.distances_gradients(p, count, first);
             self.empty = false;
         } else {
-            child.field().distances_gradients(p, count, &mut self.next);
+            child.distances_gradients(p, count, &mut self.next);
             let job = ValuesAndGradients(self.operation);
             if self.in_out {
                 run(&job, &*self.out, &self.next, count, &mut self.scratch);
@@ -220,14 +251,14 @@ where
 
 /// The children moved by `pose`, if a motion may go into their operator.
 pub(super) fn placed_children<const D: usize>(
-    children: &[Shape<D>],
+    children: &[SharedField<D>],
     pose: &Pose<D>,
-) -> Option<Vec<Shape<D>>> {
-    let unplaced: usize = children.iter().map(|child| child.field().unplaced()).sum();
+) -> Option<Vec<SharedField<D>>> {
+    let unplaced: usize = children.iter().map(|child| child.unplaced()).sum();
     if unplaced > 1 {
         return None;
     }
-    children.iter().map(|child| child.clone().placed(pose).ok()).collect()
+    children.iter().map(|child| placed(child, pose).ok()).collect()
 }
 
 impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
@@ -235,16 +266,26 @@ impl<O: Combine + Clone, const D: usize> Field<D> for Combined<O, D> {
         &self.promise
     }
 
+    fn depth(&self) -> usize {
+        self.depth
+    }
+
     fn unplaced(&self) -> usize {
-        self.children.iter().map(|child| child.field().unplaced()).sum()
+        self.children.iter().map(|child| child.unplaced()).sum()
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let (first, others) = self.children.split_first()?;
+        let mut distance = first.record(p)?;
+        for child in others {
+            distance = self.operation.combine(distance, child.record(p)?);
+        }
+        Some(distance)
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
         let Some(children) = placed_children(&self.children, pose) else { return Err(self) };
-        let depth = Shape::deepest(&children) + 1;
         let promise = self.promise.placed(pose);
-        let operation = self.operation.clone();
-        Shape::from_operator(Self { operation, children, promise }, depth)
-            .map_err(|_| self as _)
+        Self::shared(self.operation.clone(), children, promise).map_err(|_| self as _)
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Fields that are not formulas: closures, and later grids and meshes.
+//! Fields of users that are not kernels.
 
 use std::sync::Arc;
 
@@ -9,14 +9,14 @@ use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
 use crate::machine::{Block, Column, Gradients, Lane};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Model};
+use crate::scalar::{Dual, Float, Model, Recorded};
 use crate::vector::{Point, Vector};
 
-/// A field that a user evaluates point by point in double precision.
+/// A field of a user, evaluated point by point in double precision.
 ///
 /// A closed formula is faster as a [`Kernel`](crate::kernel::Kernel): its blocks
-/// vectorise, its gradient and its model come by themselves. A `CustomField` is
-/// for what no formula gives. Cells are bounded by its Lipschitz constant.
+/// vectorise, and gradient and model follow from the formula. A `CustomField` is for
+/// data and algorithms. Its Lipschitz constant bounds it over cells.
 ///
 /// ```
 /// use palpate_field::{CustomField, Point, Promise, Shape, Vector};
@@ -49,7 +49,7 @@ pub trait CustomField<const D: usize>: std::fmt::Debug + Send + Sync + 'static {
     /// The signed distance at `p` [m] and its gradient, never NaN.
     fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>);
 
-    /// What the values promise.
+    /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
 }
 
@@ -149,6 +149,14 @@ impl<T: Float + Lane, F: CustomField<D>, const D: usize, const W: usize>
 impl<F: CustomField<D>, const D: usize> Field<D> for Custom<F> {
     fn promise(&self) -> &Promise<D> {
         self.0.promise()
+    }
+
+    fn depth(&self) -> usize {
+        1
+    }
+
+    fn record(&self, _p: Vector<Recorded, D>) -> Option<Recorded> {
+        None
     }
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {

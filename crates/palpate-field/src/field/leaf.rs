@@ -10,64 +10,10 @@ use crate::kernel::Kernel;
 use crate::machine::{
     Block, Boxes, Column, Gradients, Job, Lane, PointJob, SHORT, run, run_point,
 };
-use crate::pose::Pose;
+use crate::pose::{Placement, Pose};
 use crate::promise::Promise;
-use crate::scalar::{Float, Scalar, TurnedBoxes};
-use crate::shape::Shape;
-use crate::vector::{Vector, array};
-
-/// The change of coordinates from the world to a placed body.
-#[derive(Clone, Copy, Debug)]
-pub struct Placement<const D: usize> {
-    /// The pose it was made from.
-    pub world_from_body: Pose<D>,
-    /// The same numbers in single precision.
-    single: Single<D>,
-}
-
-/// A pose in single precision.
-#[derive(Clone, Copy, Debug)]
-struct Single<const D: usize> {
-    translation: [f32; D],
-    rows: [[f32; D]; D],
-}
-
-/// A column of a matrix, of its rows.
-#[inline(always)]
-fn column<S: Float, const D: usize>(rows: &[[S; D]; D], k: usize) -> [S; D] {
-    array!(i < D => rows[i][k])
-}
-
-impl<const D: usize> Placement<D> {
-    /// The change of coordinates to a body at `world_from_body`.
-    #[must_use]
-    pub fn new(world_from_body: Pose<D>) -> Self {
-        let mut rows = [[0.0; D]; D];
-        for (single, row) in rows.iter_mut().zip(world_from_body.rotation.matrix()) {
-            *single = array!(i < D => row[i] as f32);
-        }
-        let translation = array!(i < D => world_from_body.translation[i] as f32);
-        Self { world_from_body, single: Single { translation, rows } }
-    }
-
-    /// `Rᵀ(p − t)`: subtracting first keeps points near the body precise.
-    #[inline(always)]
-    pub fn to_body<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, D> {
-        let Pose { rotation, translation } = &self.world_from_body;
-        let single = &self.single;
-        let q = array!(i < D => p.0[i].minus_stored(translation[i], single.translation[i]));
-        Vector(array!(k < D => {
-            S::stored_sum(q, &column(rotation.matrix(), k), &column(&single.rows, k))
-        }))
-    }
-
-    /// `R·v`: a gradient in the body's frame, back in the world's.
-    #[inline(always)]
-    pub fn gradient_to_world<T: Float>(&self, v: Vector<T, D>) -> Vector<T, D> {
-        let rows = self.world_from_body.rotation.matrix();
-        Vector(array!(i < D => T::stored_sum(v.0, &rows[i], &self.single.rows[i])))
-    }
-}
+use crate::scalar::{Float, Model, Recorded, TurnedBoxes};
+use crate::vector::Vector;
 
 /// A kernel as a field.
 #[derive(Clone, Debug)]
@@ -82,18 +28,34 @@ impl<K: Kernel<D>, const D: usize> Leaf<K, D> {
         let promise = kernel.promise();
         Self { kernel, placement: None, promise }
     }
+}
 
-    /// The promise is made and moved in registers: all of it is inlined.
-    #[inline(always)]
-    pub(crate) fn at(kernel: K, world_from_body: &Pose<D>) -> Self {
-        let promise = kernel.promise().placed(world_from_body);
-        Self { kernel, placement: Some(Placement::new(*world_from_body)), promise }
-    }
+/// A number with which leaves are evaluated, by the best rule that a kernel has for it.
+trait Evaluate: Lane {
+    /// `kernel` at `p`.
+    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
+}
+
+macro_rules! evaluate {
+    ($($number:ty, $rule:ident;)*) => {
+        $(impl Evaluate for $number {
+            #[inline(always)]
+            fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
+                kernel.$rule(p)
+            }
+        })*
+    };
+}
+
+evaluate! {
+    f64, distance;
+    f32, distance;
+    Model, model;
 }
 
 struct Values<'a, K>(&'a K);
 
-impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
+impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Values<'_, K> {
     #[inline(always)]
     fn lane(&self, p: Vector<S, D>, (): ()) -> S {
         S::evaluate(self.0, p)
@@ -114,7 +76,7 @@ impl<T: Float, K: Kernel<D>, const D: usize> Job<Vector<T, D>, (), (T, Vector<T,
 /// A kernel where it is placed.
 struct Placed<'a, K, const D: usize>(&'a K, &'a Placement<D>);
 
-impl<S: Lane, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
+impl<S: Evaluate, K: Kernel<D>, const D: usize> Job<Vector<S, D>, (), S> for Placed<'_, K, D> {
     #[inline(always)]
     fn lane(&self, p: Vector<S, D>, (): ()) -> S {
         S::evaluate(self.0, self.1.to_body(p))
@@ -192,7 +154,7 @@ impl<T: Float, K: Kernel<D>, const D: usize> PointJob<T, Vector<T, D>> for Leaf<
     }
 }
 
-impl<S: Lane, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
+impl<S: Evaluate, K: Kernel<D>, const D: usize, const W: usize> EvaluateBlock<S, D, W>
     for Leaf<K, D>
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
@@ -240,22 +202,28 @@ impl<K: Kernel<D>, const D: usize> Field<D> for Leaf<K, D> {
         &self.promise
     }
 
+    fn depth(&self) -> usize {
+        1
+    }
+
     fn unplaced(&self) -> usize {
         usize::from(self.placement.is_none())
     }
 
-    fn placed(mut self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
-        let leaf = Arc::make_mut(&mut self);
-        let world_from_body = match &leaf.placement {
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let p = self.placement.as_ref().map_or(p, |placement| placement.to_body(p));
+        Some(self.kernel.distance(p))
+    }
+
+    fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
+        let world_from_body = match &self.placement {
             None => *pose,
-            Some(placement) => {
-                // From the kernel's promise, so that boxes do not grow twice.
-                leaf.promise = leaf.kernel.promise();
-                *pose * placement.world_from_body
-            }
+            Some(placement) => *pose * placement.world_from_body,
         };
-        leaf.promise = leaf.promise.placed(&world_from_body);
-        leaf.placement = Some(Placement::new(world_from_body));
-        Ok(Shape::from_node(self))
+        let kernel = self.kernel.clone();
+        // From the kernel's promise, so that boxes do not grow twice.
+        let promise = kernel.promise().placed(&world_from_body);
+        let placement = Some(Placement::new(world_from_body));
+        Ok(Arc::new(Self { kernel, placement, promise }))
     }
 }

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the engine calls: fields as objects.
+//! Fields as the searches and the servo evaluate them.
 //!
 //! A [`Field`] answers for one point, for a block of points with and without
 //! gradients, and for a block of cells. Leaves hold a
-//! [`Kernel`](crate::kernel::Kernel); operators are nodes that loop over their
-//! children's blocks. Nothing here allocates.
+//! [`Kernel`](crate::kernel::Kernel); operators loop over their children's
+//! blocks. Nothing here allocates.
 
 mod combine;
 mod custom;
 mod leaf;
 mod nearby;
+mod placed;
 mod remap;
 mod union;
 mod warp;
@@ -19,21 +20,46 @@ mod warp;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use crate::error::ShapeError;
 use crate::machine::{BLOCK, Block, Column, Gradients, Lane, SHORT};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Model};
-use crate::shape::Shape;
+use crate::scalar::{Float, Model, Recorded};
 use crate::vector::Vector;
 
-pub(crate) use combine::{Combine, Combined};
+pub use crate::pose::Placement;
+pub(crate) use combine::{Combine, Combined, Minimum};
 pub use custom::CustomField;
 pub(crate) use custom::{Custom, FromClosure};
 pub(crate) use leaf::Leaf;
-pub use leaf::Placement;
+pub(crate) use placed::placed;
 pub(crate) use remap::{Remap, Remapped};
 pub(crate) use union::Union;
 pub(crate) use warp::{Warp, Warped};
+
+/// The deepest nesting of fields: of operators, after nested booleans are flattened.
+///
+/// Each level of a block's evaluation needs at most 25 kB of stack.
+pub const MAX_DEPTH: usize = 64;
+
+/// A field that several shapes and fields may hold.
+pub type SharedField<const D: usize> = Arc<dyn Field<D>>;
+
+/// The depth of an operator over `children`.
+///
+/// # Errors
+///
+/// If it is more than [`MAX_DEPTH`].
+pub(crate) fn depth_over<'a, const D: usize>(
+    children: impl IntoIterator<Item = &'a SharedField<D>>,
+) -> Result<usize, ShapeError> {
+    let deepest = children.into_iter().map(|child| child.depth()).max().unwrap_or(0);
+    let depth = deepest + 1;
+    if depth > MAX_DEPTH {
+        return Err(ShapeError::TooDeep { depth, limit: MAX_DEPTH });
+    }
+    Ok(depth)
+}
 
 /// Answers for one point.
 ///
@@ -69,12 +95,12 @@ pub trait DifferentiateBlock<T: Float + Lane, const D: usize, const W: usize> {
     );
 }
 
-/// A shape after a motion that its node took into itself, or the node back.
-pub type Moved<const D: usize> = Result<Shape<D>, Arc<dyn Field<D>>>;
+/// A field after a motion that went into it, or the same field, if it takes none.
+pub type Moved<const D: usize> = Result<SharedField<D>, SharedField<D>>;
 
-/// A signed distance field, as the engine sees it.
+/// A signed distance field as an object.
 ///
-/// Implemented by the nodes of this crate; what users write is a
+/// Implemented by this crate alone; users write a
 /// [`Kernel`](crate::kernel::Kernel) or a [`CustomField`]. Scalar calls, blocks
 /// and instruction sets agree bit for bit within a number type.
 pub trait Field<const D: usize>:
@@ -91,30 +117,34 @@ pub trait Field<const D: usize>:
     + Send
     + Sync
 {
-    /// What the values promise.
+    /// The promise of the values.
     fn promise(&self) -> &Promise<D>;
 
-    /// The same shape moved by `pose`, if the motion can go into the node at no
-    /// cost; else the node back.
-    ///
-    /// A node that nobody else holds may change where it is.
+    /// How many operators are nested in the field, with the leaf; at most
+    /// [`MAX_DEPTH`].
+    fn depth(&self) -> usize;
+
+    /// The formula of the field at `p`; `None` where a [`CustomField`] is part of it.
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded>;
+
+    /// The field moved by `pose`, if the motion can go into it at no cost.
     ///
     /// # Errors
     ///
-    /// The node, if it takes no motion into itself.
+    /// The same field, if it takes no motion.
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D>;
 
-    /// How many changes of coordinates an evaluation would have more if a motion
-    /// went into the node instead of around it.
+    /// How many transforms more an evaluation has if a motion is pushed into the field
+    /// instead of wrapped around it.
     ///
-    /// A motion around a node is one change more too, and one that everything below
-    /// waits for: operators let it in where it adds at most that.
+    /// A motion around a field is one transform more too, and one that everything below
+    /// waits for: operators take a motion where it adds at most that.
     fn unplaced(&self) -> usize {
         1
     }
 
-    /// The members, if this is a sharp union: nested unions are flattened.
-    fn members(&self) -> Option<&[Shape<D>]> {
+    /// The members, if this is a sharp union: a union of unions has them all.
+    fn members(&self) -> Option<&[SharedField<D>]> {
         None
     }
 }

@@ -1,31 +1,30 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Which members of a union are near: the balls around them, in lines of members that
-//! are close together, and the balls around the lines.
+//! The search for members of a union near a place: a tree of two levels, with a ball
+//! around each member and one around each line of members that are close together.
 //!
-//! Single precision is enough: what it rounds is part of the slack that the union
-//! gives.
+//! Single precision is enough: the slack of the union covers its rounding.
 
+use super::SharedField;
 use crate::bounds::{Aabb, BoundingBall};
 use crate::machine::{BLOCK, Block, Column, Job, run};
 use crate::promise::Quality;
 use crate::scalar::Scalar;
-use crate::shape::Shape;
 use crate::vector::Vector;
 
-/// Below this many members, asking all is faster than choosing.
+/// With fewer members, evaluating all is faster than searching.
 const WORTH_CHOOSING: usize = 6;
 
-/// Gaps looked at together: a cache line of them.
+/// Members in a line: a cache line of gaps.
 const LINE: usize = 16;
 
-/// What is looked through to find the members near a place.
+/// The tree of balls that is searched.
 #[derive(Debug)]
 pub(super) enum Nearby<const D: usize> {
     /// The balls of up to [`BLOCK`] members.
     Flat(Box<Balls<D, BLOCK>>),
-    /// The balls of many members, and those around each line of them.
+    /// The balls of many members, in lines, and the ball around each line.
     Lines { around: Vec<Balls<D, BLOCK>>, lines: Vec<Balls<D, LINE>> },
 }
 
@@ -52,7 +51,7 @@ impl<const D: usize, const W: usize> Balls<D, W> {
         all
     }
 
-    /// How far each ball is from a place; infinite past the last.
+    /// The distance from a place to each ball; infinite past the last ball.
     #[inline(always)]
     fn gaps(&self, from: Vector<f32, D>) -> Column<f32, W> {
         let mut gaps = Column::scratch();
@@ -71,9 +70,9 @@ impl<const D: usize> Job<Vector<f32, D>, f32, f32> for ToBalls<D> {
     }
 }
 
-/// The ball that a member's values are nowhere below the signed distance to; of
-/// infinite radius if it has none, so that it is always near.
-fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
+/// A ball whose signed distance is a lower bound of the member's values; of infinite
+/// radius, and so always near, if the member promises none.
+fn ball_of<const D: usize>(member: &SharedField<D>) -> BoundingBall<D> {
     let promise = member.promise();
     let skippable = promise.above_bounds && promise.inside != Quality::Lipschitz;
     match &promise.bounds {
@@ -83,7 +82,7 @@ fn ball_of<const D: usize>(member: &Shape<D>) -> BoundingBall<D> {
 }
 
 /// A ball around the balls of a line, about the centre of their box.
-fn ball_around<const D: usize>(line: &[Shape<D>]) -> BoundingBall<D> {
+fn ball_around<const D: usize>(line: &[SharedField<D>]) -> BoundingBall<D> {
     let boxes = line.iter().map(|member| {
         let BoundingBall { centre, radius } = ball_of(member);
         Aabb { min: centre, max: centre }.grown(radius)
@@ -104,11 +103,11 @@ fn ball_around<const D: usize>(line: &[Shape<D>]) -> BoundingBall<D> {
 
 /// Sorts members so that each line of them is close together: halves of whole lines
 /// along the longest side of the box of their centres, again and again.
-fn gather<const D: usize>(members: &mut [Shape<D>]) {
+fn gather<const D: usize>(members: &mut [SharedField<D>]) {
     if members.len() <= LINE {
         return;
     }
-    let centre = |member: &Shape<D>| ball_of(member).centre;
+    let centre = |member: &SharedField<D>| ball_of(member).centre;
     let Some(spread) = Aabb::around(members.iter().map(centre)) else { return };
     let sides = spread.half_extents();
     let longest =
@@ -123,21 +122,21 @@ fn gather<const D: usize>(members: &mut [Shape<D>]) {
 }
 
 impl<const D: usize> Nearby<D> {
-    /// What finds the `members` that are near; `None` where asking all is faster.
+    /// The tree over `members`; `None` where evaluating all is faster.
     ///
-    /// Where there are many, they are sorted so that neighbours come together.
-    pub(super) fn new(members: &mut [Shape<D>]) -> Option<Self> {
+    /// Many members are sorted, so that neighbours share a line.
+    pub(super) fn new(members: &mut [SharedField<D>]) -> Option<Self> {
         if members.len() < WORTH_CHOOSING {
             return None;
         }
         if members.len() <= BLOCK {
             return Some(Self::Flat(Box::new(Balls::new(members.iter().map(ball_of)))));
         }
-        // Those that are always near come first, lest they make many lines so.
+        // Members without a ball come first: one in a line makes the whole line near.
         members.sort_by_key(|member| ball_of(member).radius.is_finite());
         let endless = members.iter().take_while(|m| !ball_of(m).radius.is_finite()).count();
         gather(&mut members[endless..]);
-        let lines: Vec<&[Shape<D>]> = members.chunks(LINE).collect();
+        let lines: Vec<&[SharedField<D>]> = members.chunks(LINE).collect();
         let around = lines
             .chunks(BLOCK)
             .map(|lines| Balls::new(lines.iter().map(|line| ball_around(line))));

@@ -1,31 +1,50 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that change their child's answer in place: offset, shell, guard.
+//! Fields that change their child's answer at the same point: offset, shell, guard.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+};
+use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
-use crate::shape::Shape;
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// A function of the point and the child's answer there.
 pub(crate) trait Remap<const D: usize>: Debug + Send + Sync + 'static {
-    /// What becomes of the child's answer.
+    /// The node's answer from the child's.
     fn value<S: Scalar>(&self, p: Vector<S, D>, child: S) -> S;
 }
 
 /// A child whose answers go through a [`Remap`].
 #[derive(Debug)]
 pub(crate) struct Remapped<M, const D: usize> {
-    pub(crate) map: M,
-    pub(crate) child: Shape<D>,
-    pub(crate) promise: Promise<D>,
+    map: M,
+    child: SharedField<D>,
+    promise: Promise<D>,
+    depth: usize,
+}
+
+impl<M: Remap<D>, const D: usize> Remapped<M, D> {
+    /// The `child` with its answers mapped.
+    ///
+    /// # Errors
+    ///
+    /// If the child is nested too deeply.
+    pub(crate) fn shared(
+        map: M,
+        child: SharedField<D>,
+        promise: Promise<D>,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let depth = depth_over([&child])?;
+        Ok(Arc::new(Self { map, child, promise, depth }))
+    }
 }
 
 #[inline(always)]
@@ -66,12 +85,12 @@ where
 {
     fn distance(&self, x: T, y: T, z: T) -> T {
         let p = Vector::of_coordinates(x, y, z);
-        self.map.value(p, self.child.field().distance(x, y, z))
+        self.map.value(p, self.child.distance(x, y, z))
     }
 
     fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
         let p = Vector::of_coordinates(x, y, z);
-        let child = self.child.field().distance_gradient(x, y, z, gradient);
+        let child = self.child.distance_gradient(x, y, z, gradient);
         let distance;
         (distance, *gradient) = differentiate(&self.map, p, child, *gradient);
         distance
@@ -85,7 +104,7 @@ where
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
         let mut child = Column::scratch();
-        self.child.field().distances(p, count, &mut child);
+        self.child.distances(p, count, &mut child);
         run(&Values(&self.map), p, &child, count, out);
     }
 }
@@ -102,7 +121,7 @@ where
         out: &mut Gradients<T, D, W>,
     ) {
         let mut child = Gradients::scratch();
-        self.child.field().distances_gradients(p, count, &mut child);
+        self.child.distances_gradients(p, count, &mut child);
         run(&ValuesAndGradients(&self.map), p, &child, count, out);
     }
 }
@@ -110,6 +129,14 @@ where
 impl<M: Remap<D>, const D: usize> Field<D> for Remapped<M, D> {
     fn promise(&self) -> &Promise<D> {
         &self.promise
+    }
+
+    fn depth(&self) -> usize {
+        self.depth
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        Some(self.map.value(p, self.child.record(p)?))
     }
 
     fn placed(self: Arc<Self>, _pose: &Pose<D>) -> Moved<D> {

@@ -8,16 +8,17 @@
 
 use std::sync::Arc;
 
-use super::combine::{GradientFold, ValueFold, placed_children};
+use super::combine::{Combine, GradientFold, Minimum, ValueFold, placed_children};
 use super::nearby::Nearby;
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+};
 use crate::bounds::BoundingBall;
+use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Lane};
-use crate::operator::boolean::Smaller;
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Float, Scalar};
-use crate::shape::Shape;
+use crate::scalar::{Float, Recorded, Scalar};
 use crate::vector::Vector;
 
 /// Beyond this distance from the origin [m], squares of lengths near the limits
@@ -27,15 +28,16 @@ const FAR: f64 = 1e15;
 /// The union of at least one member.
 #[derive(Debug)]
 pub(crate) struct Union<const D: usize> {
-    members: Vec<Shape<D>>,
-    /// None where asking all is faster than choosing.
+    members: Vec<SharedField<D>>,
+    /// `None` where evaluating all members is faster than searching.
     nearby: Option<Nearby<D>>,
     slack: Slack,
     promise: Promise<D>,
+    depth: usize,
 }
 
-/// How much smaller than its ball's distance a member's value may come out: the
-/// rounding of the balls, and of the members themselves in single precision.
+/// How far rounding may bring a member's value below the distance to its ball: that of
+/// the balls, and of the members in single precision.
 #[derive(Clone, Copy, Debug)]
 struct Slack {
     constant: f64,
@@ -43,8 +45,16 @@ struct Slack {
 }
 
 impl<const D: usize> Union<D> {
-    pub(crate) fn new(members: Vec<Shape<D>>, promise: Promise<D>) -> Self {
-        let mut members = members;
+    /// The union of at least one member.
+    ///
+    /// # Errors
+    ///
+    /// If the members are nested too deeply.
+    pub(crate) fn shared(
+        mut members: Vec<SharedField<D>>,
+        promise: Promise<D>,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let depth = depth_over(&members)?;
         let nearby = Nearby::new(&mut members);
         let extent = members
             .iter()
@@ -58,10 +68,10 @@ impl<const D: usize> Union<D> {
             constant: rounding.constant + balls * extent,
             per_metre: rounding.per_metre + balls,
         };
-        Self { members, nearby, slack, promise }
+        Ok(Arc::new(Self { members, nearby, slack, promise, depth }))
     }
 
-    /// How many members a block is likely to need.
+    /// The number of members that a block is likely to evaluate.
     fn expected(&self) -> usize {
         if self.nearby.is_none() { self.members.len() } else { 1 }
     }
@@ -94,7 +104,7 @@ impl<const D: usize> Union<D> {
     where
         dyn Field<D>: EvaluatePoint<T, D>,
     {
-        let ask = |i: usize| self.members[i].field().distance(x, y, z);
+        let ask = |i: usize| self.members[i].distance(x, y, z);
         let Some(nearby) = &self.nearby else {
             // Selects, since which of two members is nearer is hard to predict.
             let (mut smallest, mut winner) = (ask(0), 0);
@@ -130,7 +140,7 @@ impl<const D: usize> Union<D> {
         &self,
         p: &Block<S, D, W>,
         count: usize,
-        mut near: impl FnMut(&Shape<D>),
+        mut near: impl FnMut(&SharedField<D>),
     ) {
         let Some(nearby) = &self.nearby else {
             self.members.iter().for_each(near);
@@ -146,7 +156,7 @@ impl<const D: usize> Union<D> {
                 match promise.region {
                     None => {
                         let (x, y, z) = query.centre.coordinates();
-                        let value: f64 = member.field().distance(x, y, z);
+                        let value: f64 = member.distance(x, y, z);
                         value + promise.lipschitz * query.radius
                     }
                     Some(_) => f64::INFINITY,
@@ -171,7 +181,7 @@ where
     /// All values first, then the gradient of the one member that is smallest.
     fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
         let (_, winner) = self.winner(x, y, z);
-        self.members[winner].field().distance_gradient(x, y, z, gradient)
+        self.members[winner].distance_gradient(x, y, z, gradient)
     }
 }
 
@@ -180,7 +190,7 @@ where
     dyn Field<D>: EvaluateBlock<S, D, W>,
 {
     fn distances(&self, p: &Block<S, D, W>, count: usize, out: &mut Column<S, W>) {
-        let mut fold = ValueFold::new(&Smaller, self.expected(), out);
+        let mut fold = ValueFold::new(&Minimum, self.expected(), out);
         self.near_block(p, count, |member| fold.push(member, p, count));
         fold.finish();
     }
@@ -196,7 +206,7 @@ where
         count: usize,
         out: &mut Gradients<T, D, W>,
     ) {
-        let mut fold = GradientFold::new(&Smaller, self.expected(), out);
+        let mut fold = GradientFold::new(&Minimum, self.expected(), out);
         self.near_block(p, count, |member| fold.push(member, p, count));
         fold.finish();
     }
@@ -207,18 +217,27 @@ impl<const D: usize> Field<D> for Union<D> {
         &self.promise
     }
 
+    fn depth(&self) -> usize {
+        self.depth
+    }
+
     fn unplaced(&self) -> usize {
-        self.members.iter().map(|member| member.field().unplaced()).sum()
+        self.members.iter().map(|member| member.unplaced()).sum()
+    }
+
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        let (first, others) = self.members.split_first()?;
+        others.iter().try_fold(first.record(p)?, |least, member| {
+            Some(Minimum.combine(least, member.record(p)?))
+        })
     }
 
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
         let Some(members) = placed_children(&self.members, pose) else { return Err(self) };
-        let depth = Shape::deepest(&members) + 1;
-        Shape::from_operator(Self::new(members, self.promise.placed(pose)), depth)
-            .map_err(|_| self as _)
+        Self::shared(members, self.promise.placed(pose)).map_err(|_| self as _)
     }
 
-    fn members(&self) -> Option<&[Shape<D>]> {
+    fn members(&self) -> Option<&[SharedField<D>]> {
         Some(&self.members)
     }
 }

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Nodes that ask their child elsewhere: transforms, mirrors, extrusion.
+//! Fields that evaluate their child at another point: transforms, mirrors, extrusion.
 
-use super::{DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved};
+use super::{
+    DifferentiateBlock, EvaluateBlock, EvaluatePoint, Field, Moved, SharedField, depth_over,
+};
+use crate::error::ShapeError;
 use crate::machine::{Block, Column, Gradients, Job, Lane, run};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Scalar};
-use crate::shape::Shape;
+use crate::scalar::{Dual, Float, Recorded, Scalar};
 use crate::vector::{Vector, unrolled};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -20,10 +22,10 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
     /// `true` for rigid motions, which take another motion into themselves.
     const IS_MOTION: bool = false;
 
-    /// Where the child is asked.
+    /// The point at which the child is evaluated.
     fn point<S: Scalar>(&self, p: Vector<S, D>) -> Vector<S, E>;
 
-    /// What becomes of the child's answer.
+    /// The node's answer from the child's.
     #[inline(always)]
     fn value<S: Scalar>(&self, _p: Vector<S, D>, child: S) -> S {
         child
@@ -37,8 +39,8 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
         None
     }
 
-    /// The node's answer and gradient from the child's: by duals, unless the map
-    /// knows better.
+    /// The node's answer and gradient from the child's: by duals, unless the map has
+    /// something cheaper.
     #[inline(always)]
     fn gradient<T: Float>(
         &self,
@@ -60,9 +62,26 @@ pub(crate) trait Warp<const D: usize, const E: usize>:
 /// A child seen through a [`Warp`].
 #[derive(Debug)]
 pub(crate) struct Warped<M, const D: usize, const E: usize> {
-    pub(crate) map: M,
-    pub(crate) child: Shape<E>,
-    pub(crate) promise: Promise<D>,
+    map: M,
+    child: SharedField<E>,
+    promise: Promise<D>,
+    depth: usize,
+}
+
+impl<M: Warp<D, E>, const D: usize, const E: usize> Warped<M, D, E> {
+    /// The `child` seen through `map`.
+    ///
+    /// # Errors
+    ///
+    /// If the child is nested too deeply.
+    pub(crate) fn shared(
+        map: M,
+        child: SharedField<E>,
+        promise: Promise<D>,
+    ) -> Result<SharedField<D>, ShapeError> {
+        let depth = depth_over([&child])?;
+        Ok(Arc::new(Self { map, child, promise, depth }))
+    }
 }
 
 struct Points<'a, M>(&'a M);
@@ -110,14 +129,14 @@ where
     fn distance(&self, x: T, y: T, z: T) -> T {
         let p = Vector::of_coordinates(x, y, z);
         let (u, v, w) = self.map.point(p).coordinates();
-        self.map.value(p, self.child.field().distance(u, v, w))
+        self.map.value(p, self.child.distance(u, v, w))
     }
 
     fn distance_gradient(&self, x: T, y: T, z: T, gradient: &mut Vector<T, D>) -> T {
         let p = Vector::of_coordinates(x, y, z);
         let (u, v, w) = self.map.point(p).coordinates();
         let mut child_gradient = Vector([T::constant(0.0); E]);
-        let child = self.child.field().distance_gradient(u, v, w, &mut child_gradient);
+        let child = self.child.distance_gradient(u, v, w, &mut child_gradient);
         let distance;
         (distance, *gradient) = self.map.gradient(p, child, child_gradient);
         distance
@@ -135,7 +154,7 @@ where
         let mut q = Block::<S, E, W>::scratch();
         let mut child = Column::scratch();
         run(&Points(&self.map), p, &(), count, &mut q);
-        self.child.field().distances(&q, count, &mut child);
+        self.child.distances(&q, count, &mut child);
         run(&Values::<M, E>(&self.map), p, &child, count, out);
     }
 }
@@ -156,7 +175,7 @@ where
         let mut q = Block::<T, E, W>::scratch();
         let mut child = Gradients::<T, E, W>::scratch();
         run(&Points(&self.map), p, &(), count, &mut q);
-        self.child.field().distances_gradients(&q, count, &mut child);
+        self.child.distances_gradients(&q, count, &mut child);
         run(&PulledBack(&self.map), p, &child, count, out);
     }
 }
@@ -166,15 +185,21 @@ impl<M: Warp<D, E>, const D: usize, const E: usize> Field<D> for Warped<M, D, E>
         &self.promise
     }
 
+    fn depth(&self) -> usize {
+        self.depth
+    }
+
     fn unplaced(&self) -> usize {
         usize::from(!M::IS_MOTION)
     }
 
+    fn record(&self, p: Vector<Recorded, D>) -> Option<Recorded> {
+        Some(self.map.value(p, self.child.record(self.map.point(p))?))
+    }
+
     fn placed(self: Arc<Self>, pose: &Pose<D>) -> Moved<D> {
         let Some(map) = self.map.placed(pose) else { return Err(self) };
-        let promise = self.promise.placed(pose);
-        let depth = self.child.depth() + 1;
-        let node = Self { map, child: self.child.clone(), promise };
-        Shape::from_operator(node, depth).map_err(|_| self as _)
+        let (child, promise) = (Arc::clone(&self.child), self.promise.placed(pose));
+        Ok(Arc::new(Self { map, child, promise, depth: self.depth }))
     }
 }

@@ -53,7 +53,7 @@ impl<const D: usize> Kernel<D> for Ball {
 }
 
 primitive! {
-    Ball, "ball", any,
+    Ball, ball, any,
     about: "All points within a radius of the origin.",
     model: ClosedForm,
     parameters: { radius: Length = "the radius" },

@@ -4,8 +4,7 @@
 //! The frame of what stands between two points.
 
 use crate::error::{ShapeError, Unit, finite, positive};
-use crate::field::Placement;
-use crate::pose::{Pose, Rotation};
+use crate::pose::{Placement, Pose, Rotation};
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
 
@@ -13,6 +12,8 @@ use crate::vector::{Point, Vector};
 #[derive(Clone, Debug)]
 pub(super) struct Between<const D: usize> {
     placement: Placement<D>,
+    from: Point<D>,
+    to: Point<D>,
     /// Half the distance between the points [m].
     half_length: f64,
 }
@@ -35,7 +36,7 @@ impl<const D: usize> Between<D> {
             None => Rotation::identity(),
         };
         let placement = Placement::new(Pose::new(rotation, (from + to) * 0.5));
-        Ok(Self { placement, half_length: 0.5 * (to - from).norm() })
+        Ok(Self { placement, from, to, half_length: 0.5 * (to - from).norm() })
     }
 
     /// As [`new`](Self::new), for what has a direction.
@@ -48,6 +49,16 @@ impl<const D: usize> Between<D> {
         let apart = 2.0 * between.half_length;
         positive("the distance from `from` to `to`", apart, Unit::Metre)?;
         Ok(between)
+    }
+
+    /// The point at the negative end of the y axis.
+    pub(super) fn from(&self) -> Point<D> {
+        self.from
+    }
+
+    /// The point at the positive end of the y axis.
+    pub(super) fn to(&self) -> Point<D> {
+        self.to
     }
 
     /// Half the distance between the points [m].

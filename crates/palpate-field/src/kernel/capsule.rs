@@ -37,6 +37,7 @@ fn to_segment<S: Scalar, const D: usize>(p: Vector<S, D>, half_length: f64) -> S
 #[derive(Clone, Debug)]
 pub struct Capsule {
     radius: f64,
+    height: f64,
     half_length: f64,
 }
 
@@ -53,7 +54,7 @@ impl Capsule {
             let rule = format!("at least twice the radius, {} m", 2.0 * radius);
             return Err(ShapeError::number("height", rule, height, Unit::Metre));
         }
-        Ok(Self { radius, half_length: 0.5 * height - radius })
+        Ok(Self { radius, height, half_length: 0.5 * height - radius })
     }
 }
 
@@ -76,7 +77,7 @@ fn promise<const D: usize>(half_length: f64, radius: f64) -> Promise<D> {
 }
 
 primitive! {
-    Capsule, "capsule", any,
+    Capsule, capsule, any,
     about: "A rod with round ends along the y axis.",
     model: ClosedForm,
     parameters: {
@@ -133,12 +134,12 @@ impl<const D: usize> Kernel<D> for Segment<D> {
 }
 
 primitive! {
-    Segment<D>, "segment", any,
+    Segment<D>, segment, any,
     about: "All points within a radius of the segment between two points.",
     model: ClosedForm,
     parameters: {
-        from: Vector = "one end",
-        to: Vector = "the other end",
+        from: Vector = "one end" => |kernel| kernel.between.from(),
+        to: Vector = "the other end" => |kernel| kernel.between.to(),
         radius: LengthOrZero = "the radius, zero for a curve without inside",
     },
     example: (

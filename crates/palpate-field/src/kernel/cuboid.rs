@@ -71,10 +71,12 @@ impl<const D: usize> Kernel<D> for Cuboid<D> {
 }
 
 primitive! {
-    Cuboid<D>, "cuboid", any,
+    Cuboid<D>, cuboid, any,
     about: "A box along the axes: a rectangle in 2D.",
     model: ClosedForm,
-    parameters: { size: Vector = "the edge lengths" },
+    parameters: {
+        size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
+    },
     example: (Vector(std::array::from_fn(|i| [1.2, 0.8, 0.6][i]))),
 }
 
@@ -94,6 +96,7 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RoundedCuboid<const D: usize> {
+    pub(super) size: Vector<f64, D>,
     pub(super) core: [f64; D],
     pub(super) rounding: f64,
 }
@@ -113,7 +116,7 @@ impl<const D: usize> RoundedCuboid<D> {
             let rule = format!("at most half the shortest edge, {shortest} m");
             return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
         }
-        Ok(Self { core: sharp.half_extents.map(|h| h - rounding), rounding })
+        Ok(Self { size, core: sharp.half_extents.map(|h| h - rounding), rounding })
     }
 }
 
@@ -133,7 +136,7 @@ impl<const D: usize> Kernel<D> for RoundedCuboid<D> {
 }
 
 primitive! {
-    RoundedCuboid<D>, "rounded_cuboid", any,
+    RoundedCuboid<D>, rounded_cuboid, any,
     about: "A box along the axes, its edges rounded inwards.",
     model: ClosedForm,
     parameters: {

@@ -158,17 +158,21 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
 }
 
 primitive! {
-    Ellipsoid<2>, "ellipse", 2,
+    Ellipsoid<2>, ellipse, 2,
     about: "An ellipse along the axes.",
     model: Tangent,
-    parameters: { radii: Vector = "the radii along the axes" },
+    parameters: {
+        radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
+    },
     example: (Vector([0.9, 0.4])),
 }
 
 primitive! {
-    Ellipsoid<3>, "ellipsoid", 3,
+    Ellipsoid<3>, ellipsoid, 3,
     about: "An ellipsoid along the axes.",
     model: Tangent,
-    parameters: { radii: Vector = "the radii along the axes" },
+    parameters: {
+        radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
+    },
     example: (Vector([0.9, 0.6, 0.3])),
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Which powers a norm adds up, where a shape is measured in another than the
-//! Euclidean: the choice is a parameter, and the same for every lane.
+//! The exponent of the norm in which a shape is measured: a parameter of the kernel, the
+//! same for every lane.
 
 use crate::error::{ShapeError, Unit};
 use crate::promise::Promise;
@@ -17,7 +17,7 @@ pub(crate) enum Exponent {
 }
 
 impl Exponent {
-    /// Of one that `exponent` names.
+    /// The norm with this `exponent`.
     pub(crate) fn new(parameter: &'static str, exponent: u32) -> Result<Self, ShapeError> {
         Self::named(exponent).ok_or_else(|| refused(parameter, "4, 6 or 8", exponent))
     }
@@ -30,6 +30,15 @@ impl Exponent {
         match Self::named(exponent) {
             None if exponent != 2 => Err(refused(parameter, "2, 4, 6 or 8", exponent)),
             other => Ok(other),
+        }
+    }
+
+    /// The number that names it.
+    pub(crate) fn number(self) -> u32 {
+        match self {
+            Self::Four => 4,
+            Self::Six => 6,
+            Self::Eight => 8,
         }
     }
 
@@ -62,8 +71,7 @@ impl Exponent {
         }
     }
 
-    /// How many times its radius a ball in this norm reaches from its centre, along
-    /// its diagonals: `N^(1/2 − 1/P)`, rounded up.
+    /// The reach of a unit ball in this norm along its diagonals: `N^(1/2 − 1/P)`, rounded up.
     pub(crate) fn reach<const N: usize>(self) -> f64 {
         (N as f64).sqrt() / self.norm([1.0; N]) * (1.0 + 8.0 * f64::EPSILON)
     }
@@ -73,11 +81,11 @@ fn refused(parameter: &'static str, rule: &'static str, exponent: u32) -> ShapeE
     ShapeError::number(parameter, rule, f64::from(exponent), Unit::One)
 }
 
-/// What a field promises whose formula is that of an exact one in another norm.
+/// The promise of an `exact` field whose norm is replaced by one of these.
 ///
-/// Such a norm is at most the Euclidean, so the field has no slope above one, and its
-/// values are bounds on both sides; and far from the shape they may be less than the
-/// distance to its box.
+/// The norm is at most the Euclidean, so the field has no slope above one and its values
+/// are bounds on both sides. Far from the shape they may be less than the distance to its
+/// box.
 pub(crate) fn in_another_norm<const D: usize>(exact: Promise<D>) -> Promise<D> {
     Promise { above_bounds: false, ..exact.bound() }
 }

@@ -23,7 +23,9 @@ use crate::vector::Vector;
 /// ```
 #[derive(Clone, Debug)]
 pub struct HalfSpace<const D: usize> {
-    normal: [f64; D],
+    normal: Vector<f64, D>,
+    /// The normal, of length one.
+    unit: [f64; D],
     offset: f64,
 }
 
@@ -38,14 +40,14 @@ impl<const D: usize> HalfSpace<D> {
         let Some(unit) = normal.normalized() else {
             return Err(ShapeError::number("normal", "a direction", normal.norm(), Unit::One));
         };
-        Ok(Self { normal: unit.0, offset: finite("offset", offset, Unit::Metre)? })
+        Ok(Self { normal, unit: unit.0, offset: finite("offset", offset, Unit::Metre)? })
     }
 }
 
 impl<const D: usize> Kernel<D> for HalfSpace<D> {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
-        p.dot_constant(&self.normal) - S::constant(self.offset)
+        p.dot_constant(&self.unit) - S::constant(self.offset)
     }
 
     fn promise(&self) -> Promise<D> {
@@ -54,7 +56,7 @@ impl<const D: usize> Kernel<D> for HalfSpace<D> {
 }
 
 primitive! {
-    HalfSpace<D>, "half_space", any,
+    HalfSpace<D>, half_space, any,
     about: "All points behind a plane.",
     model: ClosedForm,
     parameters: {

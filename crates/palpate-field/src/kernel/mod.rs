@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Closed formulas: what a leaf evaluates.
+//! Kernels: the closed formulas that leaves evaluate.
 
 mod primitive;
 
@@ -21,6 +21,7 @@ pub mod spatial;
 
 use std::fmt::Debug;
 
+pub use crate::catalogue::Entry;
 pub use ball::Ball;
 pub use capsule::{Capsule, Segment};
 pub use cuboid::{Cuboid, RoundedCuboid};
@@ -30,7 +31,7 @@ pub use planar::*;
 pub use power_ball::PowerBall;
 pub use power_cuboid::PowerCuboid;
 pub(crate) use primitive::primitive;
-pub use primitive::{Argument, Entry, ModelRule, Parameter, ParameterKind, Primitive};
+pub use primitive::{Argument, ModelRule, Parameter, ParameterKind, Primitive};
 pub use simplex::Simplex;
 pub use spatial::*;
 
@@ -89,17 +90,17 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
         self.distance(cell)
     }
 
-    /// What the distance promises.
+    /// The promise of the distance.
     fn promise(&self) -> Promise<D>;
 }
 
-/// Makes a newtype the kernel that is in it: what differs are the parameters.
+/// Makes a type the kernel in its field: the two differ in their parameters alone.
 macro_rules! answered_by_inner {
-    ($kernel:ty, $dimension:literal) => {
+    ($kernel:ident.$field:tt, $dimension:literal) => {
         impl Kernel<$dimension> for $kernel {
             #[inline(always)]
             fn distance<S: Scalar>(&self, p: Vector<S, $dimension>) -> S {
-                self.0.distance(p)
+                self.$field.distance(p)
             }
 
             #[inline(always)]
@@ -107,11 +108,11 @@ macro_rules! answered_by_inner {
                 &self,
                 cell: Vector<AffineModel<N>, $dimension>,
             ) -> AffineModel<N> {
-                self.0.model(cell)
+                self.$field.model(cell)
             }
 
             fn promise(&self) -> Promise<$dimension> {
-                self.0.promise()
+                self.$field.promise()
             }
         }
     };
@@ -261,108 +262,4 @@ pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
     let by_steepness = by_steepness(formula.value, &cell, operations, size);
     let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
     if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
-}
-
-// Statics, and not constants, so that the code of all primitives is in this crate
-// once and not in every crate that looks at the lists.
-static PLANAR: [Entry<2>; 45] = [
-    Entry::of::<Ball>(),
-    Entry::of::<Cuboid<2>>(),
-    Entry::of::<RoundedCuboid<2>>(),
-    Entry::of::<Capsule>(),
-    Entry::of::<Segment<2>>(),
-    Entry::of::<HalfSpace<2>>(),
-    Entry::of::<Simplex<2>>(),
-    Entry::of::<Ellipsoid<2>>(),
-    Entry::of::<Ring>(),
-    Entry::of::<Arc>(),
-    Entry::of::<RegularPolygon>(),
-    Entry::of::<RegularStar>(),
-    Entry::of::<Polygon>(),
-    Entry::of::<CoolS>(),
-    Entry::of::<RoundedRectangle>(),
-    Entry::of::<ChamferedRectangle>(),
-    Entry::of::<OrientedRectangle>(),
-    Entry::of::<Rhombus>(),
-    Entry::of::<IsoscelesTrapezoid>(),
-    Entry::of::<Parallelogram>(),
-    Entry::of::<IsoscelesTriangle>(),
-    Entry::of::<Stairs>(),
-    Entry::of::<Cross>(),
-    Entry::of::<RoundedX>(),
-    Entry::of::<Tunnel>(),
-    Entry::of::<UnevenCapsule>(),
-    Entry::of::<Pie>(),
-    Entry::of::<CutDisk>(),
-    Entry::of::<RingSector>(),
-    Entry::of::<Horseshoe>(),
-    Entry::of::<Vesica>(),
-    Entry::of::<OrientedVesica>(),
-    Entry::of::<Moon>(),
-    Entry::of::<Egg>(),
-    Entry::of::<Heart>(),
-    Entry::of::<RoundedCross>(),
-    Entry::of::<BobblyCross>(),
-    Entry::of::<Parabola>(),
-    Entry::of::<ParabolaSegment>(),
-    Entry::of::<QuadraticBezier>(),
-    Entry::of::<QuadraticCircle>(),
-    Entry::of::<Hyperbola>(),
-    Entry::of::<CircleWave>(),
-    Entry::of::<PowerBall>(),
-    Entry::of::<PowerCuboid<2>>(),
-];
-
-static SPATIAL: [Entry<3>; 41] = [
-    Entry::of::<Ball>(),
-    Entry::of::<Cuboid<3>>(),
-    Entry::of::<RoundedCuboid<3>>(),
-    Entry::of::<Capsule>(),
-    Entry::of::<Segment<3>>(),
-    Entry::of::<HalfSpace<3>>(),
-    Entry::of::<Simplex<3>>(),
-    Entry::of::<Ellipsoid<3>>(),
-    Entry::of::<Cylinder>(),
-    Entry::of::<RoundedCylinder>(),
-    Entry::of::<InfiniteCylinder>(),
-    Entry::of::<CappedCone>(),
-    Entry::of::<Cone>(),
-    Entry::of::<Pyramid>(),
-    Entry::of::<Torus>(),
-    Entry::of::<HexagonalPrism>(),
-    Entry::of::<TriangularPrism>(),
-    Entry::of::<Octahedron>(),
-    Entry::of::<CuboidFrame>(),
-    Entry::of::<CappedTorus>(),
-    Entry::of::<Link>(),
-    Entry::of::<InfiniteCone>(),
-    Entry::of::<CylinderBetween>(),
-    Entry::of::<CappedConeBetween>(),
-    Entry::of::<SolidAngle>(),
-    Entry::of::<CutBall>(),
-    Entry::of::<CutHollowSphere>(),
-    Entry::of::<DeathStar>(),
-    Entry::of::<RoundCone>(),
-    Entry::of::<RoundConeBetween>(),
-    Entry::of::<VesicaSegment>(),
-    Entry::of::<RhombusPrism>(),
-    Entry::of::<Sheet<3>>(),
-    Entry::of::<Sheet<4>>(),
-    Entry::of::<CubeApproximation>(),
-    Entry::of::<CylinderApproximation>(),
-    Entry::of::<ConeApproximation>(),
-    Entry::of::<PyramidApproximation>(),
-    Entry::of::<PowerBall>(),
-    Entry::of::<PowerCuboid<3>>(),
-    Entry::of::<PowerTorus>(),
-];
-
-impl Entry<2> {
-    /// All primitives of the plane.
-    pub const ALL: &[Self] = &PLANAR;
-}
-
-impl Entry<3> {
-    /// All primitives of space.
-    pub const ALL: &[Self] = &SPATIAL;
 }

@@ -78,13 +78,15 @@ impl<const D: usize> Kernel<D> for PowerCuboid<D> {
 }
 
 primitive! {
-    PowerCuboid<D>, "power_cuboid", any,
+    PowerCuboid<D>, power_cuboid, any,
     about: "A box along the axes, its edges rounded inwards in a norm of higher powers.",
     model: ClosedForm,
     parameters: {
-        size: Vector = "the edge lengths",
-        rounding: LengthOrZero = "the radius of the edges along the axes",
-        exponent: Count = "the power that the norm adds up, 4, 6 or 8",
+        size: Vector = "the edge lengths" => |kernel| kernel.rounded.size,
+        rounding: LengthOrZero = "the radius of the edges along the axes"
+            => |kernel| kernel.rounded.rounding,
+        exponent: Count = "the power that the norm adds up, 4, 6 or 8"
+            => |kernel| kernel.exponent.number(),
     },
     example: (Vector(std::array::from_fn(|i| [1.4, 1.1, 0.9][i])), 0.4, 6),
 }

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The one declaration of each primitive, and the catalogue of all.
+//! The one declaration of each primitive.
 
 use crate::error::{ShapeError, Unit};
 use crate::kernel::Kernel;
-use crate::pose::Pose;
-use crate::shape::Shape;
 use crate::vector::Vector;
 
-/// What a parameter is.
+/// The kind of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {
     /// A positive length [m].
@@ -44,14 +42,14 @@ impl ParameterKind {
     }
 }
 
-/// One of the numbers or lists that a primitive is made from.
+/// A number or list that a primitive is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Its name, as in scene files (where angles add `_degrees`).
     pub name: &'static str,
-    /// What it is.
+    /// Its kind.
     pub kind: ParameterKind,
-    /// What it means, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
@@ -70,7 +68,7 @@ pub enum Argument {
     Rings(Vec<Vec<Vec<f64>>>),
 }
 
-/// How a primitive bounds its values over a cell.
+/// The rule by which a primitive bounds its values over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelRule {
     /// Its formula, evaluated with models.
@@ -87,11 +85,11 @@ pub enum ModelRule {
 pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     /// The name in scene files.
     const NAME: &'static str;
-    /// What it is, in one sentence.
+    /// The primitive described in one sentence.
     const ABOUT: &'static str;
-    /// What it is made from.
+    /// The parameters, in the order of `new`.
     const PARAMETERS: &'static [Parameter];
-    /// How it bounds its values over a cell.
+    /// The rule that bounds its values over a cell.
     const MODEL: ModelRule;
 
     /// Makes it from one argument for each parameter, in their order.
@@ -100,6 +98,10 @@ pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     ///
     /// If an argument is of the wrong kind or breaks the parameter's rule.
     fn from_arguments(arguments: &[Argument]) -> Result<Self, ShapeError>;
+
+    /// The arguments that it was made from, in the order of the parameters: those given to
+    /// [`from_arguments`](Self::from_arguments) to the bit.
+    fn arguments(&self) -> Vec<Argument>;
 
     /// One of about 1 m, without symmetry where it can be helped, for tests and
     /// pictures.
@@ -110,66 +112,43 @@ pub trait Primitive<const D: usize>: Kernel<D> + Sized {
     fn example() -> Result<Self, ShapeError>;
 }
 
-/// A primitive in the catalogue.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry<const D: usize> {
-    /// The name in scene files.
-    pub name: &'static str,
-    /// What it is, in one sentence.
-    pub about: &'static str,
-    /// What it is made from.
-    pub parameters: &'static [Parameter],
-    /// How it bounds its values over a cell.
-    pub model: ModelRule,
-    build: fn(&[Argument], &Pose<D>) -> Result<Shape<D>, ShapeError>,
-    example: fn() -> Result<Shape<D>, ShapeError>,
+/// A parameter's value that becomes an [`Argument`].
+pub(crate) trait ToArgument {
+    fn to_argument(&self) -> Argument;
 }
 
-impl<const D: usize> Entry<D> {
-    pub(crate) const fn of<K: Primitive<D>>() -> Self {
-        Self {
-            name: K::NAME,
-            about: K::ABOUT,
-            parameters: K::PARAMETERS,
-            model: K::MODEL,
-            build: |arguments, pose| Shape::from_kernel_at(K::from_arguments(arguments)?, pose),
-            example: || K::example().map(Shape::from_kernel),
-        }
-    }
-
-    /// Makes the primitive from one argument for each parameter, in their order.
-    ///
-    /// # Errors
-    ///
-    /// If an argument is of the wrong kind or breaks the parameter's rule.
-    pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
-        self.build_at(arguments, &Pose::identity())
-    }
-
-    /// As [`build`](Self::build), moved by `world_from_body`.
-    ///
-    /// # Errors
-    ///
-    /// As [`build`](Self::build), or if a number of the pose is not finite.
-    pub fn build_at(
-        &self,
-        arguments: &[Argument],
-        world_from_body: &Pose<D>,
-    ) -> Result<Shape<D>, ShapeError> {
-        (self.build)(arguments, world_from_body)
-    }
-
-    /// The example of the primitive, of about 1 m.
-    ///
-    /// # Errors
-    ///
-    /// None in practice.
-    pub fn example(&self) -> Result<Shape<D>, ShapeError> {
-        (self.example)()
+impl ToArgument for f64 {
+    fn to_argument(&self) -> Argument {
+        Argument::Number(*self)
     }
 }
 
-/// What a constructor takes from an [`Argument`].
+impl ToArgument for u32 {
+    fn to_argument(&self) -> Argument {
+        Argument::Count(*self)
+    }
+}
+
+impl<const D: usize> ToArgument for Vector<f64, D> {
+    fn to_argument(&self) -> Argument {
+        Argument::Vector(self.0.to_vec())
+    }
+}
+
+impl<const D: usize> ToArgument for &[Vector<f64, D>] {
+    fn to_argument(&self) -> Argument {
+        Argument::Points(self.iter().map(|point| point.0.to_vec()).collect())
+    }
+}
+
+impl<const D: usize> ToArgument for &[Vec<Vector<f64, D>>] {
+    fn to_argument(&self) -> Argument {
+        let ring = |ring: &Vec<Vector<f64, D>>| ring.iter().map(|p| p.0.to_vec()).collect();
+        Argument::Rings(self.iter().map(ring).collect())
+    }
+}
+
+/// A constructor's value that is taken from an [`Argument`].
 pub(crate) trait FromArgument: Sized {
     fn from_argument(parameter: &Parameter, argument: &Argument) -> Result<Self, ShapeError>;
 }
@@ -257,33 +236,208 @@ pub(crate) fn check_count(
     })
 }
 
+/// The type of a parameter, as its accessor gives it: of its kind, in `$dimension`
+/// dimensions.
+macro_rules! parameter_type {
+    (Count, $dimension:tt) => { u32 };
+    (Vector, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
+    (Direction, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
+    (Points, $dimension:tt) => { &[$crate::vector::Point<$dimension>] };
+    (Rings, $dimension:tt) => { &[Vec<$crate::vector::Point<$dimension>>] };
+    ($number:ident, $dimension:tt) => { f64 };
+}
+
+/// The unit of a parameter, as its documentation ends.
+macro_rules! parameter_unit {
+    (Angle) => {
+        " [rad]"
+    };
+    (Count) => {
+        ""
+    };
+    (Direction) => {
+        ""
+    };
+    ($length:ident) => {
+        " [m]"
+    };
+}
+
+/// The value of a parameter, of the field that has its name or as the declaration says.
+macro_rules! parameter_value {
+    ($kernel:ident, $parameter:ident, Points) => {
+        &$kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, Rings) => {
+        &$kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, $kind:ident) => {
+        $kernel.$parameter
+    };
+    ($kernel:ident, $parameter:ident, $kind:ident, $given:expr) => {{
+        let given: fn(&Self) -> _ = $given;
+        given($kernel)
+    }};
+}
+
+/// The type that a constructor of shapes takes for a parameter.
+macro_rules! accepted_type {
+    (Count, $dimension:tt) => { u32 };
+    (Vector, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
+    (Direction, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
+    (Points, $dimension:tt) => {
+        impl IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>
+    };
+    (Rings, $dimension:tt) => {
+        impl IntoIterator<Item: IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>>
+    };
+    ($number:ident, $dimension:tt) => { f64 };
+}
+
+/// The argument for what a constructor of shapes took.
+macro_rules! accepted {
+    (Count, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Count($value)
+    };
+    (Vector, $dimension:tt, $value:ident) => {
+        $crate::kernel::primitive::vector_argument::<$dimension>($value)
+    };
+    (Direction, $dimension:tt, $value:ident) => {
+        $crate::kernel::primitive::vector_argument::<$dimension>($value)
+    };
+    (Points, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Points($crate::kernel::primitive::positions::<$dimension>(
+            $value,
+        ))
+    };
+    (Rings, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Rings(
+            $value
+                .into_iter()
+                .map($crate::kernel::primitive::positions::<$dimension>)
+                .collect(),
+        )
+    };
+    ($number:ident, $dimension:tt, $value:ident) => {
+        $crate::kernel::Argument::Number($value)
+    };
+}
+
+/// A vector as an argument.
+pub(crate) fn vector_argument<const D: usize>(vector: impl Into<Vector<f64, D>>) -> Argument {
+    vector.into().to_argument()
+}
+
+/// Positions as part of an argument.
+pub(crate) fn positions<const D: usize>(
+    points: impl IntoIterator<Item: Into<Vector<f64, D>>>,
+) -> Vec<Vec<f64>> {
+    points.into_iter().map(|point| point.into().0.to_vec()).collect()
+}
+
 /// Declares a kernel as a primitive: its name, what it is, its parameters in the
 /// order of `new`, how it bounds cells, and an example.
+///
+/// A parameter is kept in the field of its name; where there is none, `=> |kernel| …`
+/// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor
+/// of the primitive's name.
 macro_rules! primitive {
     (
-        $kernel:ty, $name:literal, $dimension:tt,
+        $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
         about: $about:literal,
         model: $model:ident,
-        parameters: { $($parameter:ident: $kind:ident = $what:literal),* $(,)? },
+        parameters: {
+            $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* $(,)?
+        },
         example: ($($example:expr),* $(,)?) $(,)?
     ) => {
-        primitive!(@impl $dimension, $kernel, $name, $about, $model,
+        primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
+            { $($parameter: $kind = $what $(=> $given)?),* });
+        primitive!(@declare $dimension, $kernel $(<$argument>)?, $name, $about, $model,
             { $($parameter: $kind = $what),* }, ($($example),*));
     };
-    (@impl any, $kernel:ty, $($rest:tt)*) => {
-        primitive!(@body [const D: usize], D, $kernel, $($rest)*);
+    (@accessors [D] any, $kernel:ty, $parameters:tt) => {
+        primitive!(@methods [const D: usize], D, $kernel, $parameters);
     };
-    (@impl $dimension:literal, $kernel:ty, $($rest:tt)*) => {
-        primitive!(@body [], $dimension, $kernel, $($rest)*);
+    (@accessors [] any, $kernel:ty, $parameters:tt) => {
+        // Numbers alone: a kernel that is the same in any dimension has no vector.
+        primitive!(@methods [], 0, $kernel, $parameters);
+    };
+    (@accessors [$($argument:tt)?] $dimension:literal, $kernel:ty, $parameters:tt) => {
+        primitive!(@methods [], $dimension, $kernel, $parameters);
     };
     (
-        @body [$($generics:tt)*], $dimension:tt, $kernel:ty,
-        $name:literal, $about:literal, $model:ident,
+        @methods [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        { $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* }
+    ) => {
+        impl<$($generics)*> $kernel {
+            $(
+                #[doc = concat!(
+                    "The parameter `", stringify!($parameter), "`: ", $what,
+                    $crate::kernel::primitive::parameter_unit!($kind), ".",
+                )]
+                #[must_use]
+                #[inline]
+                pub fn $parameter(
+                    &self,
+                ) -> $crate::kernel::primitive::parameter_type!($kind, $dimension) {
+                    let kernel = self;
+                    $crate::kernel::primitive::parameter_value!(
+                        kernel, $parameter, $kind $(, $given)?
+                    )
+                }
+            )*
+        }
+    };
+    (@declare any, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@primitive [const D: usize], D, $kernel, $($rest)*);
+        primitive!(@constructor [const D: usize], D, $kernel, $($rest)*);
+    };
+    (@declare $dimension:literal, $kernel:ty, $($rest:tt)*) => {
+        primitive!(@primitive [], $dimension, $kernel, $($rest)*);
+        primitive!(@constructor [], $dimension, $kernel, $($rest)*);
+    };
+    (
+        @constructor [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        $name:ident, $about:literal, $model:ident,
+        { $($parameter:ident: $kind:ident = $what:literal),* },
+        $example:tt
+    ) => {
+        impl<$($generics)*> $crate::shape::Shape<$dimension> {
+            #[doc = concat!(
+                $about, "\n\nThe constructor of [`kernel::", stringify!($kernel),
+                "`](struct@", stringify!($kernel),
+                "), which has the formula and an example. Parameters:\n\n",
+            )]
+            $(
+                #[doc = concat!(
+                    "- `", stringify!($parameter), "`: ", $what,
+                    $crate::kernel::primitive::parameter_unit!($kind),
+                )]
+            )*
+            #[doc = "\n# Errors\n\nIf a parameter breaks the rule of the kernel's `new`."]
+            pub fn $name(
+                $(
+                    $parameter: $crate::kernel::primitive::accepted_type!($kind, $dimension)
+                ),*
+            ) -> Result<Self, $crate::error::ShapeError> {
+                let arguments = vec![$(
+                    $crate::kernel::primitive::accepted!($kind, $dimension, $parameter)
+                ),*];
+                let primitive =
+                    $crate::node::Primitive::new(stringify!($name), arguments)?;
+                Self::from_node($crate::node::Node::Primitive(primitive))
+            }
+        }
+    };
+    (
+        @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        $name:ident, $about:literal, $model:ident,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
         impl<$($generics)*> $crate::kernel::Primitive<$dimension> for $kernel {
-            const NAME: &'static str = $name;
+            const NAME: &'static str = stringify!($name);
             const ABOUT: &'static str = $about;
             const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
                 $($crate::kernel::Parameter {
@@ -297,12 +451,13 @@ macro_rules! primitive {
             fn from_arguments(
                 arguments: &[$crate::kernel::Argument],
             ) -> Result<Self, $crate::error::ShapeError> {
+                let name = stringify!($name);
                 let parameters =
                     <Self as $crate::kernel::Primitive<$dimension>>::PARAMETERS;
-                $crate::kernel::primitive::check_count($name, parameters, arguments)?;
+                $crate::kernel::primitive::check_count(name, parameters, arguments)?;
                 let mut pairs = parameters.iter().zip(arguments);
                 let mut next = || pairs.next().ok_or($crate::error::ShapeError::Count {
-                    parameter: $name.into(),
+                    parameter: name.into(),
                     rule: "all arguments".into(),
                     count: arguments.len(),
                 });
@@ -315,6 +470,12 @@ macro_rules! primitive {
                 Self::new($($parameter),*)
             }
 
+            fn arguments(&self) -> Vec<$crate::kernel::Argument> {
+                vec![$(
+                    $crate::kernel::primitive::ToArgument::to_argument(&self.$parameter())
+                ),*]
+            }
+
             fn example() -> Result<Self, $crate::error::ShapeError> {
                 Self::new($($example),*)
             }
@@ -322,4 +483,6 @@ macro_rules! primitive {
     };
 }
 
-pub(crate) use primitive;
+pub(crate) use {
+    accepted, accepted_type, parameter_type, parameter_unit, parameter_value, primitive,
+};

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 18.0;
 
 /// The convex hull of `D + 1` points: a solid triangle in 2D, a tetrahedron in
@@ -41,6 +41,7 @@ const OPERATIONS: f64 = 18.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Simplex<const D: usize> {
+    points: Arc<[Point<D>]>,
     facets: Arc<[Facet<D>]>,
     faces: Arc<[Face<D>]>,
     bounds: Bounds<D>,
@@ -170,10 +171,10 @@ impl<const D: usize> Simplex<D> {
             .filter(|set| (set.count_ones() as usize) < D)
             .map(|set| Face::new(&points, |j| set >> j & 1 == 1))
             .collect();
-        let bounds = Aabb::around(points).map(Bounds::of_box);
+        let bounds = Aabb::around(points.iter().copied()).map(Bounds::of_box);
         let bounds = bounds.unwrap_or_else(|| Bounds::centred(Vector::ZERO, 0.0));
         let size = bounds.radius_about_origin();
-        Ok(Self { facets: facets.into(), faces, bounds, size })
+        Ok(Self { points: points.into(), facets: facets.into(), faces, bounds, size })
     }
 }
 
@@ -215,7 +216,7 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
 }
 
 primitive! {
-    Simplex<2>, "triangle", 2,
+    Simplex<2>, triangle, 2,
     about: "The solid triangle of three points.",
     model: Tangent,
     parameters: { points: Points = "the three corners" },
@@ -223,7 +224,7 @@ primitive! {
 }
 
 primitive! {
-    Simplex<3>, "tetrahedron", 3,
+    Simplex<3>, tetrahedron, 3,
     about: "The solid tetrahedron of four points.",
     model: Tangent,
     parameters: { points: Points = "the four corners" },

@@ -16,11 +16,11 @@ pub const BLOCK: usize = 64;
 /// The points of the short block, for searches that look at a few at a time.
 pub const SHORT: usize = 8;
 
-/// Something with one item a lane, of which the first lanes are written.
+/// Per-lane storage, initialised up to `written()`.
 pub(crate) trait Rows {
     type Item: Copy;
 
-    /// How many lanes, from the first on, are written.
+    /// The number of initialised lanes, from the first on.
     fn written(&self) -> usize;
 
     /// The item in lane `i`.
@@ -133,8 +133,8 @@ impl<S: Lane, const W: usize> Column<S, W> {
 macro_rules! float_column {
     ($t:ident) => {
         impl<const W: usize> Column<$t, W> {
-            /// The numbers that are written: those of the points that were asked for, and
-            /// perhaps some more.
+            /// The initialised numbers: those of the points asked for, and of those that complete
+            /// their line.
             #[inline(always)]
             #[must_use]
             pub fn as_slice(&self) -> &[$t] {
@@ -199,10 +199,10 @@ pub struct Block<S: Lane, const D: usize, const W: usize> {
     boxes: Boxes<D>,
 }
 
-/// What the points of a block are known to be together.
+/// The shape that all points of a block are known to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Boxes<const D: usize> {
-    /// Anything.
+    /// Points, or cells of any shape.
     No,
     /// Boxes along the axes: [`Lane::is_box`].
     Straight,
@@ -273,7 +273,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         }
     }
 
-    /// What the points are known to be together.
+    /// The shape that all points are known to have.
     #[inline(always)]
     pub(crate) fn boxes(&self) -> &Boxes<D> {
         &self.boxes

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where the points of a block are.
+//! The ball around the points of a block.
 
 use super::block::{Block, Rows};
 use super::lanes::Lane;
@@ -9,12 +9,12 @@ use crate::bounds::BoundingBall;
 use crate::scalar::Scalar;
 use crate::vector::Vector;
 
-/// Points looked at together: a smallest of so many waits for none of the others.
+/// Independent minima kept side by side, so that none waits for the one before.
 const AT_ONCE: usize = 4;
 
 impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
-    /// A ball around the first `count` points or cells, about the centre of their box: often
-    /// much smaller than the ball around that.
+    /// A ball around the first `count` points or cells, about the centre of their box; often
+    /// much smaller than the ball around the box.
     ///
     /// # Panics
     ///

@@ -16,7 +16,7 @@ use super::block::{Rows, RowsMut, filled};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum InstructionSet {
-    /// What every machine of the target has.
+    /// The instructions that every machine of the target has.
     Baseline = 1,
     /// 256-bit vectors on x86-64.
     Avx2 = 2,
@@ -51,7 +51,7 @@ impl InstructionSet {
         }
     }
 
-    /// The one that blocks are evaluated with: the widest available, unless
+    /// The instruction set that evaluates blocks: the widest available, unless
     /// [`select`](Self::select) chose another. Short blocks use AVX2 at most: a division of
     /// 8 numbers takes longer with AVX-512 on some machines, and no less on others.
     #[inline(always)]
@@ -84,7 +84,7 @@ impl InstructionSet {
     }
 }
 
-/// What to do in one lane of a block.
+/// The work in one lane of a block.
 ///
 /// `lane` must be `#[inline(always)]`, and so must all that it calls, to be
 /// compiled with the instructions of the loop around it.
@@ -171,7 +171,7 @@ compiled_loops! {
     with_avx512;
 }
 
-/// What to do at one point, where it is worth the better instructions.
+/// The work at one point, for jobs long enough to gain from wider instructions.
 pub(crate) trait PointJob<T, G> {
     /// The distance at a point; puts its gradient into `gradient`.
     fn at(&self, x: T, y: T, z: T, gradient: &mut G) -> T;

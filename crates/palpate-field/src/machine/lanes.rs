@@ -6,9 +6,7 @@
 use std::fmt;
 use std::mem::MaybeUninit;
 
-use crate::field::Placement;
-use crate::kernel::Kernel;
-use crate::pose::Pose;
+use crate::pose::{Placement, Pose};
 use crate::scalar::{AffineModel, Float, Scalar, TurnedBoxes};
 use crate::vector::{Vector, array, unrolled};
 
@@ -54,24 +52,21 @@ pub trait LaneArray<S>: Copy + Send + Sync {
     fn write(&mut self, i: usize, number: S);
 }
 
-/// A number of which a block can hold many.
+/// A number that blocks hold.
 pub trait Lane: Scalar + Send + Sync + 'static {
-    /// Where `W` of them are kept.
+    /// Storage for `W` numbers.
     type Lanes<const W: usize>: LaneArray<Self>;
 
-    /// Lanes are worked through in lines of this many.
+    /// The lanes of a line: loops run over whole lines.
     const LINE: usize;
 
-    /// Whether kernels move their points themselves, in the loop that evaluates: what moves
-    /// the next then fills the time in which this one waits for its roots. Not if the numbers
-    /// of both do not fit into registers.
+    /// `true` if a placed leaf moves each point in the loop that evaluates its kernel: the
+    /// motion of the next point then fills the latency of the roots of this one. `false`
+    /// where the registers cannot hold the numbers of both.
     const MOVED_IN_LOOP: bool;
 
     /// The smallest and the largest value that the number stands for.
     fn range(&self) -> (f64, f64);
-
-    /// `kernel` at `p`, by the best rule the kernel has for this number.
-    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self;
 
     /// `true` if these are the coordinates of a box along the axes, without remainders:
     /// then [`box_to_body`](Self::box_to_body) may move it. A number is no box.
@@ -170,11 +165,6 @@ macro_rules! float_lane {
             fn range(&self) -> (f64, f64) {
                 (f64::from(*self), f64::from(*self))
             }
-
-            #[inline(always)]
-            fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
-                kernel.distance(p)
-            }
         }
     };
 }
@@ -190,11 +180,6 @@ impl<const N: usize> Lane for AffineModel<N> {
     #[inline(always)]
     fn range(&self) -> (f64, f64) {
         (self.minimum(), self.maximum())
-    }
-
-    #[inline(always)]
-    fn evaluate<K: Kernel<D>, const D: usize>(kernel: &K, p: Vector<Self, D>) -> Self {
-        kernel.model(p)
     }
 
     #[inline(always)]

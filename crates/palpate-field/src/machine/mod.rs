@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What knows the machine: blocks of lanes in memory, and the instruction sets
-//! that work through them.
+//! Blocks of lanes in memory, and the loops over them for each instruction set.
 //!
 //! The loops over lanes are here and nowhere else. The rest of the crate gives
-//! [`Job`]s: what to do in one lane. This is the one module of the crate where
+//! [`Job`]s: the work in one lane. This is the one module of the crate where
 //! `unsafe` is allowed: to call functions compiled for an instruction set that
 //! was found at run time, and to leave scratch memory unwritten, which would cost
 //! more to clear than a leaf takes to evaluate.

@@ -5,27 +5,15 @@
 
 use crate::bounds::{BoundingBall, Bounds};
 use crate::error::ShapeError;
-use crate::field::{Combine, Combined, Union};
+use crate::field::{Combine, Combined, SharedField, Union};
 use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
-use crate::shape::Shape;
-
-/// Union: `min(a, b)`.
-#[derive(Clone, Debug)]
-pub(crate) struct Smaller;
-
-impl Combine for Smaller {
-    #[inline(always)]
-    fn combine<S: Scalar>(&self, a: S, b: S) -> S {
-        a.min(b)
-    }
-}
 
 /// Intersection: `max(a, b)`.
 #[derive(Clone, Debug)]
-pub(crate) struct Larger;
+pub(crate) struct Maximum;
 
-impl Combine for Larger {
+impl Combine for Maximum {
     #[inline(always)]
     fn combine<S: Scalar>(&self, a: S, b: S) -> S {
         a.max(b)
@@ -34,9 +22,9 @@ impl Combine for Larger {
 
 /// Difference, a without b: `max(a, −b)`.
 #[derive(Clone, Debug)]
-pub(crate) struct Without;
+pub(crate) struct Subtraction;
 
-impl Combine for Without {
+impl Combine for Subtraction {
     #[inline(always)]
     fn combine<S: Scalar>(&self, a: S, b: S) -> S {
         a.max(-b)
@@ -45,23 +33,24 @@ impl Combine for Without {
 
 /// Symmetric difference: `max(min(a, b), −max(a, b))`.
 #[derive(Clone, Debug)]
-pub(crate) struct InOne;
+pub(crate) struct ExclusiveOr;
 
-impl Combine for InOne {
+impl Combine for ExclusiveOr {
     #[inline(always)]
     fn combine<S: Scalar>(&self, a: S, b: S) -> S {
         a.min(b).max(-a.max(b))
     }
 }
 
-/// What every operator on two fields has in common; quality is left as of `a`.
+/// The parts of a promise that every operator on two fields joins alike; the qualities
+/// are those of `a`.
 pub(crate) fn joined<const D: usize>(a: &Promise<D>, b: &Promise<D>) -> Promise<D> {
     let mut both = *a;
     join(&mut both, b);
     both
 }
 
-/// As [`joined`], in place: a union of many copies no promise.
+/// As [`joined`], in place, so that a union of many members copies no promise.
 fn join<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
     a.lipschitz = Scalar::max(a.lipschitz, b.lipschitz);
     if b.region.is_some() {
@@ -108,7 +97,7 @@ fn unite<const D: usize>(a: &mut Promise<D>, b: &Promise<D>) {
 }
 
 /// The promise of the union of `members`; `None` if there are none.
-fn promise_of_members<const D: usize>(members: &[Shape<D>]) -> Option<Promise<D>> {
+fn promise_of_members<const D: usize>(members: &[SharedField<D>]) -> Option<Promise<D>> {
     let (first, rest) = members.split_first()?;
     let mut promise = *first.promise();
     for member in rest {
@@ -158,100 +147,77 @@ fn promise_of_symmetric_difference<const D: usize>(
     Promise { outside: quality, inside: quality, ..promise_of_union(a, b) }
 }
 
-/// The promise of an operation folded over `shapes`.
-pub(crate) fn fold_promises<const D: usize>(
-    shapes: &[Shape<D>],
+/// The promise of an operation folded over `children`.
+fn fold_promises<const D: usize>(
+    children: &[SharedField<D>],
     rule: impl Fn(&Promise<D>, &Promise<D>) -> Promise<D>,
 ) -> Option<Promise<D>> {
-    let (first, rest) = shapes.split_first()?;
-    Some(rest.iter().fold(*first.promise(), |so_far, shape| rule(&so_far, shape.promise())))
+    let (first, rest) = children.split_first()?;
+    Some(rest.iter().fold(*first.promise(), |so_far, child| rule(&so_far, child.promise())))
 }
 
-/// Folds `operation` over `shapes`, with its rule for promises.
+/// Folds `operation` over `children`, with its rule for promises; one child alone stays as
+/// it is.
 pub(crate) fn combined<const D: usize, O: Combine + Clone>(
     operation: O,
     name: &'static str,
-    children: Vec<Shape<D>>,
+    mut children: Vec<SharedField<D>>,
     rule: impl Fn(&Promise<D>, &Promise<D>) -> Promise<D>,
-) -> Result<Shape<D>, ShapeError> {
+) -> Result<SharedField<D>, ShapeError> {
     let promise = fold_promises(&children, rule).ok_or_else(|| nothing_in(name))?;
-    let depth = Shape::deepest(&children) + 1;
     if children.len() == 1 {
-        return Ok(children[0].clone());
+        return Ok(children.swap_remove(0));
     }
-    Shape::from_operator(Combined { operation, children, promise }, depth)
+    Combined::shared(operation, children, promise)
 }
 
-fn nothing_in(name: &'static str) -> ShapeError {
+/// The error of an operator over no shape.
+pub(crate) fn nothing_in(name: &'static str) -> ShapeError {
     ShapeError::Count { parameter: name.into(), rule: "at least 1 shape".into(), count: 0 }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The union of all `shapes`: `min(a, b, …)`.
-    ///
-    /// Exact outside if all are, a bound inside. Unions among the shapes are
-    /// flattened. Members out of reach of the points asked for are skipped.
-    ///
-    /// # Errors
-    ///
-    /// If there are no shapes, or they are nested too deeply.
-    pub fn union(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
-        let mut members: Vec<Self> = shapes.into_iter().collect();
-        if members.iter().any(|shape| shape.members().is_some()) {
-            let own = |shape| Self::members(shape).unwrap_or(std::slice::from_ref(shape));
-            members = members.iter().flat_map(own).cloned().collect();
-        }
-        if members.len() == 1 {
-            return Ok(members.swap_remove(0));
-        }
-        let promise = promise_of_members(&members).ok_or_else(|| nothing_in("union"))?;
-        let depth = Self::deepest(&members) + 1;
-        Self::from_operator(Union::new(members, promise), depth)
-    }
+/// The members of a union, or the field itself.
+fn parts<const D: usize>(field: &SharedField<D>) -> &[SharedField<D>] {
+    field.members().unwrap_or(std::slice::from_ref(field))
+}
 
-    /// The intersection of all `shapes`: `max(a, b, …)`.
-    ///
-    /// A bound outside, exact inside if all are.
-    ///
-    /// # Errors
-    ///
-    /// If there are no shapes, or they are nested too deeply.
-    pub fn intersection(shapes: impl IntoIterator<Item = Self>) -> Result<Self, ShapeError> {
-        let children = shapes.into_iter().collect();
-        combined(Larger, "intersection", children, promise_of_intersection)
+/// The union of `children`, those of unions among them taken apart.
+pub(crate) fn union<const D: usize>(
+    children: Vec<SharedField<D>>,
+) -> Result<SharedField<D>, ShapeError> {
+    let mut members = children;
+    if members.iter().any(|child| child.members().is_some()) {
+        members = members.iter().flat_map(parts).cloned().collect();
     }
+    if members.len() == 1 {
+        return Ok(members.swap_remove(0));
+    }
+    let promise = promise_of_members(&members).ok_or_else(|| nothing_in("union"))?;
+    Union::shared(members, promise)
+}
 
-    /// This shape without `others`: `max(a, −b, …)`.
-    ///
-    /// A bound outside; exact inside if this shape is exact inside and all
-    /// others outside.
-    ///
-    /// # Errors
-    ///
-    /// If shapes are nested too deeply.
-    pub fn difference(
-        self,
-        others: impl IntoIterator<Item = Self>,
-    ) -> Result<Self, ShapeError> {
-        let others: Vec<_> = others.into_iter().collect();
-        if others.is_empty() {
-            return Ok(self);
-        }
-        let children = vec![self, Self::union(others)?];
-        combined(Without, "difference", children, promise_of_difference)
-    }
+/// The intersection of `children`.
+pub(crate) fn intersection<const D: usize>(
+    children: Vec<SharedField<D>>,
+) -> Result<SharedField<D>, ShapeError> {
+    combined(Maximum, "intersection", children, promise_of_intersection)
+}
 
-    /// What is in an odd number of `shapes`: `max(min(a, b), −max(a, b))`.
-    ///
-    /// A bound on both sides.
-    ///
-    /// # Errors
-    ///
-    /// If there are no shapes, or they are nested too deeply.
-    pub fn symmetric_difference(
-        shapes: impl IntoIterator<Item = Self>,
-    ) -> Result<Self, ShapeError> {
-        let children = shapes.into_iter().collect();
-        combined(InOne, "symmetric_difference", children, promise_of_symmetric_difference)
+/// The first of `children` without the union of the others.
+pub(crate) fn difference<const D: usize>(
+    mut children: Vec<SharedField<D>>,
+) -> Result<SharedField<D>, ShapeError> {
+    if children.len() > 1 {
+        let others = union(children.split_off(1))?;
+        children.push(others);
     }
+    combined(Subtraction, "difference", children, promise_of_difference)
+}
+
+/// What is in an odd number of `children`.
+pub(crate) fn symmetric_difference<const D: usize>(
+    children: Vec<SharedField<D>>,
+) -> Result<SharedField<D>, ShapeError> {
+    let rule = promise_of_symmetric_difference;
+    combined(ExclusiveOr, "symmetric_difference", children, rule)
 }

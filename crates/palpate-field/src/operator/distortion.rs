@@ -10,23 +10,22 @@
 //! derivative is `I + k·p⊥·eᵀ`: the point, turned by a right angle, times the axis. At
 //! a distance `r` from the axis of the rotation `k·p⊥` is `kr` long. For a twist it is
 //! at right angles to `e`, a shear, and lengths grow by at most its largest singular
-//! value, `½(kr + √(k²r² + 4))`; for a bend, by at most `1 + kr`. That grows without end, so a distorted shape is
-//! asked in its own box alone, the room: elsewhere at the nearest point of the room,
-//! with the distance to the room added. Both parts vary in directions at right
+//! value, `½(kr + √(k²r² + 4))`; for a bend, by at most `1 + kr`. Both grow without end, so
+//! the child is evaluated inside its swept box alone, the room: elsewhere at the nearest
+//! point of the room, with the distance to the room added. Both parts vary in directions at right
 //! angles to each other, so the sum is as steep as `√(L² + 1)`.
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
-use crate::field::{Warp, Warped};
+use crate::field::{SharedField, Warp, Warped};
 use crate::promise::{Promise, Quality, Rounding};
 use crate::scalar::{Float, Scalar};
-use crate::shape::Shape;
 use crate::vector::{Vector, array};
 
 /// The largest angle of a distortion [rad]: sines of larger angles lose digits.
 const MOST_TURN: f64 = 1e4;
 
-/// A box outside which a field is not asked.
+/// The box outside which the child is not evaluated.
 #[derive(Clone, Copy, Debug)]
 struct Room<const D: usize> {
     centre: [f64; D],
@@ -49,7 +48,7 @@ impl<const D: usize> Room<D> {
         }))
     }
 
-    /// How far `p` is from the room; zero inside.
+    /// The distance from `p` to the room; zero inside.
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S {
         // From the nearest point itself: on a wall, either it moves with `p` or the
@@ -180,8 +179,8 @@ fn swept<const D: usize>(aabb: &Aabb<D>, [u, v]: [usize; 2]) -> (Aabb<D>, f64) {
     (swept, radius * std::f64::consts::SQRT_2 * (1.0 + f64::EPSILON))
 }
 
-/// What a shape promises whose points were turned by up to `turn` [rad], and the
-/// distances between them stretched by up to `stretch`.
+/// The promise of a shape whose points are turned by up to `turn` [rad] and whose
+/// lengths are stretched by up to `stretch`.
 fn distorted<const D: usize>(
     child: &Promise<D>,
     room: &Aabb<D>,
@@ -217,7 +216,7 @@ impl Turning {
     const BEND: Self = Self { operator: "bend", plane: [0, 1], along: 0 };
     const TWIST: Self = Self { operator: "twist", plane: [2, 0], along: 1 };
 
-    /// How much longer lengths become at most, for the rate times the radius.
+    /// The largest stretch of a length, for the rate times the radius.
     fn stretch(&self, kr: f64) -> f64 {
         if self.plane.contains(&self.along) { 1.0 + kr } else { 0.5 * (kr + kr.hypot(2.0)) }
     }
@@ -247,62 +246,17 @@ impl Turning {
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The shape bent: turned in the plane of x and y by `rate` · x [rad/m].
-    ///
-    /// Distances are no bounds, but no steeper than the promise says; see the
-    /// derivation in the source. Only a shape with bounds can be bent.
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.02]))?);
-    /// let bow = bar.bent(2.0)?;
-    /// assert_eq!(bow.distance(Vector([0.0, 0.0])), -0.01);
-    /// // At x = 0.1 the bar has turned by 0.2 rad.
-    /// let on_bow = Vector([0.1, 0.1 * 0.2_f64.tan()]);
-    /// assert!((bow.distance(on_bow) + 0.01).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the rate turns the shape by more than 10⁴ rad, the shape has no bounds or a
-    /// steepness that is known in part of space alone, or shapes are nested too deeply.
-    pub fn bent(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) = Turning::BEND.of(self.promise(), rate)?;
-        let depth = self.depth() + 1;
-        Self::from_operator(Warped { map: Bend { rate, room }, child: self, promise }, depth)
-    }
+/// The `child` turned in the plane of x and y by `rate` · x.
+pub(crate) fn bent<const D: usize>(
+    child: SharedField<D>,
+    rate: f64,
+) -> Result<SharedField<D>, ShapeError> {
+    let (room, promise) = Turning::BEND.of(child.promise(), rate)?;
+    Warped::shared(Bend { rate, room }, child, promise)
 }
 
-impl Shape<3> {
-    /// The shape twisted: turned about y by `rate` · y [rad/m], from z towards x.
-    ///
-    /// Promises and errors as of [`bent`](Self::bent).
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bar = Shape::from_kernel(Cuboid::new(Vector([0.02, 0.4, 0.1]))?);
-    /// let quarter_turn = std::f64::consts::FRAC_PI_2 / 0.1;
-    /// let screw = bar.twisted(quarter_turn)?;
-    /// assert!((screw.distance(Vector([0.0, 0.0, 0.05]))).abs() < 1e-15);
-    /// // 0.1 m up, the long side has turned from z to x.
-    /// assert!((screw.distance(Vector([0.05, 0.1, 0.0]))).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// As [`bent`](Self::bent).
-    pub fn twisted(self, rate: f64) -> Result<Self, ShapeError> {
-        let (room, promise) = Turning::TWIST.of(self.promise(), rate)?;
-        let depth = self.depth() + 1;
-        Self::from_operator(Warped { map: Twist { rate, room }, child: self, promise }, depth)
-    }
+/// The `child` turned about y by `rate` · y.
+pub(crate) fn twisted(child: SharedField<3>, rate: f64) -> Result<SharedField<3>, ShapeError> {
+    let (room, promise) = Turning::TWIST.of(child.promise(), rate)?;
+    Warped::shared(Twist { rate, room }, child, promise)
 }

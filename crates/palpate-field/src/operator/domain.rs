@@ -6,10 +6,9 @@
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::field::{Warp, Warped};
+use crate::field::{SharedField, Warp, Warped};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
-use crate::shape::Shape;
 use crate::vector::{Vector, array, unrolled};
 
 /// `f(|pₐ|, …)` along axis a.
@@ -85,89 +84,6 @@ impl Warp<3, 2> for Revolution {
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The part at positive coordinates of `axis`, and its mirror image:
-    /// `f(|x|, …)`.
-    ///
-    /// Outside, exact where the shape is if it stays on the positive side; inside,
-    /// if it does not touch the mirror either. Else a bound.
-    ///
-    /// # Errors
-    ///
-    /// If there is no such axis, or shapes are nested too deeply.
-    pub fn mirrored(self, axis: usize) -> Result<Self, ShapeError> {
-        if axis >= D {
-            let rule = format!("the number of an axis, less than {D}");
-            return Err(ShapeError::number("axis", rule, axis as f64, Unit::One));
-        }
-        let child = self.promise();
-        let one_side = child.bounds.is_some_and(|b| b.aabb.min[axis] >= 0.0);
-        // Halves that touch have a wall between them that is no surface.
-        let apart = child.bounds.is_some_and(|b| b.aabb.min[axis] > 0.0);
-        let promise = Promise {
-            bounds: child.bounds.map(|b| mirrored_bounds(&b, axis)),
-            above_bounds: child.above_bounds && one_side,
-            convex: false,
-            symmetric: std::array::from_fn(|i| i == axis || child.symmetric[i]),
-            region: child.region.map(|ball| BoundingBall {
-                // What lies on the positive side only.
-                radius: (ball.radius - ball.centre[axis].abs()).max(0.0),
-                centre: Vector(array!(i < D => {
-                    if i == axis { 0.0 } else { ball.centre[i] }
-                })),
-            }),
-            outside: if one_side { child.outside } else { child.outside.bounded() },
-            inside: if apart { child.inside } else { child.inside.bounded() },
-            ..*child
-        };
-        self.warped(Mirror { axis }, promise)
-    }
-
-    /// The shape cut at the coordinate planes and pulled apart by `lengths` [m],
-    /// the gap filled with the cross-section: `f(p − clamp(p, −l/2, l/2))`.
-    ///
-    /// Outside, exact where the shape is if it is convex and symmetric about
-    /// each cut, else a bound; inside, a bound, since the ends are not as near
-    /// in the elongated shape as they were.
-    ///
-    /// # Errors
-    ///
-    /// If a length is negative, or shapes are nested too deeply.
-    pub fn elongated(self, lengths: [f64; D]) -> Result<Self, ShapeError> {
-        for length in lengths {
-            not_negative("elongate", length, Unit::Metre)?;
-        }
-        let half = lengths.map(|l| 0.5 * l);
-        let child = self.promise();
-        let kept = child.convex && (0..D).all(|i| half[i] == 0.0 || child.symmetric[i]);
-        let reach = Vector(half).norm();
-        let own = Rounding::of_operations(2.0 * child.lipschitz.max(1.0), reach);
-        let promise = Promise {
-            outside: if kept { child.outside } else { child.outside.bounded() },
-            inside: child.inside.bounded(),
-            bounds: child.bounds.map(|b| Bounds {
-                aabb: Aabb { min: b.aabb.min - Vector(half), max: b.aabb.max + Vector(half) },
-                ball: BoundingBall { radius: b.ball.radius + reach, ..b.ball },
-            }),
-            above_bounds: child.above_bounds && kept,
-            convex: kept,
-            // Points move by at most `reach`, and as far from each other at most.
-            region: child
-                .region
-                .map(|ball| BoundingBall { radius: (ball.radius - reach).max(0.0), ..ball }),
-            rounding: child.rounding.plus(&own),
-            ..*child
-        };
-        let map = Elongation { half, symmetric: child.symmetric };
-        self.warped(map, promise)
-    }
-
-    fn warped(self, map: impl Warp<D, D>, promise: Promise<D>) -> Result<Self, ShapeError> {
-        let depth = self.depth() + 1;
-        Self::from_operator(Warped { map, child: self, promise }, depth)
-    }
-}
-
 fn mirrored_bounds<const D: usize>(bounds: &Bounds<D>, axis: usize) -> Bounds<D> {
     let mut aabb = bounds.aabb;
     let reach = aabb.max[axis].max(0.0);
@@ -179,97 +95,143 @@ fn mirrored_bounds<const D: usize>(bounds: &Bounds<D>, axis: usize) -> Bounds<D>
     Bounds { aabb, ball: if around.radius < ball.radius { around } else { ball } }
 }
 
-impl Shape<2> {
-    /// The profile, drawn in x and z, as a solid of `height` [m] along y.
-    ///
-    /// Every promise of the profile is kept.
-    ///
-    /// # Errors
-    ///
-    /// If the height is not positive, or shapes are nested too deeply.
-    pub fn extruded(self, height: f64) -> Result<Shape<3>, ShapeError> {
-        let half_height = 0.5 * positive("height", height, Unit::Metre)?;
-        let child = self.promise();
-        let solid = |p: Vector<f64, 2>, y: f64| Vector([p[0], y, p[1]]);
-        let bounds = child.bounds.map(|b| Bounds {
-            aabb: Aabb {
-                min: solid(b.aabb.min, -half_height),
-                max: solid(b.aabb.max, half_height),
-            },
-            ball: BoundingBall {
-                centre: solid(b.ball.centre, 0.0),
-                radius: b.ball.radius.hypot(half_height) * (1.0 + 4.0 * f64::EPSILON),
-            },
-        });
-        let own = Rounding::of_operations(5.0 * child.lipschitz.max(1.0), half_height);
-        let promise = Promise {
-            outside: child.outside,
-            inside: child.inside,
-            lipschitz: child.lipschitz.max(1.0),
-            region: child.region.map(|ball| BoundingBall {
-                centre: solid(ball.centre, 0.0),
-                radius: ball.radius,
-            }),
-            bounds,
-            above_bounds: child.above_bounds,
-            convex: child.convex,
-            symmetric: [child.symmetric[0], true, child.symmetric[1]],
-            has_interior: child.has_interior,
-            reach: child.reach,
-            rounding: child.rounding.times(2.0).plus(&own),
-        };
-        let depth = self.depth() + 1;
-        let node = Warped { map: Extrusion { half_height }, child: self, promise };
-        Shape::from_operator(node, depth)
+/// The part of `child` at positive coordinates of `axis`, and its mirror image.
+pub(crate) fn mirrored<const D: usize>(
+    child: SharedField<D>,
+    axis: usize,
+) -> Result<SharedField<D>, ShapeError> {
+    if axis >= D {
+        let rule = format!("the number of an axis, less than {D}");
+        return Err(ShapeError::number("axis", rule, axis as f64, Unit::One));
     }
+    let of = child.promise();
+    let one_side = of.bounds.is_some_and(|b| b.aabb.min[axis] >= 0.0);
+    // Halves that touch have a wall between them that is no surface.
+    let apart = of.bounds.is_some_and(|b| b.aabb.min[axis] > 0.0);
+    let promise = Promise {
+        bounds: of.bounds.map(|b| mirrored_bounds(&b, axis)),
+        above_bounds: of.above_bounds && one_side,
+        convex: false,
+        symmetric: std::array::from_fn(|i| i == axis || of.symmetric[i]),
+        region: of.region.map(|ball| BoundingBall {
+            // What lies on the positive side only.
+            radius: (ball.radius - ball.centre[axis].abs()).max(0.0),
+            centre: Vector(array!(i < D => {
+                if i == axis { 0.0 } else { ball.centre[i] }
+            })),
+        }),
+        outside: if one_side { of.outside } else { of.outside.bounded() },
+        inside: if apart { of.inside } else { of.inside.bounded() },
+        ..*of
+    };
+    Warped::shared(Mirror { axis }, child, promise)
+}
 
-    /// The profile turned about the y axis: its x is the distance from the axis.
-    ///
-    /// Outside, exact where the profile is if it lies in x ≥ 0 or is its own mirror
-    /// image; inside, if it does not touch the axis either. Else a bound. A part at
-    /// negative x is not seen.
-    ///
-    /// # Errors
-    ///
-    /// If shapes are nested too deeply.
-    pub fn revolved(self) -> Result<Shape<3>, ShapeError> {
-        let child = self.promise();
-        let one_side = child.bounds.is_some_and(|b| b.aabb.min[0] >= 0.0);
-        // A profile that is its own mirror image turns into itself.
-        let kept = one_side || child.symmetric[0];
-        // One that touches the axis leaves a line there that is no surface.
-        let apart = child.bounds.is_some_and(|b| b.aabb.min[0] > 0.0);
-        let solid = apart || child.symmetric[0];
-        let bounds = child.bounds.map(|b| {
-            let r = b.aabb.max[0].max(0.0);
-            let aabb = Aabb {
-                min: Vector([-r, b.aabb.min[1], -r]),
-                max: Vector([r, b.aabb.max[1], r]),
-            };
-            let y = b.ball.centre[1];
-            let radius = b.ball.centre[0].abs() + b.ball.radius;
-            let ball = BoundingBall { centre: Vector([0.0, y, 0.0]), radius };
-            let around = Bounds::of_box(aabb).ball;
-            Bounds { aabb, ball: if around.radius < radius { around } else { ball } }
-        });
-        let own = Rounding::of_operations(3.0 * child.lipschitz.max(1.0), 0.0);
-        let promise = Promise {
-            outside: if kept { child.outside } else { child.outside.bounded() },
-            inside: if solid { child.inside } else { child.inside.bounded() },
-            lipschitz: child.lipschitz,
-            region: child.region.map(|ball| BoundingBall {
-                centre: Vector([0.0, ball.centre[1], 0.0]),
-                radius: (ball.radius - ball.centre[0].abs()).max(0.0),
-            }),
-            bounds,
-            above_bounds: child.above_bounds && kept,
-            convex: child.convex && child.symmetric[0],
-            symmetric: [true, child.symmetric[1], true],
-            has_interior: child.has_interior,
-            reach: child.reach,
-            rounding: child.rounding.plus(&own),
-        };
-        let depth = self.depth() + 1;
-        Shape::from_operator(Warped { map: Revolution, child: self, promise }, depth)
+/// The `child` cut at the coordinate planes and pulled apart by `lengths`.
+pub(crate) fn elongated<const D: usize>(
+    child: SharedField<D>,
+    lengths: [f64; D],
+) -> Result<SharedField<D>, ShapeError> {
+    for length in lengths {
+        not_negative("elongate", length, Unit::Metre)?;
     }
+    let half = lengths.map(|l| 0.5 * l);
+    let of = child.promise();
+    let kept = of.convex && (0..D).all(|i| half[i] == 0.0 || of.symmetric[i]);
+    let reach = Vector(half).norm();
+    let own = Rounding::of_operations(2.0 * of.lipschitz.max(1.0), reach);
+    let promise = Promise {
+        outside: if kept { of.outside } else { of.outside.bounded() },
+        inside: of.inside.bounded(),
+        bounds: of.bounds.map(|b| Bounds {
+            aabb: Aabb { min: b.aabb.min - Vector(half), max: b.aabb.max + Vector(half) },
+            ball: BoundingBall { radius: b.ball.radius + reach, ..b.ball },
+        }),
+        above_bounds: of.above_bounds && kept,
+        convex: kept,
+        // Points move by at most `reach`, and as far from each other at most.
+        region: of
+            .region
+            .map(|ball| BoundingBall { radius: (ball.radius - reach).max(0.0), ..ball }),
+        rounding: of.rounding.plus(&own),
+        ..*of
+    };
+    let map = Elongation { half, symmetric: of.symmetric };
+    Warped::shared(map, child, promise)
+}
+
+/// The `child`, drawn in x and z, as a solid of `height` along y.
+pub(crate) fn extruded(
+    child: SharedField<2>,
+    height: f64,
+) -> Result<SharedField<3>, ShapeError> {
+    let half_height = 0.5 * positive("height", height, Unit::Metre)?;
+    let of = child.promise();
+    let solid = |p: Vector<f64, 2>, y: f64| Vector([p[0], y, p[1]]);
+    let bounds = of.bounds.map(|b| Bounds {
+        aabb: Aabb {
+            min: solid(b.aabb.min, -half_height),
+            max: solid(b.aabb.max, half_height),
+        },
+        ball: BoundingBall {
+            centre: solid(b.ball.centre, 0.0),
+            radius: b.ball.radius.hypot(half_height) * (1.0 + 4.0 * f64::EPSILON),
+        },
+    });
+    let own = Rounding::of_operations(5.0 * of.lipschitz.max(1.0), half_height);
+    let promise = Promise {
+        outside: of.outside,
+        inside: of.inside,
+        lipschitz: of.lipschitz.max(1.0),
+        region: of
+            .region
+            .map(|ball| BoundingBall { centre: solid(ball.centre, 0.0), radius: ball.radius }),
+        bounds,
+        above_bounds: of.above_bounds,
+        convex: of.convex,
+        symmetric: [of.symmetric[0], true, of.symmetric[1]],
+        has_interior: of.has_interior,
+        reach: of.reach,
+        rounding: of.rounding.times(2.0).plus(&own),
+    };
+    Warped::shared(Extrusion { half_height }, child, promise)
+}
+
+/// The `child` turned about the y axis.
+pub(crate) fn revolved(child: SharedField<2>) -> Result<SharedField<3>, ShapeError> {
+    let of = child.promise();
+    let one_side = of.bounds.is_some_and(|b| b.aabb.min[0] >= 0.0);
+    // A profile that is its own mirror image turns into itself.
+    let kept = one_side || of.symmetric[0];
+    // One that touches the axis leaves a line there that is no surface.
+    let apart = of.bounds.is_some_and(|b| b.aabb.min[0] > 0.0);
+    let solid = apart || of.symmetric[0];
+    let bounds = of.bounds.map(|b| {
+        let r = b.aabb.max[0].max(0.0);
+        let aabb =
+            Aabb { min: Vector([-r, b.aabb.min[1], -r]), max: Vector([r, b.aabb.max[1], r]) };
+        let y = b.ball.centre[1];
+        let radius = b.ball.centre[0].abs() + b.ball.radius;
+        let ball = BoundingBall { centre: Vector([0.0, y, 0.0]), radius };
+        let around = Bounds::of_box(aabb).ball;
+        Bounds { aabb, ball: if around.radius < radius { around } else { ball } }
+    });
+    let own = Rounding::of_operations(3.0 * of.lipschitz.max(1.0), 0.0);
+    let promise = Promise {
+        outside: if kept { of.outside } else { of.outside.bounded() },
+        inside: if solid { of.inside } else { of.inside.bounded() },
+        lipschitz: of.lipschitz,
+        region: of.region.map(|ball| BoundingBall {
+            centre: Vector([0.0, ball.centre[1], 0.0]),
+            radius: (ball.radius - ball.centre[0].abs()).max(0.0),
+        }),
+        bounds,
+        above_bounds: of.above_bounds && kept,
+        convex: of.convex && of.symmetric[0],
+        symmetric: [true, of.symmetric[1], true],
+        has_interior: of.has_interior,
+        reach: of.reach,
+        rounding: of.rounding.plus(&own),
+    };
+    Warped::shared(Revolution, child, promise)
 }

@@ -5,10 +5,9 @@
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
-use crate::field::{Remap, Remapped};
+use crate::field::{Remap, Remapped, SharedField};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::Scalar;
-use crate::shape::Shape;
 use crate::vector::Vector;
 
 /// `max(f, distance to the box)`.
@@ -32,28 +31,26 @@ impl<const D: usize> Remap<D> for Guard<D> {
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The same shape with values of at least the distance to its box.
-    ///
-    /// A field that is only a bound may be small far from its shape; an operator
-    /// that moves the surface outwards would find a surface there. Inside the
-    /// box nothing changes: the distance to it is negative there, and deeper than
-    /// the shape's own, which lies in it.
-    pub(crate) fn guarded(self) -> Result<Self, ShapeError> {
-        let promise = self.promise();
-        let (Some(bounds), false) = (promise.bounds, promise.above_bounds) else {
-            return Ok(self);
-        };
-        let size = bounds.radius_about_origin();
-        let promise = Promise {
-            // The ball may be tighter than the box; the guard knows the box alone.
-            bounds: Some(Bounds::of_box(bounds.aabb)),
-            above_bounds: true,
-            rounding: promise.rounding.or(&Rounding::of_operations(8.0, size)),
-            ..*promise
-        };
-        let depth = self.depth() + 1;
-        let node = Remapped { map: Guard::new(&bounds.aabb), child: self, promise };
-        Self::from_operator(node, depth)
-    }
+/// The same field with values of at least the distance to its box.
+///
+/// A field that is only a bound may be small far from its shape; an operator
+/// that moves the surface outwards would find a surface there. Inside the
+/// box nothing changes: the distance to it is negative there, and deeper than
+/// the shape's own, which lies in it.
+pub(crate) fn guarded<const D: usize>(
+    child: SharedField<D>,
+) -> Result<SharedField<D>, ShapeError> {
+    let promise = child.promise();
+    let (Some(bounds), false) = (promise.bounds, promise.above_bounds) else {
+        return Ok(child);
+    };
+    let size = bounds.radius_about_origin();
+    let promise = Promise {
+        // The ball may be tighter than the box; the guard knows the box alone.
+        bounds: Some(Bounds::of_box(bounds.aabb)),
+        above_bounds: true,
+        rounding: promise.rounding.or(&Rounding::of_operations(8.0, size)),
+        ..*promise
+    };
+    Remapped::shared(Guard::new(&bounds.aabb), child, promise)
 }

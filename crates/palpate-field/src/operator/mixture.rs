@@ -4,11 +4,11 @@
 //! Sums of two fields: displacement and morphing.
 
 use super::boolean::{combined, joined, promise_of_union};
+use super::guard::guarded;
 use crate::error::{ShapeError, Unit, positive};
-use crate::field::Combine;
+use crate::field::{Combine, SharedField};
 use crate::promise::{Promise, Quality, Rounding};
 use crate::scalar::Scalar;
-use crate::shape::Shape;
 
 /// `a − clamp(b, −h, h)`.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ impl Combine for Morph {
     }
 }
 
-/// As steep as both together; the surface moves by at most the height.
+/// The steepness is the sum of both; the surface moves by at most the height.
 fn promise_of_displacement<const D: usize>(
     a: &Promise<D>,
     b: &Promise<D>,
@@ -72,60 +72,27 @@ fn promise_of_morph<const D: usize>(
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// The shape with its surface moved by another field, outwards where that is
-    /// positive, by at most `height` [m]: `f − clamp(g, −h, h)`.
-    ///
-    /// Distances are no bounds, but at most as steep as both fields together.
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::{Ball, HalfSpace}};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
-    /// let hollow = Shape::from_kernel(Ball::new(0.1)?);
-    /// let dented = floor.displaced(hollow, 0.02)?;
-    /// assert_eq!(dented.distance(Vector([0.0, 0.0])), 0.02);
-    /// assert_eq!(dented.distance(Vector([0.5, 0.0])), -0.02);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the height is not positive, or shapes are nested too deeply.
-    pub fn displaced(self, by: Self, height: f64) -> Result<Self, ShapeError> {
-        let height = positive("height", height, Unit::Metre)?;
-        let rule = |a: &Promise<D>, b: &Promise<D>| promise_of_displacement(a, b, height);
-        combined(Displacement { height }, "displace", vec![self.guarded()?, by], rule)
-    }
+/// The `child` with its surface moved by the field `by`, by at most `height`.
+pub(crate) fn displaced<const D: usize>(
+    child: SharedField<D>,
+    by: SharedField<D>,
+    height: f64,
+) -> Result<SharedField<D>, ShapeError> {
+    let height = positive("height", height, Unit::Metre)?;
+    let rule = |a: &Promise<D>, b: &Promise<D>| promise_of_displacement(a, b, height);
+    combined(Displacement { height }, "displace", vec![guarded(child)?, by], rule)
+}
 
-    /// A shape on the way from this one (`progress` 0) to another (1): the weighted
-    /// mean of both fields.
-    ///
-    /// A bound on both sides.
-    ///
-    /// ```
-    /// use palpate_field::{Shape, Vector, kernel::Ball};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let small = Shape::from_kernel(Ball::new(0.1)?);
-    /// let large = Shape::from_kernel(Ball::new(0.3)?);
-    /// let between = small.morphed(large, 0.5)?;
-    /// assert!((between.distance(Vector([0.5, 0.0])) - 0.3).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the progress is not from 0 to 1, or shapes are nested too deeply.
-    pub fn morphed(self, into: Self, progress: f64) -> Result<Self, ShapeError> {
-        if !(0.0..=1.0).contains(&progress) {
-            return Err(ShapeError::number("morph", "from 0 to 1", progress, Unit::One));
-        }
-        let weights = [1.0 - progress, progress];
-        let rule = |a: &Promise<D>, b: &Promise<D>| promise_of_morph(a, b, weights);
-        combined(Morph { weights }, "morph", vec![self, into], rule)
+/// The weighted mean of two fields.
+pub(crate) fn morphed<const D: usize>(
+    from: SharedField<D>,
+    into: SharedField<D>,
+    progress: f64,
+) -> Result<SharedField<D>, ShapeError> {
+    if !(0.0..=1.0).contains(&progress) {
+        return Err(ShapeError::number("morph", "from 0 to 1", progress, Unit::One));
     }
+    let weights = [1.0 - progress, progress];
+    let rule = |a: &Promise<D>, b: &Promise<D>| promise_of_morph(a, b, weights);
+    combined(Morph { weights }, "morph", vec![from, into], rule)
 }

@@ -1,22 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Operators: what turns shapes into shapes.
+//! Operators: what turns fields into fields.
 //!
 //! Each file holds the formulas of one family, the rule by which the family's
-//! promises follow from its children's, and the methods of
-//! [`Shape`](crate::Shape) that build it.
+//! promises follow from its children's, and the functions that build its fields. The
+//! methods of [`Shape`](crate::Shape) make a [`Node`](crate::Node), which calls them.
 
 pub(crate) mod boolean;
-mod distortion;
-mod domain;
-pub(crate) mod doors;
+pub(crate) mod distortion;
+pub(crate) mod domain;
 mod guard;
-mod mixture;
-mod repetition;
-mod smooth;
-mod surface;
-mod transform;
+pub(crate) mod mixture;
+pub(crate) mod repetition;
+pub(crate) mod smooth;
+pub(crate) mod surface;
+pub(crate) mod transform;
 
 pub use repetition::Copies;
-pub use smooth::Smooth;
+pub use smooth::{Boolean, Profile, Profile as Smooth};

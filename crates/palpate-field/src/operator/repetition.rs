@@ -18,19 +18,20 @@
 //! taken. It equals the field on the wall, and both vary by at most the Lipschitz
 //! constant, so it is wrong by twice that times the depth beyond the wall at most.
 
+use std::sync::Arc;
+
+use super::guard::guarded;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{LARGEST_LENGTH, ShapeError, Unit, positive};
-use crate::field::{Combined, Remap, Remapped, Warp, Warped};
-use crate::operator::boolean::Smaller;
+use crate::field::{Combined, Minimum, Remap, Remapped, SharedField, Warp, Warped};
 use crate::promise::{Promise, Rounding};
 use crate::scalar::{Float, Scalar};
-use crate::shape::Shape;
 use crate::vector::{Vector, array, unrolled};
 
-/// How many copies there are to either side if there is no end [1].
+/// The number of copies to either side where a row has no end.
 const ENDLESS: i32 = 1_000_000;
 
-/// How often a shape is repeated along an axis.
+/// The copies of a shape along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Copies {
     /// Once, where it is.
@@ -108,13 +109,13 @@ impl Row {
         self.first == 0.0 && self.last == 0.0
     }
 
-    /// Where the copy is that `x` is nearest to, from copy zero.
+    /// The place of the copy nearest to `x`, relative to copy zero.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S) -> S {
         (x - S::constant(self.centre)).nearest_multiple(self.spacing, self.first, self.last)
     }
 
-    /// How far `x` is beyond the wall to a next tile; negative within.
+    /// The depth of `x` beyond the wall to the next tile; zero within its own.
     #[inline(always)]
     fn beyond<S: Scalar>(&self, x: S) -> S {
         let place = self.nearest(x);
@@ -128,10 +129,11 @@ impl Row {
         none.max(above.max(below))
     }
 
-    /// How far `x` is at least from the copies that are not asked, along the axis.
+    /// A lower bound of the distance from `x` to the copies that are not evaluated, along
+    /// the axis.
     ///
-    /// Also from those next after the ends, as if they were there: where a point comes
-    /// into the last tile, the copy that it leaves behind must not limit it at once.
+    /// A row counts as one copy longer at each end: otherwise the bound would jump where
+    /// a point enters the last tile and the copy two tiles behind it is skipped.
     #[inline(always)]
     fn clearance<S: Scalar>(&self, x: S) -> S {
         let place = self.nearest(x);
@@ -145,7 +147,7 @@ impl Row {
     }
 }
 
-/// Copies along all axes.
+/// The rows of copies along all axes.
 #[derive(Clone, Copy, Debug)]
 struct Grid<const D: usize> {
     rows: [Row; D],
@@ -154,7 +156,7 @@ struct Grid<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// How wrong the formula of one tile may be in the whole of a cell.
+    /// A bound of the error over a cell where only the formula of one tile is evaluated.
     #[inline(always)]
     fn across_walls<S: Scalar>(&self, p: Vector<S, D>) -> S {
         let mut sum = S::constant(0.0);
@@ -188,9 +190,9 @@ impl<const D: usize> Grid<D> {
 #[derive(Debug)]
 pub(crate) struct Tile<const D: usize> {
     grid: Grid<D>,
-    /// How many tiles further, for each axis.
+    /// The offset from the point's own tile, in tiles along each axis.
     beside: [f64; D],
-    /// No other copy is asked.
+    /// `true` if no other copy is evaluated.
     alone: bool,
 }
 
@@ -220,7 +222,8 @@ impl<const D: usize> Warp<D, D> for Tile<D> {
     }
 }
 
-/// `min(f, clearance)`: how far the copies are that were not asked.
+/// `min(f, clearance)`, with the clearance a bound of the distance to the copies that
+/// were not evaluated.
 #[derive(Debug)]
 pub(crate) struct Clearance<const D: usize> {
     grid: Grid<D>,
@@ -251,7 +254,7 @@ impl<const D: usize> Remap<D> for Clearance<D> {
     }
 }
 
-/// What copies promise of which the nearest is asked.
+/// The promise of copies of which only the nearest is evaluated.
 fn promise_of_tiles<const D: usize>(
     child: &Promise<D>,
     grid: &Grid<D>,
@@ -274,95 +277,65 @@ fn promise_of_tiles<const D: usize>(
     }
 }
 
-impl<const D: usize> Shape<D> {
-    /// Copies of the shape on a grid: for each axis, how many and how far apart.
-    ///
-    /// Along an axis in which the shape is symmetric and no wider than the spacing,
-    /// one copy is asked, and every promise outside is kept. Along others the copies
-    /// to both sides are asked too, three times as many for each, and distances are
-    /// bounds.
-    ///
-    /// ```
-    /// use palpate_field::operator::Copies;
-    /// use palpate_field::{Shape, Vector, kernel::Ball};
-    ///
-    /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let bead = Shape::from_kernel(Ball::new(0.1)?);
-    /// let row = Copies::Between { spacing: 0.5, first: 0, last: 3 };
-    /// let beads = bead.clone().repeated([row, Copies::One])?;
-    /// assert_eq!(beads.distance(Vector([1.0, 0.2])), 0.1);
-    /// assert_eq!(beads.distance(Vector([2.0, 0.0])), 0.4);
-    ///
-    /// let floor = bead.repeated([Copies::Endless { spacing: 0.25 }, Copies::One])?;
-    /// assert!((floor.distance(Vector([-1000.0, 0.3])) - 0.2).abs() < 1e-15);
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// If the shape has no bounds or a steepness that is known in part of space alone,
-    /// a spacing is not positive or less than half the width of the shape, the first
-    /// number is larger than the last, or shapes are nested too deeply.
-    pub fn repeated(self, copies: [Copies; D]) -> Result<Self, ShapeError> {
-        let child = *self.promise();
-        let needs = |needs: &'static str| ShapeError::Unsuitable {
-            operator: "repeat",
-            needs: needs.into(),
-        };
-        let copy = child.bounds.ok_or_else(|| needs("a shape with bounds"))?.aabb;
-        if child.region.is_some() {
-            return Err(needs("a shape whose steepness is known everywhere"));
-        }
-        let mut rows = Vec::with_capacity(D);
-        for (i, copies) in copies.into_iter().enumerate() {
-            rows.push(Row::new(copies, copy.min[i], copy.max[i], child.symmetric[i])?);
-        }
-        let rows = std::array::from_fn(|i| rows[i]);
-        let grid = Grid { rows, lipschitz: child.lipschitz.max(1.0) };
-        let promise = promise_of_tiles(&child, &grid, &copy);
-        if rows.iter().any(|row| row.neighbours) {
-            return self.with_neighbours(grid, &grid.aabb(&copy), &promise);
-        }
-        let depth = self.depth() + 1;
-        let map = Tile { grid, beside: [0.0; D], alone: true };
-        Self::from_operator(Warped { map, child: self, promise }, depth)
+/// Copies of `child` on a grid.
+pub(crate) fn repeated<const D: usize>(
+    child: SharedField<D>,
+    copies: [Copies; D],
+) -> Result<SharedField<D>, ShapeError> {
+    let of = *child.promise();
+    let needs = |needs: &'static str| ShapeError::Unsuitable {
+        operator: "repeat",
+        needs: needs.into(),
+    };
+    let copy = of.bounds.ok_or_else(|| needs("a shape with bounds"))?.aabb;
+    if of.region.is_some() {
+        return Err(needs("a shape whose steepness is known everywhere"));
     }
+    let mut rows = Vec::with_capacity(D);
+    for (i, copies) in copies.into_iter().enumerate() {
+        rows.push(Row::new(copies, copy.min[i], copy.max[i], of.symmetric[i])?);
+    }
+    let rows = std::array::from_fn(|i| rows[i]);
+    let grid = Grid { rows, lipschitz: of.lipschitz.max(1.0) };
+    let promise = promise_of_tiles(&of, &grid, &copy);
+    if rows.iter().any(|row| row.neighbours) {
+        return with_neighbours(child, grid, &grid.aabb(&copy), &promise);
+    }
+    let map = Tile { grid, beside: [0.0; D], alone: true };
+    Warped::shared(map, child, promise)
+}
 
-    /// The copies of a point's tile and of those beside it, and the clearance.
-    fn with_neighbours(
-        self,
-        grid: Grid<D>,
-        all: &Aabb<D>,
-        alone: &Promise<D>,
-    ) -> Result<Self, ShapeError> {
-        let promise = Promise { above_bounds: true, ..alone.bound() };
-        let child = self.guarded()?;
-        let depth = child.depth() + 1;
-        let mut besides = vec![[0.0; D]];
-        for (i, row) in grid.rows.iter().enumerate() {
-            if row.neighbours {
-                let here = besides.clone();
-                for step in [-1.0, 1.0] {
-                    besides.extend(here.iter().map(|beside| {
-                        let mut beside = *beside;
-                        beside[i] = step;
-                        beside
-                    }));
-                }
+/// The copies of a point's tile and of those beside it, and the clearance.
+fn with_neighbours<const D: usize>(
+    child: SharedField<D>,
+    grid: Grid<D>,
+    all: &Aabb<D>,
+    alone: &Promise<D>,
+) -> Result<SharedField<D>, ShapeError> {
+    let promise = Promise { above_bounds: true, ..alone.bound() };
+    let child = guarded(child)?;
+    let mut besides = vec![[0.0; D]];
+    for (i, row) in grid.rows.iter().enumerate() {
+        if row.neighbours {
+            let here = besides.clone();
+            for step in [-1.0, 1.0] {
+                besides.extend(here.iter().map(|beside| {
+                    let mut beside = *beside;
+                    beside[i] = step;
+                    beside
+                }));
             }
         }
-        let tiles: Result<Vec<_>, _> = besides
-            .into_iter()
-            .map(|beside| {
-                let map = Tile { grid, beside, alone: false };
-                Self::from_operator(Warped { map, child: child.clone(), promise }, depth)
-            })
-            .collect();
-        let nearest = Combined { operation: Smaller, children: tiles?, promise };
-        let nearest = Self::from_operator(nearest, depth + 1)?;
-        let (centre, half_extents) = (all.centre().0, all.half_extents().0);
-        let map = Clearance { grid, centre, half_extents };
-        Self::from_operator(Remapped { map, child: nearest, promise }, depth + 2)
     }
+    let tiles: Result<Vec<_>, _> = besides
+        .into_iter()
+        .map(|beside| {
+            let map = Tile { grid, beside, alone: false };
+            Warped::shared(map, Arc::clone(&child), promise)
+        })
+        .collect();
+    let nearest = Combined::shared(Minimum, tiles?, promise)?;
+    let (centre, half_extents) = (all.centre().0, all.half_extents().0);
+    let map = Clearance { grid, centre, half_extents };
+    Remapped::shared(map, nearest, promise)
 }

@@ -35,7 +35,7 @@ pub trait Blend: Copy + Send + Sync + 'static {
     fn curvature(t: f64) -> f64;
 }
 
-/// How much of the reach is left: `max(1 − t, 0)`.
+/// The part of the reach that is left: `max(1 − t, 0)`.
 #[inline(always)]
 fn rest<T: Float>(t: T) -> T {
     (T::constant(1.0) - t).max(T::constant(0.0))

@@ -8,7 +8,7 @@
 //! - [`f64`] or [`f32`] gives distances,
 //! - [`Dual`] gives distances and gradients,
 //! - [`Model`] gives bounds over a whole cell,
-//! - a recorder (see `tests/recorder.rs`) gives the formula itself.
+//! - [`Recorded`] gives the formula itself, as an [`Expression`].
 //!
 //! Choices are operations ([`Scalar::select_less`]) and not branches, so that a
 //! block of points vectorises and a recorder can see both sides.
@@ -16,18 +16,22 @@
 mod blend;
 mod dual;
 mod exponential;
+mod expression;
 mod float;
 mod model;
 mod power;
+mod recorded;
 mod trigonometry;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
+pub use expression::{Expression, Operation, Step};
 pub use float::Float;
 pub(crate) use model::TurnedBoxes;
 pub use model::{AffineModel, Model};
+pub use recorded::Recorded;
 
 use crate::vector::array;
 

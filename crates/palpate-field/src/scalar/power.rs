@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the norms of fourth, sixth and eighth powers are made of.
+//! The norms of fourth, sixth and eighth powers.
 //!
 //! Powers by products and roots by square roots alone, so that blocks vectorise and
 //! every number takes part. The largest component is divided out first: powers of it

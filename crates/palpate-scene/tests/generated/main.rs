@@ -103,7 +103,7 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
     let mut both_close = 0;
     for (i, j, k) in grid([60; 3]) {
         let point = [i * 0.04 - 0.02, 0.02 + j * 0.03, k * 0.04 - 0.02];
-        let (a, b) = (bolt.distance(point.into()), nut.distance(point.into()));
+        let (a, b) = (bolt.distance(point), nut.distance(point));
         assert!(a.max(b) > 0.0, "{point:?} is in both: {a} m and {b} m");
         both_close += usize::from(a.max(b) < thread::CLEARANCE);
     }
@@ -113,8 +113,8 @@ fn the_nut_is_current_and_clear_of_the_bolt() {
     let out = thread::RADIUS - 1e-5;
     for (quarters, [x, z]) in [[out, 0.0], [0.0, -out], [-out, 0.0]].into_iter().enumerate() {
         let y = thread::MIDDLE + thread::PITCH * quarters as f64 / 4.0;
-        assert!(bolt.distance([x, y, z].into()) < 0.0, "no crest after {quarters} quarters");
-        assert!(bolt.distance([-x, y, -z].into()) > 0.0, "no root after {quarters} quarters");
+        assert!(bolt.distance([x, y, z]) < 0.0, "no crest after {quarters} quarters");
+        assert!(bolt.distance([-x, y, -z]) > 0.0, "no root after {quarters} quarters");
     }
 }
 
@@ -129,7 +129,7 @@ fn the_gears_are_current_and_mesh_without_overlap() {
     let mut closest = f64::INFINITY;
     for (i, j, _) in grid([400, 400, 1]) {
         let point = [0.02 + i * 0.02, j * 0.06 - 0.03];
-        let (a, b) = (pinion.distance(point.into()), gear.distance(point.into()));
+        let (a, b) = (pinion.distance(point), gear.distance(point));
         assert!(a.max(b) > -1e-5, "{point:?} is in both: {a} m and {b} m");
         closest = closest.min(a.max(b));
     }

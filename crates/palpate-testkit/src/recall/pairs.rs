@@ -8,7 +8,7 @@ use palpate_field::kernel::{
     HalfSpace, Heart, HexagonalPrism, Link, Moon, Octahedron, Polygon, RegularPolygon,
     RegularStar, Ring, RoundCone, RoundedCross, RoundedCuboid, Segment, Simplex, Torus,
 };
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Copies, Profile};
 use palpate_field::{Rotation, Shape, ShapeError, Vector};
 
 use super::Pair;
@@ -67,7 +67,7 @@ pub fn in_the_plane() -> Result<Vec<Pair<2>>> {
     let comb = Shape::from_kernel(Cuboid::new(Vector([0.05, 0.4]))?)
         .repeated([row, Copies::One])?
         .translated(Vector([0.03, 0.2]))?;
-    let comb = Shape::smooth_union([comb, bar.clone()], Smooth::Root, 0.01)?;
+    let comb = Shape::smooth_union([comb, bar.clone()], Profile::Root, 0.01)?;
     let window = Shape::from_kernel(Polygon::new(vec![
         [[-0.5, -0.4], [0.5, -0.3], [0.4, 0.5], [-0.3, 0.4]].map(Vector).to_vec(),
         [[-0.3, -0.2], [0.2, -0.15], [0.1, 0.3], [-0.2, 0.25]].map(Vector).to_vec(),
@@ -130,7 +130,7 @@ fn blob() -> Result<Shape<3>> {
         .into_iter()
         .map(|(place, radius)| ball(radius)?.translated(Vector(place)))
         .collect::<Result<_>>()?;
-    Shape::smooth_union(parts, Smooth::Cubic, 0.05)
+    Shape::smooth_union(parts, Profile::Cubic, 0.05)
 }
 
 fn link() -> Result<Shape<3>> {
@@ -219,5 +219,5 @@ fn blade() -> Result<Shape<3>> {
 /// A cube without a ball, with the rim filled.
 fn bitten_cube() -> Result<Shape<3>> {
     let bite = ball(0.3)?.translated(Vector([0.25, 0.2, 0.25]))?;
-    cuboid([0.5, 0.5, 0.5])?.smooth_difference([bite], Smooth::Quadratic, 0.02)
+    cuboid([0.5, 0.5, 0.5])?.smooth_difference([bite], Profile::Quadratic, 0.02)
 }

@@ -11,7 +11,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// All points within `radius` of an arc of a circle about the origin, open
@@ -36,6 +36,7 @@ const OPERATIONS: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub struct Arc {
     ring_radius: f64,
+    angle: f64,
     radius: f64,
     half: Curve,
 }
@@ -50,7 +51,7 @@ impl Arc {
     /// not in (0, 2π].
     pub fn new(ring_radius: f64, angle: f64, radius: f64) -> Result<Self, ShapeError> {
         let half = Curve::of_tube(ring_radius, angle, radius)?;
-        Ok(Self { ring_radius, radius, half })
+        Ok(Self { ring_radius, angle, radius, half })
     }
 }
 
@@ -88,7 +89,7 @@ impl Kernel<2> for Arc {
 }
 
 primitive! {
-    Arc, "arc", 2,
+    Arc, arc, 2,
     about: "All points within a radius of an arc of a circle, open downwards.",
     model: ClosedForm,
     parameters: {

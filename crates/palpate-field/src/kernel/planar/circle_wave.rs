@@ -18,7 +18,7 @@ const FOLDS: i32 = 54;
 /// The largest opening of an arc: at more, neighbours would cross.
 const LARGEST_ANGLE: f64 = 5.0 / 3.0 * PI;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
 /// All points within `radius` of an endless line of equal arcs, up and down in turn,
@@ -147,12 +147,13 @@ impl Kernel<2> for CircleWave {
 }
 
 primitive! {
-    CircleWave, "circle_wave", 2,
+    CircleWave, circle_wave, 2,
     about: "All points within a radius of an endless line of arcs, up and down in turn.",
     model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the arcs",
-        angle: Angle = "how much of a circle each arc is, at most 300°",
+        angle: Angle = "how much of a circle each arc is, at most 300°"
+            => |kernel| 2.0 * kernel.half_angle,
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
     },
     example: (0.31, 4.0, 0.08),

@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 24.0;
 
 /// The S that every pupil draws: fourteen strokes, two fifths as wide as high.
@@ -104,9 +104,11 @@ impl Kernel<2> for CoolS {
 }
 
 primitive! {
-    CoolS, "cool_s", 2,
+    CoolS, cool_s, 2,
     about: "The S that every pupil draws, two fifths as wide as high.",
     model: ClosedForm,
-    parameters: { height: Length = "the full height" },
+    parameters: {
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
     example: (1.8),
 }

@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distances take at most.
+/// The largest number of rounded operations of the distances.
 const OPERATIONS: f64 = 6.0;
 
 /// A point folded to `x ≥ y ≥ 0`: by the axes and the diagonal.
@@ -88,12 +88,12 @@ impl Kernel<2> for Cross {
 }
 
 primitive! {
-    Cross, "cross", 2,
+    Cross, cross, 2,
     about: "A bar along x and one along y, crossed at the origin.",
     model: ClosedForm,
     parameters: {
-        length: Length = "the full length of a bar",
-        width: Length = "the full width of a bar",
+        length: Length = "the full length of a bar" => |kernel| 2.0 * kernel.half_length,
+        width: Length = "the full width of a bar" => |kernel| 2.0 * kernel.half_width,
     },
     example: (1.7, 0.5),
 }
@@ -126,6 +126,7 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RoundedX {
+    size: f64,
     radius: f64,
     /// How far the stroke's axis goes along `u`.
     length: f64,
@@ -153,14 +154,14 @@ impl RoundedX {
         let length = (0.5 * size - radius) * std::f64::consts::SQRT_2;
         if length >= radius {
             let (corner, weights) = (radius, [1.0, 0.0]);
-            return Ok(Self { radius, length, corner, weights, offset: corner });
+            return Ok(Self { size, radius, length, corner, weights, offset: corner });
         }
         // As a product, so that nothing leaves the range.
         let root = (std::f64::consts::SQRT_2 * radius - length).sqrt()
             * (std::f64::consts::SQRT_2 * radius + length).sqrt();
         let corner = 0.5 * (length + root);
         let weights = [corner / radius, (length - corner) / radius];
-        Ok(Self { radius, length, corner, weights, offset: weights[0] * length })
+        Ok(Self { size, radius, length, corner, weights, offset: weights[0] * length })
     }
 }
 
@@ -198,7 +199,7 @@ impl Kernel<2> for RoundedX {
 }
 
 primitive! {
-    RoundedX, "rounded_x", 2,
+    RoundedX, rounded_x, 2,
     about: "Two crossed diagonal strokes with round ends.",
     model: ClosedForm,
     parameters: {

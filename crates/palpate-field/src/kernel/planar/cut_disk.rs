@@ -12,10 +12,10 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a cut disc takes at most.
+/// The largest number of rounded operations of the distance of a cut disc.
 const OPERATIONS: f64 = 6.0;
 
-/// What is above a line of a disc about the origin. Exact.
+/// The part of a disc about the origin above a line. Exact.
 ///
 /// Folded to `x ≥ 0`, it is the profile that a [`CutBall`](crate::kernel::CutBall)
 /// turns.
@@ -87,7 +87,7 @@ impl Kernel<2> for CutDisk {
 }
 
 primitive! {
-    CutDisk, "cut_disk", 2,
+    CutDisk, cut_disk, 2,
     about: "What is above a line of a disc.",
     model: Tangent,
     parameters: {
@@ -97,7 +97,7 @@ primitive! {
     example: (0.9, -0.3),
 }
 
-/// How many rounded operations the distance of a moon takes at most.
+/// The largest number of rounded operations of the distance of a moon.
 const MOON_OPERATIONS: f64 = 6.0;
 
 /// A disc about the origin without a second disc above it on the y axis: a crescent
@@ -176,13 +176,15 @@ impl Kernel<2> for Moon {
 }
 
 primitive! {
-    Moon, "moon", 2,
+    Moon, moon, 2,
     about: "A disc without a second one above it: a crescent with its horns up.",
     model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the disc",
-        cut_radius: Length = "the radius of the disc that is taken off",
-        distance: Length = "how far above the disc's centre the other's is",
+        cut_radius: Length = "the radius of the disc that is taken off"
+            => |kernel| kernel.half.cut_radius,
+        distance: Length = "how far above the disc's centre the other's is"
+            => |kernel| kernel.half.distance,
     },
     example: (0.9, 0.7, 0.45),
 }

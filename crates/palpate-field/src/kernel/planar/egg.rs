@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 4.0;
 
 /// The slope of the line on which the side arc and the top arc have their centres:
@@ -108,7 +108,7 @@ impl Kernel<2> for Egg {
 }
 
 primitive! {
-    Egg, "egg", 2,
+    Egg, egg, 2,
     about: "An egg of four arcs, its thin end up.",
     model: Tangent,
     parameters: {

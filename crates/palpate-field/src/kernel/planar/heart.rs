@@ -18,7 +18,7 @@ const HEIGHT: f64 = 0.75 * SQRT_2 + 0.5;
 /// Half its width.
 const HALF_WIDTH: f64 = 0.25 * SQRT_2 + 0.5;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
 /// A heart about the y axis, its tip down, centred at half its height: a square on
@@ -100,7 +100,7 @@ impl Kernel<2> for Heart {
 }
 
 primitive! {
-    Heart, "heart", 2,
+    Heart, heart, 2,
     about: "A heart, its tip down: a square on its corner with half a disc on each upper edge.",
     model: ClosedForm,
     parameters: { height: Length = "the full height" },

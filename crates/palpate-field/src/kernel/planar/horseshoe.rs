@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// A band along an arc about the origin and its tangents at both ends, with flat
@@ -42,6 +42,7 @@ const OPERATIONS: f64 = 6.0;
 #[derive(Clone, Debug)]
 pub struct Horseshoe {
     ring_radius: f64,
+    angle: f64,
     length: f64,
     half_width: f64,
     /// Sine and cosine of half the angle: from the origin to the right leg.
@@ -78,7 +79,7 @@ impl Horseshoe {
             let rule = format!("at most {} m, where the legs meet", longest / -cos);
             return Err(ShapeError::number("length", rule, length, Unit::Metre));
         }
-        Ok(Self { ring_radius, length, half_width, end: [sin, cos] })
+        Ok(Self { ring_radius, angle, length, half_width, end: [sin, cos] })
     }
 
     fn size(&self) -> f64 {
@@ -131,14 +132,14 @@ impl Kernel<2> for Horseshoe {
 }
 
 primitive! {
-    Horseshoe, "horseshoe", 2,
+    Horseshoe, horseshoe, 2,
     about: "A band along an arc and its tangents at both ends, open downwards.",
     model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the arc, to the middle of the band",
         angle: Angle = "how much of the circle, about the +y axis",
         length: LengthOrZero = "the length of each straight leg",
-        width: Length = "the full width of the band",
+        width: Length = "the full width of the band" => |kernel| 2.0 * kernel.half_width,
     },
     example: (0.7, 3.7, 0.55, 0.3),
 }

@@ -17,10 +17,10 @@ const HALVINGS: usize = 6;
 /// of 6 of the root.
 const STEPS: usize = 7;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
-/// What is beyond one branch of a hyperbola, `(y/b)² − (x/a)² ≥ 1` and `y > 0`. Exact,
+/// The region beyond one branch of a hyperbola, `(y/b)² − (x/a)² ≥ 1` and `y > 0`. Exact,
 /// without bounds.
 ///
 /// Its vertex is at (0, b), its asymptotes are the lines `y = |x| b/a`.
@@ -159,9 +159,11 @@ impl Kernel<2> for Hyperbola {
 }
 
 primitive! {
-    Hyperbola, "hyperbola", 2,
+    Hyperbola, hyperbola, 2,
     about: "What is beyond the upper branch of a hyperbola.",
     model: Tangent,
-    parameters: { radii: Vector = "the semi-axes along x and y" },
+    parameters: {
+        radii: Vector = "the semi-axes along x and y" => |kernel| Vector(kernel.radii),
+    },
     example: (Vector([0.45, 0.31])),
 }

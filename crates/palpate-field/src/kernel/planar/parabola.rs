@@ -11,13 +11,13 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance from a parabola takes at most.
+/// The largest number of rounded operations of the distance from a parabola.
 const OPERATIONS: f64 = 5.0;
 
 /// The same of a segment.
 const SEGMENT_OPERATIONS: f64 = 5.0;
 
-/// What is above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
+/// The region above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
 /// bounds.
 ///
 /// The nearest point is a zero of a cubic, which Newton's method finds from above;
@@ -90,14 +90,14 @@ fn unfolded<T: Float>(x: T, [across, up]: [T; 2]) -> Vector<T, 2> {
 }
 
 primitive! {
-    Parabola, "parabola", 2,
+    Parabola, parabola, 2,
     about: "What is above a parabola.",
     model: Tangent,
     parameters: { focal_length: Length = "from the vertex to the focus" },
     example: (0.2),
 }
 
-/// What is under a parabolic arch and above its chord, centred at half its height.
+/// The region between a parabolic arch and its chord, centred at half its height.
 /// Exact.
 ///
 /// # Derivation
@@ -211,11 +211,11 @@ impl Kernel<2> for ParabolaSegment {
 }
 
 primitive! {
-    ParabolaSegment, "parabola_segment", 2,
+    ParabolaSegment, parabola_segment, 2,
     about: "What is under a parabolic arch and above its chord.",
     model: Tangent,
     parameters: {
-        width: Length = "the length of the chord",
+        width: Length = "the length of the chord" => |kernel| 2.0 * kernel.half_width,
         height: Length = "the full height",
     },
     example: (1.3, 1.7),

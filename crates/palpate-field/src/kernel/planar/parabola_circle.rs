@@ -13,7 +13,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance of a quadratic circle takes at most.
+/// The largest number of rounded operations of the distance of a quadratic circle.
 const CIRCLE_OPERATIONS: f64 = 5.0;
 
 /// The same of a cross.
@@ -121,7 +121,7 @@ impl Kernel<2> for QuadraticCircle {
 }
 
 primitive! {
-    QuadraticCircle, "quadratic_circle", 2,
+    QuadraticCircle, quadratic_circle, 2,
     about: "A round shape whose outline is four arcs of parabolas.",
     model: Tangent,
     parameters: { radius: Length = "from the centre to where it meets the axes" },
@@ -158,6 +158,7 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct BobblyCross {
+    width: f64,
     /// From the centre to a tip, without the rounding.
     tip: f64,
     dip: f64,
@@ -189,7 +190,8 @@ impl BobblyCross {
             let rule = format!("at most {deepest} m, where the arcs touch the axes");
             return Err(ShapeError::number("dip", rule, dip, Unit::Metre));
         }
-        Ok(Self { tip, dip, rounding, curve: Quadratic::new(FRAC_1_SQRT_2 * tip, dip) })
+        let curve = Quadratic::new(FRAC_1_SQRT_2 * tip, dip);
+        Ok(Self { width, tip, dip, rounding, curve })
     }
 
     #[inline(always)]
@@ -242,7 +244,7 @@ impl Kernel<2> for BobblyCross {
 }
 
 primitive! {
-    BobblyCross, "bobbly_cross", 2,
+    BobblyCross, bobbly_cross, 2,
     about: "A cross with four tips on the axes between hollow arcs of parabolas, rounded.",
     model: Lipschitz,
     parameters: {

@@ -20,7 +20,7 @@ const MOST_EDGES: usize = 100_000;
 /// point is inside and on which side of the edge it lies may disagree.
 const ON_EDGE: f64 = 64.0;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 16.0;
 
 /// The inside of closed rings of straight edges, by the even-odd rule. Exact.
@@ -43,6 +43,7 @@ const OPERATIONS: f64 = 16.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Polygon {
+    rings: Arc<[Vec<Point<2>>]>,
     sides: Arc<[Side]>,
     bounds: Bounds<2>,
 }
@@ -110,11 +111,11 @@ impl Polygon {
                 }
             }
         }
-        let aabb = Aabb::around(rings.into_iter().flatten());
+        let aabb = Aabb::around(rings.iter().flatten().copied());
         let (Some(aabb), false) = (aabb, sides.is_empty()) else {
             return count("two different points", 0);
         };
-        Ok(Self { sides: sides.into(), bounds: Bounds::of_box(aabb) })
+        Ok(Self { rings: rings.into(), sides: sides.into(), bounds: Bounds::of_box(aabb) })
     }
 
     /// `-1` inside, `1` outside.
@@ -179,7 +180,7 @@ impl Kernel<2> for Polygon {
 }
 
 primitive! {
-    Polygon, "polygon", 2,
+    Polygon, polygon, 2,
     about: "The inside of closed rings by the even-odd rule: rings in rings are holes.",
     model: Lipschitz,
     parameters: { rings: Rings = "lists of at least 3 points, each closed by itself" },

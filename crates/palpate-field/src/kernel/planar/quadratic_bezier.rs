@@ -24,7 +24,7 @@ const MOST_OFF: f64 = 0.25;
 /// Less bent than this many roundings, a curve is a straight line.
 const STRAIGHT: f64 = 8.0;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// All points within `radius` of a quadratic Bézier curve, that from `from` to `to`
@@ -65,6 +65,8 @@ const OPERATIONS: f64 = 6.0;
 #[derive(Clone, Debug)]
 pub struct QuadraticBezier {
     from: [f64; 2],
+    control: Point<2>,
+    to: Point<2>,
     /// d.
     step: [f64; 2],
     /// c.
@@ -124,6 +126,8 @@ impl QuadraticBezier {
         let along = if square > 0.0 { chord * (1.0 / square) } else { Vector::ZERO };
         let mut this = Self {
             from: from.0,
+            control,
+            to,
             step: step.0,
             bend: bend.0,
             radius,
@@ -283,11 +287,11 @@ impl Kernel<2> for QuadraticBezier {
 }
 
 primitive! {
-    QuadraticBezier, "quadratic_bezier", 2,
+    QuadraticBezier, quadratic_bezier, 2,
     about: "All points within a radius of a quadratic Bézier curve.",
     model: Lipschitz,
     parameters: {
-        from: Vector = "one end",
+        from: Vector = "one end" => |kernel| Vector(kernel.from),
         control: Vector = "where the tangents of both ends meet",
         to: Vector = "the other end",
         radius: LengthOrZero = "the radius, zero for a curve without inside",

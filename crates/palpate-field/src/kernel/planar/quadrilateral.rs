@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distances take at most.
+/// The largest number of rounded operations of the distances.
 const OPERATIONS: f64 = 6.0;
 
 /// A rhombus about the origin, its diagonals along the axes. Exact.
@@ -71,10 +71,13 @@ impl Kernel<2> for Rhombus {
 }
 
 primitive! {
-    Rhombus, "rhombus", 2,
+    Rhombus, rhombus, 2,
     about: "A rhombus, its diagonals along the axes.",
     model: Tangent,
-    parameters: { size: Vector = "the full diagonals along x and y" },
+    parameters: {
+        size: Vector = "the full diagonals along x and y"
+            => |kernel| Vector(kernel.0.corners()) * 2.0,
+    },
     example: (Vector([1.8, 1.1])),
 }
 
@@ -100,6 +103,8 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Parallelogram {
+    width: f64,
+    skew: f64,
     half_extents: [f64; 2],
     radius: f64,
     top: Edge,
@@ -120,6 +125,8 @@ impl Parallelogram {
         let s = 0.5 * finite("skew", skew, Unit::Metre)?;
         let (top_left, top_right) = (Vector([s - w, h]), Vector([s + w, h]));
         Ok(Self {
+            width,
+            skew,
             half_extents: [w + s.abs(), h],
             radius: (w + s.abs()).hypot(h),
             // Counter-clockwise: outside is to the right.
@@ -158,12 +165,12 @@ impl Kernel<2> for Parallelogram {
 }
 
 primitive! {
-    Parallelogram, "parallelogram", 2,
+    Parallelogram, parallelogram, 2,
     about: "A parallelogram, two of its edges along x.",
     model: Tangent,
     parameters: {
         width: Length = "the length of the top and of the bottom",
-        height: Length = "the full height",
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_extents[1],
         skew: Coordinate = "how much further right the top is than the bottom",
     },
     example: (1.1, 0.9, 0.5),
@@ -253,13 +260,14 @@ impl Kernel<2> for IsoscelesTrapezoid {
 }
 
 primitive! {
-    IsoscelesTrapezoid, "isosceles_trapezoid", 2,
+    IsoscelesTrapezoid, isosceles_trapezoid, 2,
     about: "A trapezoid about the y axis.",
     model: Tangent,
     parameters: {
-        bottom_width: LengthOrZero = "the full width at the bottom",
-        top_width: LengthOrZero = "the full width at the top",
-        height: Length = "the full height",
+        bottom_width: LengthOrZero = "the full width at the bottom"
+            => |kernel| 2.0 * kernel.bottom,
+        top_width: LengthOrZero = "the full width at the top" => |kernel| 2.0 * kernel.top,
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
     example: (1.6, 0.7, 0.9),
 }
@@ -294,15 +302,15 @@ impl IsoscelesTriangle {
     }
 }
 
-answered_by_inner!(IsoscelesTriangle, 2);
+answered_by_inner!(IsoscelesTriangle.0, 2);
 
 primitive! {
-    IsoscelesTriangle, "isosceles_triangle", 2,
+    IsoscelesTriangle, isosceles_triangle, 2,
     about: "A triangle about the y axis, its tip up.",
     model: Tangent,
     parameters: {
-        base: Length = "the length of the base",
-        height: Length = "the full height",
+        base: Length = "the length of the base" => |kernel| kernel.0.bottom_width(),
+        height: Length = "the full height" => |kernel| kernel.0.height(),
     },
     example: (1.1, 1.3),
 }

@@ -114,20 +114,25 @@ impl Kernel<2> for RoundedRectangle {
 }
 
 primitive! {
-    RoundedRectangle, "rounded_rectangle", 2,
+    RoundedRectangle, rounded_rectangle, 2,
     about: "A rectangle along the axes, each corner rounded inwards with its own radius.",
     model: ClosedForm,
     parameters: {
-        size: Vector = "the edge lengths before rounding",
-        top_left_radius: LengthOrZero = "the radius at the top left",
-        top_right_radius: LengthOrZero = "the radius at the top right",
-        bottom_right_radius: LengthOrZero = "the radius at the bottom right",
-        bottom_left_radius: LengthOrZero = "the radius at the bottom left",
+        size: Vector = "the edge lengths before rounding"
+            => |kernel| Vector(kernel.half_extents) * 2.0,
+        top_left_radius: LengthOrZero = "the radius at the top left"
+            => |kernel| kernel.radii[0],
+        top_right_radius: LengthOrZero = "the radius at the top right"
+            => |kernel| kernel.radii[1],
+        bottom_right_radius: LengthOrZero = "the radius at the bottom right"
+            => |kernel| kernel.radii[2],
+        bottom_left_radius: LengthOrZero = "the radius at the bottom left"
+            => |kernel| kernel.radii[3],
     },
     example: (Vector([1.6, 1.0]), 0.6, 0.2, 0.0, 0.35),
 }
 
-/// How many rounded operations the distance of a chamfered rectangle takes at most.
+/// The largest number of rounded operations of the distance of a chamfered rectangle.
 const CHAMFERED_OPERATIONS: f64 = 6.0;
 
 /// A rectangle along the axes with its corners cut off at 45°. Exact.
@@ -212,11 +217,12 @@ impl Kernel<2> for ChamferedRectangle {
 }
 
 primitive! {
-    ChamferedRectangle, "chamfered_rectangle", 2,
+    ChamferedRectangle, chamfered_rectangle, 2,
     about: "A rectangle along the axes with its corners cut off at 45°.",
     model: Tangent,
     parameters: {
-        size: Vector = "the edge lengths before cutting",
+        size: Vector = "the edge lengths before cutting"
+            => |kernel| Vector(kernel.half_extents) * 2.0,
         chamfer: LengthOrZero = "what a cut takes from each edge",
     },
     example: (Vector([1.6, 1.1]), 0.35),
@@ -240,6 +246,8 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct OrientedRectangle {
+    from: Point<2>,
+    to: Point<2>,
     rectangle: Cuboid<2>,
     placement: Placement<2>,
 }
@@ -256,7 +264,7 @@ impl OrientedRectangle {
         positive("width", width, Unit::Metre)?;
         let (placement, half_length) = frame_between(from, to)?;
         let rectangle = Cuboid::new(Vector([width, 2.0 * half_length]))?;
-        Ok(Self { rectangle, placement })
+        Ok(Self { from, to, rectangle, placement })
     }
 }
 
@@ -272,13 +280,13 @@ impl Kernel<2> for OrientedRectangle {
 }
 
 primitive! {
-    OrientedRectangle, "oriented_rectangle", 2,
+    OrientedRectangle, oriented_rectangle, 2,
     about: "The rectangle around the line between two points.",
     model: ClosedForm,
     parameters: {
         from: Vector = "the middle of one end",
         to: Vector = "the middle of the other end",
-        width: Length = "the full width across",
+        width: Length = "the full width across" => |kernel| kernel.rectangle.size()[0],
     },
     example: (Vector([-0.7, -0.5]), Vector([0.6, 0.4]), 0.5),
 }

@@ -18,7 +18,7 @@ const MOST_BRANCHES: u32 = 256;
 /// first, which folds left onto right.
 const FOLDS: usize = 8;
 
-/// How many rounded operations the distance of a polygon takes at most: few of the
+/// The largest number of rounded operations of the distance of a polygon: few of the
 /// reflections move a point.
 const POLYGON_OPERATIONS: f64 = 18.0;
 
@@ -109,11 +109,6 @@ impl RegularPolygon {
         let radius = positive("radius", radius, Unit::Metre)?;
         Ok(Self { fold: Fold::new(sides), sides, radius })
     }
-
-    /// From the centre to a corner [m].
-    pub(in crate::kernel) fn radius(&self) -> f64 {
-        self.radius
-    }
 }
 
 impl Kernel<2> for RegularPolygon {
@@ -143,7 +138,7 @@ impl Kernel<2> for RegularPolygon {
 }
 
 primitive! {
-    RegularPolygon, "regular_polygon", 2,
+    RegularPolygon, regular_polygon, 2,
     about: "A regular polygon, one corner up.",
     model: Tangent,
     parameters: {
@@ -174,6 +169,7 @@ pub struct RegularStar {
     fold: Fold,
     branches: u32,
     outer_radius: f64,
+    inner_radius: f64,
     edge: Edge,
 }
 
@@ -201,7 +197,7 @@ impl RegularStar {
         // Counter-clockwise around the star: outside is to the right.
         let inner = Vector(fold.half_branch) * inner_radius;
         let edge = Edge::new(inner, Vector([0.0, outer_radius]));
-        Ok(Self { fold, branches, outer_radius, edge })
+        Ok(Self { fold, branches, outer_radius, inner_radius, edge })
     }
 
     /// The star of two triangles, with six tips at `radius` from the centre [m].
@@ -278,7 +274,7 @@ impl Kernel<2> for RegularStar {
 }
 
 primitive! {
-    RegularStar, "regular_star", 2,
+    RegularStar, regular_star, 2,
     about: "A regular star, one tip up.",
     model: ClosedForm,
     parameters: {

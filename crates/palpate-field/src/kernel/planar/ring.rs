@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
 /// All points between two circles about the origin. Exact.
@@ -30,6 +30,8 @@ const OPERATIONS: f64 = 5.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Ring {
+    inner_radius: f64,
+    outer_radius: f64,
     mean_radius: f64,
     half_width: f64,
 }
@@ -48,6 +50,8 @@ impl Ring {
             return Err(ShapeError::number("outer_radius", rule, outer_radius, Unit::Metre));
         }
         Ok(Self {
+            inner_radius,
+            outer_radius,
             mean_radius: 0.5 * (inner_radius + outer_radius),
             half_width: 0.5 * (outer_radius - inner_radius),
         })
@@ -73,7 +77,7 @@ impl Kernel<2> for Ring {
 }
 
 primitive! {
-    Ring, "ring", 2,
+    Ring, ring, 2,
     about: "All points between two circles.",
     model: ClosedForm,
     parameters: {

@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
 /// A star with four tips on the axes, joined by arcs that are hollow. Exact.
@@ -105,11 +105,11 @@ impl Kernel<2> for RoundedCross {
 }
 
 primitive! {
-    RoundedCross, "rounded_cross", 2,
+    RoundedCross, rounded_cross, 2,
     about: "A cross with four tips on the axes between arcs that are hollow.",
     model: ClosedForm,
     parameters: {
-        size: Vector = "from tip to tip along x and y",
+        size: Vector = "from tip to tip along x and y" => |kernel| Vector(kernel.half) * 2.0,
         arc_radius: Length = "the radius of the arcs",
     },
     example: (Vector([1.9, 1.5]), 1.1),

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distances take at most.
+/// The largest number of rounded operations of the distances.
 const OPERATIONS: f64 = 6.0;
 
 /// The bounds of what a wedge cuts out of a disc or ring.
@@ -90,12 +90,12 @@ impl Kernel<2> for Pie {
 }
 
 primitive! {
-    Pie, "pie", 2,
+    Pie, pie, 2,
     about: "A sector of a disc, spread about the +y axis.",
     model: ClosedForm,
     parameters: {
-        radius: Length = "the radius of the disc",
-        angle: Angle = "how much of the disc, about the +y axis",
+        radius: Length = "the radius of the disc" => |kernel| kernel.0.outer(),
+        angle: Angle = "how much of the disc, about the +y axis" => |kernel| kernel.0.angle(),
     },
     example: (0.9, 1.9),
 }
@@ -172,13 +172,15 @@ impl Kernel<2> for RingSector {
 }
 
 primitive! {
-    RingSector, "ring_sector", 2,
+    RingSector, ring_sector, 2,
     about: "A sector of a ring with flat ends, spread about the +y axis.",
     model: ClosedForm,
     parameters: {
-        inner_radius: Length = "the radius of the hole",
-        outer_radius: Length = "the radius of the outer circle",
-        angle: Angle = "how much of the ring, about the +y axis",
+        inner_radius: Length = "the radius of the hole" => |kernel| kernel.wedge.inner(),
+        outer_radius: Length = "the radius of the outer circle"
+            => |kernel| kernel.wedge.outer(),
+        angle: Angle = "how much of the ring, about the +y axis"
+            => |kernel| kernel.wedge.angle(),
     },
     example: (0.5, 0.9, 4.2),
 }

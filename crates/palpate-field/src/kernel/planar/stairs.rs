@@ -16,7 +16,7 @@ const MOST_STEPS: u32 = 256;
 /// Halvings that find one of [`MOST_STEPS`] steps.
 const HALVINGS: usize = 8;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// A solid staircase that rises to the right, centred at the origin. Exact.
@@ -171,12 +171,12 @@ impl Kernel<2> for Stairs {
 }
 
 primitive! {
-    Stairs, "stairs", 2,
+    Stairs, stairs, 2,
     about: "A solid staircase that rises to the right.",
     model: Lipschitz,
     parameters: {
-        step_width: Length = "the depth of a step",
-        step_height: Length = "the height of a step",
+        step_width: Length = "the depth of a step" => |kernel| kernel.step[0],
+        step_height: Length = "the height of a step" => |kernel| kernel.step[1],
         steps: Count = "how many steps, 1 to 256",
     },
     example: (0.42, 0.3, 4),

@@ -76,17 +76,18 @@ impl Kernel<2> for Tunnel {
 }
 
 primitive! {
-    Tunnel, "tunnel", 2,
+    Tunnel, tunnel, 2,
     about: "A rectangle below and half a disc on top.",
     model: ClosedForm,
     parameters: {
-        width: Length = "the full width",
-        height: Length = "the full height, the half disc included",
+        width: Length = "the full width" => |kernel| 2.0 * kernel.radius,
+        height: Length = "the full height, the half disc included"
+            => |kernel| 2.0 * kernel.half_height,
     },
     example: (1.1, 1.5),
 }
 
-/// How many rounded operations the distance of an uneven capsule takes at most.
+/// The largest number of rounded operations of the distance of an uneven capsule.
 const CAPSULE_OPERATIONS: f64 = 6.0;
 
 /// Two discs on the y axis and all between their common tangents, centred between
@@ -170,7 +171,7 @@ impl Kernel<2> for UnevenCapsule {
 }
 
 primitive! {
-    UnevenCapsule, "uneven_capsule", 2,
+    UnevenCapsule, uneven_capsule, 2,
     about: "Two discs on the y axis and all between their common tangents.",
     model: Tangent,
     parameters: {

@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// A lens about the origin, bounded by two equal arcs that meet in tips on the y
@@ -76,12 +76,13 @@ impl Kernel<2> for Vesica {
 }
 
 primitive! {
-    Vesica, "vesica", 2,
+    Vesica, vesica, 2,
     about: "A lens of two equal arcs that meet on the y axis.",
     model: Tangent,
     parameters: {
-        width: Length = "the full width",
-        height: Length = "from tip to tip, at least the width",
+        width: Length = "the full width" => |kernel| 2.0 * kernel.half_extents[0],
+        height: Length = "from tip to tip, at least the width"
+            => |kernel| 2.0 * kernel.half_extents[1],
     },
     example: (0.9, 1.7),
 }
@@ -103,6 +104,8 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct OrientedVesica {
+    from: Point<2>,
+    to: Point<2>,
     lens: Vesica,
     placement: Placement<2>,
 }
@@ -117,7 +120,7 @@ impl OrientedVesica {
     pub fn new(from: Point<2>, to: Point<2>, width: f64) -> Result<Self, ShapeError> {
         positive("width", width, Unit::Metre)?;
         let (placement, half_length) = frame_between(from, to)?;
-        Ok(Self { lens: Vesica::new(width, 2.0 * half_length)?, placement })
+        Ok(Self { from, to, lens: Vesica::new(width, 2.0 * half_length)?, placement })
     }
 }
 
@@ -138,13 +141,14 @@ impl Kernel<2> for OrientedVesica {
 }
 
 primitive! {
-    OrientedVesica, "oriented_vesica", 2,
+    OrientedVesica, oriented_vesica, 2,
     about: "A lens of two equal arcs between two points.",
     model: Tangent,
     parameters: {
         from: Vector = "one tip",
         to: Vector = "the other tip",
-        width: Length = "the full width across, at most the distance of the tips",
+        width: Length = "the full width across, at most the distance of the tips"
+            => |kernel| kernel.lens.width(),
     },
     example: (Vector([-0.7, -0.4]), Vector([0.6, 0.5]), 0.6),
 }

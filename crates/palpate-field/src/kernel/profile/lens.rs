@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What two discs have in common.
+//! The intersection of two discs.
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::kernel::face_if_on_it;
 use crate::scalar::Scalar;
 use crate::vector::{Point, Vector};
 
-/// What two equal discs have in common, its tips at `(0, ±h)`: to the right of the
+/// The intersection of two equal discs, its tips at `(0, ±h)`: to the right of the
 /// y axis the part of a disc about `(−c, 0)`.
 ///
 /// # Derivation

@@ -19,9 +19,9 @@ use crate::scalar::Scalar;
 /// centre and the corner.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct Moon {
-    radius: f64,
-    cut_radius: f64,
-    distance: f64,
+    pub(in crate::kernel) radius: f64,
+    pub(in crate::kernel) cut_radius: f64,
+    pub(in crate::kernel) distance: f64,
     /// Where the circles cross.
     corner: [f64; 2],
 }

@@ -36,7 +36,8 @@ impl Wedge {
         Ok(Self { half_angle, end, inner, outer })
     }
 
-    /// What `round`, of which the distance is known, has in common with the wedge.
+    /// The signed distance of the intersection of the wedge with `round`, a disc or ring
+    /// whose distance is given.
     ///
     /// Outside the wedge, the nearest point is on the straight piece. In it, outside
     /// `round`, that of `round` is in the wedge too, being on the same ray. Inside both,
@@ -62,9 +63,14 @@ impl Wedge {
         self.cut(p, S::norm(p) - S::constant(self.outer))
     }
 
-    /// Whether it is convex: spans half a turn at most.
+    /// `true` if the wedge is convex: if it spans at most half a turn.
     pub(in crate::kernel) fn is_convex(&self) -> bool {
         self.half_angle <= std::f64::consts::FRAC_PI_2
+    }
+
+    /// The full angle, to both sides of the axis [rad].
+    pub(in crate::kernel) fn angle(&self) -> f64 {
+        2.0 * self.half_angle
     }
 
     /// Sine and cosine of the angle from the axis to the ray.

@@ -71,10 +71,12 @@ impl Kernel<3> for CubeApproximation {
 }
 
 primitive! {
-    CubeApproximation, "cube_approximation", 3,
+    CubeApproximation, cube_approximation, 3,
     about: "The article's approximate cube: a bound with sharp isolines.",
     model: ClosedForm,
-    parameters: { side: Length = "the edge length" },
+    parameters: {
+        side: Length = "the edge length" => |kernel| 2.0 * kernel.half_side,
+    },
     example: (0.9),
 }
 
@@ -125,10 +127,13 @@ impl Kernel<3> for CylinderApproximation {
 }
 
 primitive! {
-    CylinderApproximation, "cylinder_approximation", 3,
+    CylinderApproximation, cylinder_approximation, 3,
     about: "The article's approximate cylinder: a bound with sharp isolines.",
     model: ClosedForm,
-    parameters: { radius: Length = "the radius", height: Length = "the full height" },
+    parameters: {
+        radius: Length = "the radius",
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
     example: (0.4, 1.0),
 }
 
@@ -200,12 +205,12 @@ impl Kernel<3> for ConeApproximation {
 }
 
 primitive! {
-    ConeApproximation, "cone_approximation", 3,
+    ConeApproximation, cone_approximation, 3,
     about: "The article's approximate cone, mended to be a bound.",
     model: ClosedForm,
     parameters: {
-        radius: Length = "the radius of the base",
-        height: Length = "the full height",
+        radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
+        height: Length = "the full height" => |kernel| kernel.0.height,
     },
     example: (0.6, 1.0),
 }
@@ -255,9 +260,12 @@ impl Kernel<3> for PyramidApproximation {
 }
 
 primitive! {
-    PyramidApproximation, "pyramid_approximation", 3,
+    PyramidApproximation, pyramid_approximation, 3,
     about: "The article's approximate pyramid, mended to be a bound.",
     model: ClosedForm,
-    parameters: { side: Length = "the edge of the base", height: Length = "the full height" },
+    parameters: {
+        side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,
+        height: Length = "the full height" => |kernel| kernel.0.height,
+    },
     example: (1.0, 0.9),
 }

@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a part takes at most.
+/// The largest number of rounded operations of the distance of a part.
 const OPERATIONS: f64 = 8.0;
 
 /// The part of a ball about the origin in a cone about the +y axis: a cone with a round
@@ -90,12 +90,13 @@ impl Kernel<3> for SolidAngle {
 }
 
 primitive! {
-    SolidAngle, "solid_angle", 3,
+    SolidAngle, solid_angle, 3,
     about: "The part of a ball in a cone about the +y axis, its tip at the origin.",
     model: Tangent,
     parameters: {
-        radius: Length = "the radius of the ball",
-        angle: Angle = "the opening from side to side, less than a full turn",
+        radius: Length = "the radius of the ball" => |kernel| kernel.0.outer(),
+        angle: Angle = "the opening from side to side, less than a full turn"
+            => |kernel| kernel.0.angle(),
     },
     example: (0.9, 1.2),
 }
@@ -110,7 +111,7 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
     Err(ShapeError::number("cut_height", rule, height, Unit::Metre))
 }
 
-/// What is left of a ball about the origin when all below a height is cut off. Exact.
+/// The part of a ball about the origin above a height. Exact.
 ///
 /// A disc cut by a line, turned.
 ///
@@ -168,7 +169,7 @@ impl Kernel<3> for CutBall {
 }
 
 primitive! {
-    CutBall, "cut_ball", 3,
+    CutBall, cut_ball, 3,
     about: "A ball about the origin, cut off below a height.",
     model: Tangent,
     parameters: {
@@ -251,13 +252,14 @@ impl Kernel<3> for CutHollowSphere {
 }
 
 primitive! {
-    CutHollowSphere, "cut_hollow_sphere", 3,
+    CutHollowSphere, cut_hollow_sphere, 3,
     about: "A bowl: a hollow sphere about the origin, cut off above a height, its rim round.",
     model: ClosedForm,
     parameters: {
         radius: Length = "from the origin to the middle of the wall",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
-        thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside",
+        thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside"
+            => |kernel| 2.0 * kernel.half_thickness,
     },
     example: (0.8, 0.2, 0.15),
 }
@@ -324,13 +326,14 @@ impl Kernel<3> for DeathStar {
 }
 
 primitive! {
-    DeathStar, "death_star", 3,
+    DeathStar, death_star, 3,
     about: "A ball about the origin with a ball-shaped bite from above.",
     model: ClosedForm,
     parameters: {
-        radius: Length = "the radius of the ball",
-        cut_radius: Length = "the radius of the bite",
-        distance: Length = "from centre to centre, so that the spheres cross",
+        radius: Length = "the radius of the ball" => |kernel| kernel.0.radius,
+        cut_radius: Length = "the radius of the bite" => |kernel| kernel.0.cut_radius,
+        distance: Length = "from centre to centre, so that the spheres cross"
+            => |kernel| kernel.0.distance,
     },
     example: (0.9, 0.6, 1.1),
 }

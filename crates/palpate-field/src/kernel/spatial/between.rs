@@ -80,12 +80,12 @@ impl Kernel<3> for CylinderBetween {
 }
 
 primitive! {
-    CylinderBetween, "cylinder_between", 3,
+    CylinderBetween, cylinder_between, 3,
     about: "A cylinder with flat ends between two points.",
     model: ClosedForm,
     parameters: {
-        from: Vector = "the middle of one end",
-        to: Vector = "the middle of the other end",
+        from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
+        to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),
         radius: Length = "the radius",
     },
     example: (Vector([-0.5, -0.4, 0.2]), Vector([0.6, 0.3, -0.1]), 0.35),
@@ -154,14 +154,14 @@ impl Kernel<3> for CappedConeBetween {
 }
 
 primitive! {
-    CappedConeBetween, "capped_cone_between", 3,
+    CappedConeBetween, capped_cone_between, 3,
     about: "A cone between two points, with a radius at each.",
     model: Tangent,
     parameters: {
-        from: Vector = "the middle of one end",
-        to: Vector = "the middle of the other end",
-        from_radius: LengthOrZero = "the radius at one end",
-        to_radius: LengthOrZero = "the radius at the other end",
+        from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
+        to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),
+        from_radius: LengthOrZero = "the radius at one end" => |kernel| kernel.radii[0],
+        to_radius: LengthOrZero = "the radius at the other end" => |kernel| kernel.radii[1],
     },
     example: (Vector([-0.5, -0.4, 0.2]), Vector([0.6, 0.5, -0.1]), 0.45, 0.15),
 }

@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 10.0;
 
 /// The same of a cone without a base.
@@ -114,13 +114,13 @@ impl Kernel<3> for CappedCone {
 }
 
 primitive! {
-    CappedCone, "capped_cone", 3,
+    CappedCone, capped_cone, 3,
     about: "A cone about the y axis with its tip cut off.",
     model: Tangent,
     parameters: {
         bottom_radius: LengthOrZero = "the radius at the bottom",
         top_radius: LengthOrZero = "the radius at the top",
-        height: Length = "the full height",
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
     example: (0.6, 0.25, 0.9),
 }
@@ -154,15 +154,15 @@ impl Cone {
     }
 }
 
-answered_by_inner!(Cone, 3);
+answered_by_inner!(Cone.0, 3);
 
 primitive! {
-    Cone, "cone", 3,
+    Cone, cone, 3,
     about: "A cone about the y axis, its tip up.",
     model: Tangent,
     parameters: {
-        radius: Length = "the radius of the base",
-        height: Length = "the full height",
+        radius: Length = "the radius of the base" => |kernel| kernel.0.bottom_radius,
+        height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
     },
     example: (0.6, 1.0),
 }
@@ -190,6 +190,7 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct InfiniteCone {
+    angle: f64,
     /// Sine and cosine of half the opening angle.
     half_angle: [f64; 2],
 }
@@ -206,7 +207,7 @@ impl InfiniteCone {
             return Err(ShapeError::number("angle", rule, angle, Unit::Radian));
         }
         let half_angle = 0.5 * angle;
-        Ok(Self { half_angle: [libm::sin(half_angle), libm::cos(half_angle)] })
+        Ok(Self { angle, half_angle: [libm::sin(half_angle), libm::cos(half_angle)] })
     }
 }
 
@@ -234,7 +235,7 @@ impl Kernel<3> for InfiniteCone {
 }
 
 primitive! {
-    InfiniteCone, "infinite_cone", 3,
+    InfiniteCone, infinite_cone, 3,
     about: "A cone without a base, its tip at the origin, opening downwards.",
     model: Tangent,
     parameters: { angle: Angle = "the opening from side to side, less than half a turn" },

@@ -81,10 +81,13 @@ impl Kernel<3> for Cylinder {
 }
 
 primitive! {
-    Cylinder, "cylinder", 3,
+    Cylinder, cylinder, 3,
     about: "A cylinder about the y axis.",
     model: ClosedForm,
-    parameters: { radius: Length = "the radius", height: Length = "the full height" },
+    parameters: {
+        radius: Length = "the radius",
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
     example: (0.4, 1.0),
 }
 
@@ -102,6 +105,8 @@ primitive! {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RoundedCylinder {
+    radius: f64,
+    height: f64,
     core: Cylinder,
     rounding: f64,
 }
@@ -126,7 +131,7 @@ impl RoundedCylinder {
             radius: sharp.radius - rounding,
             half_height: sharp.half_height - rounding,
         };
-        Ok(Self { core, rounding })
+        Ok(Self { radius, height, core, rounding })
     }
 }
 
@@ -145,7 +150,7 @@ impl Kernel<3> for RoundedCylinder {
 }
 
 primitive! {
-    RoundedCylinder, "rounded_cylinder", 3,
+    RoundedCylinder, rounded_cylinder, 3,
     about: "A cylinder about the y axis, its rims rounded inwards.",
     model: ClosedForm,
     parameters: {
@@ -195,7 +200,7 @@ impl Kernel<3> for InfiniteCylinder {
 }
 
 primitive! {
-    InfiniteCylinder, "infinite_cylinder", 3,
+    InfiniteCylinder, infinite_cylinder, 3,
     about: "A cylinder without ends about the y axis.",
     model: ClosedForm,
     parameters: { radius: Length = "the radius" },

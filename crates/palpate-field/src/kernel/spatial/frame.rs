@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 6.0;
 
 /// The twelve edges of a box as bars with a square section, within the box. Exact.
@@ -100,11 +100,11 @@ impl Kernel<3> for CuboidFrame {
 }
 
 primitive! {
-    CuboidFrame, "cuboid_frame", 3,
+    CuboidFrame, cuboid_frame, 3,
     about: "The twelve edges of a box as square bars.",
     model: ClosedForm,
     parameters: {
-        size: Vector = "the edge lengths",
+        size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
         thickness: Length = "the thickness of the bars, less than half the shortest edge",
     },
     example: (Vector([1.4, 1.1, 0.8]), 0.2),

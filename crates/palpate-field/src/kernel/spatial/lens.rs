@@ -12,7 +12,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// A spindle between two points: an arc from one to the other, turned about the line
@@ -34,6 +34,7 @@ const OPERATIONS: f64 = 8.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct VesicaSegment {
+    width: f64,
     spindle: Spindle,
     between: Between<3>,
 }
@@ -54,7 +55,7 @@ impl VesicaSegment {
             return Err(ShapeError::number("width", rule, width, Unit::Metre));
         }
         let spindle = Spindle(Lens::new(between.half_length(), 0.5 * width));
-        Ok(Self { spindle, between })
+        Ok(Self { width, spindle, between })
     }
 }
 
@@ -99,12 +100,12 @@ impl Kernel<3> for Spindle {
 }
 
 primitive! {
-    VesicaSegment, "vesica_segment", 3,
+    VesicaSegment, vesica_segment, 3,
     about: "A spindle between two points: an arc turned about the line between them.",
     model: Tangent,
     parameters: {
-        from: Vector = "one tip",
-        to: Vector = "the other tip",
+        from: Vector = "one tip" => |kernel| kernel.between.from(),
+        to: Vector = "the other tip" => |kernel| kernel.between.to(),
         width: Length = "the full width in the middle, at most the distance of the tips",
     },
     example: (Vector([-0.7, -0.5, 0.2]), Vector([0.8, 0.6, -0.1]), 0.7),

@@ -10,7 +10,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
 /// The regular octahedron `|x| + |y| + |z| ≤ r`, corners on the axes. Exact.
@@ -81,7 +81,7 @@ impl Kernel<3> for Octahedron {
 }
 
 primitive! {
-    Octahedron, "octahedron", 3,
+    Octahedron, octahedron, 3,
     about: "A regular octahedron with corners on the axes.",
     model: Tangent,
     parameters: { radius: Length = "from the centre to a corner" },

@@ -104,14 +104,18 @@ impl Kernel<3> for PowerTorus {
 }
 
 primitive! {
-    PowerTorus, "power_torus", 3,
+    PowerTorus, power_torus, 3,
     about: "A torus about the y axis, its ring and its tube circles in norms of higher powers.",
     model: ClosedForm,
     parameters: {
-        ring_radius: Length = "the radius of the ring along the axes",
-        radius: Length = "the radius of the tube along the axes",
-        ring_exponent: Count = "the power that the ring's norm adds up, 2, 4, 6 or 8",
-        tube_exponent: Count = "the power that the tube's norm adds up, 2, 4, 6 or 8",
+        ring_radius: Length = "the radius of the ring along the axes"
+            => |kernel| kernel.round.ring_radius,
+        radius: Length = "the radius of the tube along the axes"
+            => |kernel| kernel.round.radius,
+        ring_exponent: Count = "the power that the ring's norm adds up, 2, 4, 6 or 8"
+            => |kernel| kernel.ring.map_or(2, Exponent::number),
+        tube_exponent: Count = "the power that the tube's norm adds up, 2, 4, 6 or 8"
+            => |kernel| kernel.tube.map_or(2, Exponent::number),
     },
     example: (0.6, 0.25, 4, 8),
 }

@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 18.0;
 
 /// A regular polygon in x and z, extruded along y: the orthant of the polygon's
@@ -86,15 +86,16 @@ impl HexagonalPrism {
     }
 }
 
-answered_by_inner!(HexagonalPrism, 3);
+answered_by_inner!(HexagonalPrism.0, 3);
 
 primitive! {
-    HexagonalPrism, "hexagonal_prism", 3,
+    HexagonalPrism, hexagonal_prism, 3,
     about: "A prism along y on a regular hexagon.",
     model: Tangent,
     parameters: {
-        radius: Length = "from the axis to a corner of the hexagon",
-        height: Length = "the full height",
+        radius: Length = "from the axis to a corner of the hexagon"
+            => |kernel| kernel.0.polygon.radius(),
+        height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
     },
     example: (0.6, 0.5),
 }
@@ -113,7 +114,10 @@ primitive! {
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct TriangularPrism(Prism);
+pub struct TriangularPrism {
+    prism: Prism,
+    side: f64,
+}
 
 impl TriangularPrism {
     /// A prism on a triangle of the given `side`, of full `height` [m].
@@ -123,19 +127,19 @@ impl TriangularPrism {
     /// If either is not positive.
     pub fn new(side: f64, height: f64) -> Result<Self, ShapeError> {
         let side = positive("side", side, Unit::Metre)?;
-        Ok(Self(Prism::new(3, side / 3.0_f64.sqrt(), height)?))
+        Ok(Self { prism: Prism::new(3, side / 3.0_f64.sqrt(), height)?, side })
     }
 }
 
-answered_by_inner!(TriangularPrism, 3);
+answered_by_inner!(TriangularPrism.prism, 3);
 
 primitive! {
-    TriangularPrism, "triangular_prism", 3,
+    TriangularPrism, triangular_prism, 3,
     about: "A prism along y on a regular triangle.",
     model: Tangent,
     parameters: {
         side: Length = "the edge of the triangle",
-        height: Length = "the full height",
+        height: Length = "the full height" => |kernel| 2.0 * kernel.prism.half_height,
     },
     example: (1.0, 0.6),
 }

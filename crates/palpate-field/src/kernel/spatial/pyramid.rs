@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 18.0;
 
 /// A pyramid on a square in x and z, its tip up along y, centred at half its
@@ -121,9 +121,12 @@ impl Kernel<3> for Pyramid {
 }
 
 primitive! {
-    Pyramid, "pyramid", 3,
+    Pyramid, pyramid, 3,
     about: "A pyramid on a square, its tip up along y.",
     model: Tangent,
-    parameters: { side: Length = "the edge of the base", height: Length = "the full height" },
+    parameters: {
+        side: Length = "the edge of the base" => |kernel| 2.0 * kernel.half_side,
+        height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
     example: (1.0, 0.9),
 }

@@ -11,7 +11,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 10.0;
 
 /// A prism along y on a rhombus whose diagonals are along x and z, its edges rounded
@@ -33,6 +33,7 @@ const OPERATIONS: f64 = 10.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct RhombusPrism {
+    size: Vector<f64, 3>,
     rhombus: Rhombus,
     half_height: f64,
     rounding: f64,
@@ -60,7 +61,7 @@ impl RhombusPrism {
             return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
         }
         let rhombus = Rhombus::new([a, b], rounding);
-        Ok(Self { rhombus, half_height: half_height - rounding, rounding })
+        Ok(Self { size, rhombus, half_height: half_height - rounding, rounding })
     }
 
     /// From the centre to the farthest corner of what is grown, by coordinate [m].
@@ -69,7 +70,8 @@ impl RhombusPrism {
         Vector([a, self.half_height, b])
     }
 
-    fn size(&self) -> f64 {
+    /// The radius of the ball around it [m].
+    fn reach(&self) -> f64 {
         self.core().norm() + self.rounding
     }
 }
@@ -84,7 +86,7 @@ impl Kernel<3> for RhombusPrism {
 
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
-        tangent_model(self, cell, OPERATIONS, self.size())
+        tangent_model(self, cell, OPERATIONS, self.reach())
     }
 
     fn promise(&self) -> Promise<3> {
@@ -93,12 +95,12 @@ impl Kernel<3> for RhombusPrism {
         let radius = (widest + self.rounding) * (1.0 + 4.0 * f64::EPSILON);
         let half = (core + Vector::constant(self.rounding)) * (1.0 + 4.0 * f64::EPSILON);
         let bounds = Bounds::centred(half, radius);
-        Promise::exact_convex(Some(bounds), OPERATIONS, self.size()).symmetric()
+        Promise::exact_convex(Some(bounds), OPERATIONS, self.reach()).symmetric()
     }
 }
 
 primitive! {
-    RhombusPrism, "rhombus_prism", 3,
+    RhombusPrism, rhombus_prism, 3,
     about: "A prism along y on a rhombus, its edges rounded inwards.",
     model: Tangent,
     parameters: {

@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
 /// Two balls of which neither holds the other.
@@ -93,13 +93,14 @@ impl Kernel<3> for RoundCone {
 }
 
 primitive! {
-    RoundCone, "round_cone", 3,
+    RoundCone, round_cone, 3,
     about: "Two balls above each other and all that is between them.",
     model: Tangent,
     parameters: {
-        bottom_radius: Length = "the radius of the lower ball",
-        top_radius: Length = "the radius of the upper ball",
-        height: Length = "from centre to centre, more than the radii differ",
+        bottom_radius: Length = "the radius of the lower ball" => |kernel| kernel.0.radii()[0],
+        top_radius: Length = "the radius of the upper ball" => |kernel| kernel.0.radii()[1],
+        height: Length = "from centre to centre, more than the radii differ"
+            => |kernel| 2.0 * kernel.0.half_distance(),
     },
     example: (0.45, 0.2, 0.8),
 }
@@ -175,14 +176,14 @@ impl Kernel<3> for RoundConeBetween {
 }
 
 primitive! {
-    RoundConeBetween, "round_cone_between", 3,
+    RoundConeBetween, round_cone_between, 3,
     about: "Balls about two points and all that is between them.",
     model: Tangent,
     parameters: {
-        from: Vector = "the centre of one ball",
-        to: Vector = "the centre of the other ball",
-        from_radius: Length = "the radius of one ball",
-        to_radius: Length = "the radius of the other ball",
+        from: Vector = "the centre of one ball" => |kernel| kernel.between.from(),
+        to: Vector = "the centre of the other ball" => |kernel| kernel.between.to(),
+        from_radius: Length = "the radius of one ball" => |kernel| kernel.cone.0.radii()[0],
+        to_radius: Length = "the radius of the other ball" => |kernel| kernel.cone.0.radii()[1],
     },
     example: (Vector([-0.4, -0.3, 0.2]), Vector([0.5, 0.4, -0.1]), 0.4, 0.2),
 }

@@ -13,7 +13,7 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
-/// How many rounded operations the distance takes at most.
+/// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
 /// A corner that is no farther from the line of its neighbours than this part of the
@@ -54,6 +54,7 @@ const PLANAR: f64 = 1e-6;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sheet<const N: usize> {
+    points: [Point<3>; N],
     edges: [Edge; N],
     placement: Placement<3>,
     radius: f64,
@@ -80,7 +81,7 @@ impl Sheet<3> {
             let rule = "the corners of a triangle with heights of at least 1e-9 of its size";
             ShapeError::number("points", rule, height, Unit::Metre)
         })?;
-        Self::in_plane(corners, basis, radius)
+        Ok(Self { points, ..Self::in_plane(corners, basis, radius)? })
     }
 }
 
@@ -156,7 +157,8 @@ impl<const N: usize> Sheet<N> {
         let ball = BoundingBall { centre: middle, radius: around + slack };
         let bounds = Bounds { aabb: aabb.grown(slack), ball }.grown(radius);
         let placement = Placement::new(pose);
-        Ok(Self { edges, placement, radius, bounds, size: bounds.radius_about_origin() })
+        let size = bounds.radius_about_origin();
+        Ok(Self { points: corners, edges, placement, radius, bounds, size })
     }
 }
 
@@ -227,7 +229,7 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
 }
 
 primitive! {
-    Sheet<3>, "triangle_sheet", 3,
+    Sheet<3>, triangle_sheet, 3,
     about: "All points within a radius of a triangle in space.",
     model: Tangent,
     parameters: {
@@ -241,7 +243,7 @@ primitive! {
 }
 
 primitive! {
-    Sheet<4>, "quad_sheet", 3,
+    Sheet<4>, quad_sheet, 3,
     about: "All points within a radius of a flat convex quadrilateral in space.",
     model: Tangent,
     parameters: {

@@ -12,7 +12,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// How many rounded operations the distance of a capped torus takes at most.
+/// The largest number of rounded operations of the distance of a capped torus.
 const CAPPED_OPERATIONS: f64 = 10.0;
 
 /// The same of a link.
@@ -71,7 +71,7 @@ impl Kernel<3> for Torus {
 }
 
 primitive! {
-    Torus, "torus", 3,
+    Torus, torus, 3,
     about: "All points within a radius of a circle about the y axis.",
     model: ClosedForm,
     parameters: {
@@ -106,6 +106,7 @@ primitive! {
 pub struct CappedTorus {
     ring_radius: f64,
     radius: f64,
+    angle: f64,
     half: Curve,
 }
 
@@ -119,7 +120,7 @@ impl CappedTorus {
     /// in (0, 2π].
     pub fn new(ring_radius: f64, radius: f64, angle: f64) -> Result<Self, ShapeError> {
         let half = Curve::of_tube(ring_radius, angle, radius)?;
-        Ok(Self { ring_radius, radius, half })
+        Ok(Self { ring_radius, radius, angle, half })
     }
 }
 
@@ -162,7 +163,7 @@ impl Kernel<3> for CappedTorus {
 }
 
 primitive! {
-    CappedTorus, "capped_torus", 3,
+    CappedTorus, capped_torus, 3,
     about: "All points within a radius of an arc of a circle about the y axis, open towards -z.",
     model: ClosedForm,
     parameters: {
@@ -240,13 +241,14 @@ impl Kernel<3> for Link {
 }
 
 primitive! {
-    Link, "link", 3,
+    Link, link, 3,
     about: "A chain's link: a torus about the y axis with straight sides along z.",
     model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the circle of each bow",
         radius: Length = "the radius of the tube",
-        length: LengthOrZero = "the length of the straight sides",
+        length: LengthOrZero = "the length of the straight sides"
+            => |kernel| 2.0 * kernel.half_length,
     },
     example: (0.4, 0.15, 0.8),
 }

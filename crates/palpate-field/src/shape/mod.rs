@@ -1,42 +1,70 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a user builds.
+//! Shapes: built from kernels, closures and operators, evaluated at points.
+
+mod boolean;
+mod domain;
+mod short;
+mod slices;
+mod surface;
+mod transform;
 
 use std::sync::Arc;
 
 use crate::error::ShapeError;
 use crate::field::{
     Custom, CustomField, DifferentiateBlock, EvaluateBlock, Field, FromClosure, Leaf,
+    SharedField,
 };
 use crate::kernel::Kernel;
-use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
-use crate::operator::doors;
+use crate::machine::{Block, Column, Gradients, Lane};
+use crate::node::{self, Node, Opaque, Primitive};
 use crate::pose::Pose;
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float};
+use crate::scalar::{Dual, Expression, Float};
 use crate::vector::{Point, Vector};
 
-/// The deepest nesting of operators, after nested unions are flattened.
-///
-/// Each level of a block's evaluation needs at most 25 kB of stack.
-pub const MAX_DEPTH: usize = 64;
-
 /// A signed distance field in `D` dimensions, cheap to clone.
-#[derive(Clone, Debug)]
+///
+/// A shape can be looked into: [`node`](Self::node) is the operator or primitive that it
+/// is, [`from_node`](Self::from_node) builds it again to the bit. `==` compares that
+/// structure, and a shape prints as what builds it.
+///
+/// ```
+/// use palpate_field::Shape;
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let ball = Shape::ball(0.05)?.translated([0.0, 0.06, 0.0])?;
+/// let plate = Shape::cuboid([0.2, 0.02, 0.2])?;
+/// let cup = &plate - &ball;
+/// assert_eq!(
+///     cup.to_string(),
+///     "cuboid([0.2, 0.02, 0.2]) - ball(0.05).translated([0.0, 0.06, 0.0])",
+/// );
+/// assert_eq!(cup, Shape::from_node(cup.node().clone())?);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
 pub struct Shape<const D: usize> {
-    field: Arc<dyn Field<D>>,
-    depth: usize,
+    field: SharedField<D>,
+    node: Arc<Node<D>>,
 }
 
 impl<const D: usize> Shape<D> {
     /// A closed formula as a shape.
     pub fn from_kernel(kernel: impl Kernel<D>) -> Self {
-        Self::from_node(Arc::new(Leaf::new(kernel)))
+        let primitive = Primitive::of_kernel(&kernel);
+        let kind = std::any::type_name_of_val(&kernel);
+        let field: SharedField<D> = Arc::new(Leaf::new(kernel));
+        let opaque = || Node::Opaque(Opaque::new(kind, Arc::clone(&field)));
+        let node = primitive.map_or_else(opaque, Node::Primitive);
+        Self::of_parts(field, node)
     }
 
     /// A closed formula, moved by `world_from_body`: the same as
-    /// [`placed`](Self::placed) makes of [`from_kernel`](Self::from_kernel), built at once.
+    /// [`placed`](Self::placed) makes of [`from_kernel`](Self::from_kernel).
     ///
     /// ```
     /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -56,17 +84,13 @@ impl<const D: usize> Shape<D> {
         kernel: impl Kernel<D>,
         world_from_body: &Pose<D>,
     ) -> Result<Self, ShapeError> {
-        world_from_body.check()?;
-        Ok(if world_from_body.is_identity() {
-            Self::from_kernel(kernel)
-        } else {
-            Self::from_node(Arc::new(Leaf::at(kernel, world_from_body)))
-        })
+        Self::from_kernel(kernel).placed(world_from_body)
     }
 
-    /// A field that is no formula as a shape.
+    /// A [`CustomField`] as a shape.
     pub fn custom(field: impl CustomField<D>) -> Self {
-        Self::from_node(Arc::new(Custom(field)))
+        let kind = std::any::type_name_of_val(&field);
+        Self::opaque(kind, Arc::new(Custom(field)))
     }
 
     /// A closure as a shape, with what it promises.
@@ -92,55 +116,76 @@ impl<const D: usize> Shape<D> {
         promise: Promise<D>,
         closure: impl Fn(Vector<Dual<f64, D>, D>) -> Dual<f64, D> + Send + Sync + 'static,
     ) -> Self {
-        Self::custom(FromClosure { closure, promise })
+        let kind = std::any::type_name_of_val(&closure);
+        Self::opaque(kind, Arc::new(Custom(FromClosure { closure, promise })))
     }
 
-    pub(crate) fn from_node(field: Arc<dyn Field<D>>) -> Self {
-        Self { field, depth: 1 }
+    fn opaque(kind: &'static str, field: SharedField<D>) -> Self {
+        let node = Node::Opaque(Opaque::new(kind, Arc::clone(&field)));
+        Self::of_parts(field, node)
     }
 
-    /// An operator over shapes, `depth` levels deep.
-    pub(crate) fn from_operator(
-        node: impl Field<D> + 'static,
-        depth: usize,
-    ) -> Result<Self, ShapeError> {
-        if depth > MAX_DEPTH {
-            return Err(ShapeError::TooDeep { depth, limit: MAX_DEPTH });
-        }
-        Ok(Self { field: doors::open(node), depth })
+    /// A field and the node that says what it is.
+    pub(crate) fn of_parts(field: SharedField<D>, node: Node<D>) -> Self {
+        Self { field, node: Arc::new(node) }
     }
 
-    /// The depth of the deepest of `shapes`.
-    pub(crate) fn deepest(shapes: &[Self]) -> usize {
-        shapes.iter().map(|shape| shape.depth).max().unwrap_or(0)
+    /// Builds the shape that a node describes, after its parameters are checked.
+    ///
+    /// Operators and constructors build by this function. [`Node`] says which nodes are
+    /// rewritten to a normal form.
+    ///
+    /// # Errors
+    ///
+    /// If a parameter breaks its rule, an operator needs what its shape does not have, or
+    /// shapes are nested too deeply.
+    pub fn from_node(node: Node<D>) -> Result<Self, ShapeError> {
+        node::shape(node)
+    }
+
+    /// The operator with its parameters and shapes, or the primitive with its arguments.
+    #[must_use]
+    pub fn node(&self) -> &Node<D> {
+        &self.node
+    }
+
+    /// The node, which another shape may hold.
+    pub(crate) fn shared_node(&self) -> &Arc<Node<D>> {
+        &self.node
+    }
+
+    /// The field that answers.
+    pub(crate) fn field(&self) -> &SharedField<D> {
+        &self.field
+    }
+
+    /// The formula of the distance, recorded through every operator and kernel; `None`
+    /// where a [`CustomField`] or a closure is part of the shape.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let ring = Shape::circle(0.5)? - Shape::circle(0.25)?;
+    /// let formula = ring.formula().unwrap();
+    /// assert_eq!(formula.to_string(), "let v0 = norm(x, y)\nmax(v0 - 0.5, -(v0 - 0.25))");
+    /// assert_eq!(formula.evaluate(&[3.0, 4.0]), ring.distance([3.0, 4.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn formula(&self) -> Option<Expression> {
+        Expression::record(|p| self.field.record(p))
     }
 
     /// How many operators are nested in the shape, with the leaf; at most
     /// [`MAX_DEPTH`].
     #[must_use]
     pub fn depth(&self) -> usize {
-        self.depth
+        self.field.depth()
     }
 
-    /// The members, if this is a sharp union; leaves are not asked.
-    pub(crate) fn members(&self) -> Option<&[Self]> {
-        if self.depth == 1 { None } else { self.field.members() }
-    }
-
-    /// The node that answers.
-    #[inline(always)]
-    pub(crate) fn field(&self) -> &(dyn Field<D> + 'static) {
-        &*self.field
-    }
-
-    /// The shape moved by `pose`, if its node takes the motion into itself; else the
-    /// shape back.
-    pub(crate) fn taking_motion(self, pose: &Pose<D>) -> Result<Self, Self> {
-        let depth = self.depth;
-        self.field.placed(pose).map_err(|field| Self { field, depth })
-    }
-
-    /// What the distances promise.
+    /// The promise of the distances.
     #[must_use]
     pub fn promise(&self) -> &Promise<D> {
         self.field.promise()
@@ -149,44 +194,19 @@ impl<const D: usize> Shape<D> {
     /// The signed distance at `p` [m]: negative inside, zero on the surface.
     #[inline]
     #[must_use]
-    pub fn distance(&self, p: Point<D>) -> f64 {
-        let (x, y, z) = p.coordinates();
+    pub fn distance(&self, p: impl Into<Point<D>>) -> f64 {
+        let (x, y, z) = p.into().coordinates();
         self.field.distance(x, y, z)
     }
 
     /// The signed distance at `p` [m] and its gradient.
     #[inline]
     #[must_use]
-    pub fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+    pub fn distance_gradient(&self, p: impl Into<Point<D>>) -> (f64, Vector<f64, D>) {
         let mut gradient = Vector::ZERO;
-        let (x, y, z) = p.coordinates();
+        let (x, y, z) = p.into().coordinates();
         let distance = self.field.distance_gradient(x, y, z, &mut gradient);
         (distance, gradient)
-    }
-
-    /// The signed distances at `points` [m], with their gradients if `gradients`
-    /// has room for them.
-    ///
-    /// Points are evaluated in blocks; the bits are those of
-    /// [`distance`](Self::distance) and
-    /// [`distance_gradient`](Self::distance_gradient).
-    ///
-    /// # Panics
-    ///
-    /// If `distances` is not as long as `points`.
-    pub fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
-        assert_eq!(points.len(), distances.len(), "one distance for each point");
-        let mut block = Block::<f64, D, BLOCK>::zero();
-        let mut column = Column::<f64, BLOCK>::zero();
-        for (points, distances) in points.chunks(BLOCK).zip(distances.chunks_mut(BLOCK)) {
-            for (i, p) in points.iter().enumerate() {
-                block.set(i, *p);
-            }
-            self.block_distances(&block, points.len(), &mut column);
-            for (i, distance) in distances.iter_mut().enumerate() {
-                *distance = column.get(i);
-            }
-        }
     }
 
     /// The distances in the first `count` lanes of a block [m]; the other lanes
@@ -223,17 +243,17 @@ impl<const D: usize> Shape<D> {
     /// The distance in single precision at a point in single precision.
     #[inline]
     #[must_use]
-    pub fn distance_f32(&self, p: Vector<f32, D>) -> f32 {
-        let (x, y, z) = p.coordinates();
+    pub fn distance_f32(&self, p: impl Into<Vector<f32, D>>) -> f32 {
+        let (x, y, z) = p.into().coordinates();
         self.field.distance(x, y, z)
     }
 
     /// The distance and its gradient in single precision.
     #[inline]
     #[must_use]
-    pub fn distance_gradient_f32(&self, p: Vector<f32, D>) -> (f32, Vector<f32, D>) {
+    pub fn distance_gradient_f32(&self, p: impl Into<Vector<f32, D>>) -> (f32, Vector<f32, D>) {
         let mut gradient = Vector([0.0; D]);
-        let (x, y, z) = p.coordinates();
+        let (x, y, z) = p.into().coordinates();
         let distance = self.field.distance_gradient(x, y, z, &mut gradient);
         (distance, gradient)
     }
@@ -241,7 +261,8 @@ impl<const D: usize> Shape<D> {
     /// The radius of a ball about `p` that is sure to hold no surface [m],
     /// rounding included; zero close to the surface.
     #[must_use]
-    pub fn safe_radius(&self, p: Point<D>) -> f64 {
+    pub fn safe_radius(&self, p: impl Into<Point<D>>) -> f64 {
+        let p = p.into();
         let promise = self.promise();
         (promise.safe_radius(p, self.distance(p)) - promise.rounding.within(p.norm())).max(0.0)
     }
@@ -263,10 +284,10 @@ impl<const D: usize> Shape<D> {
     /// # }
     /// ```
     #[must_use]
-    pub fn surface_point(&self, p: Point<D>) -> Option<Point<D>> {
+    pub fn surface_point(&self, p: impl Into<Point<D>>) -> Option<Point<D>> {
         const MOST_STEPS: usize = 64;
         const SMALLEST_SLOPE: f64 = 1e-6;
-        let mut p = p;
+        let mut p = p.into();
         for _ in 0..MOST_STEPS {
             let (distance, gradient) = self.distance_gradient(p);
             if distance.abs() <= self.promise().rounding.within(p.norm()) {

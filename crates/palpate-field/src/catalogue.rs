@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The catalogue: every primitive by its name.
+
+use std::any::{Any, TypeId};
+use std::sync::Arc as Shared;
+
+use crate::error::ShapeError;
+use crate::field::{Leaf, SharedField};
+use crate::kernel::*;
+use crate::node::{self, Node};
+use crate::pose::Pose;
+use crate::shape::Shape;
+
+/// A primitive in the catalogue.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Entry<const D: usize> {
+    /// The name in scene files, and of the constructor of [`Shape`].
+    pub name: &'static str,
+    /// The primitive described in one sentence.
+    pub about: &'static str,
+    /// The parameters, in the order of the arguments.
+    pub parameters: &'static [Parameter],
+    /// The rule that bounds its values over a cell.
+    pub model: ModelRule,
+    kernel: TypeId,
+    build: fn(&[Argument]) -> Result<SharedField<D>, ShapeError>,
+    arguments: fn(&dyn Any) -> Option<Vec<Argument>>,
+    example: fn() -> Result<Vec<Argument>, ShapeError>,
+}
+
+impl<const D: usize> Entry<D> {
+    const fn of<K: Primitive<D>>() -> Self {
+        Self {
+            name: K::NAME,
+            about: K::ABOUT,
+            parameters: K::PARAMETERS,
+            model: K::MODEL,
+            kernel: TypeId::of::<K>(),
+            build: |arguments| Ok(Shared::new(Leaf::new(K::from_arguments(arguments)?))),
+            arguments: |kernel| kernel.downcast_ref::<K>().map(K::arguments),
+            example: || K::example().map(|kernel| kernel.arguments()),
+        }
+    }
+
+    /// The primitives of this dimension; none but in the plane and in space.
+    #[must_use]
+    pub fn all() -> &'static [Self] {
+        let planar: &dyn Any = &Entry::<2>::ALL;
+        let spatial: &dyn Any = &Entry::<3>::ALL;
+        let all = |list: &dyn Any| list.downcast_ref::<&'static [Self]>().copied();
+        all(planar).or_else(|| all(spatial)).unwrap_or(&[])
+    }
+
+    /// The primitive called `name`, in the catalogue or in [`ALIASES`].
+    ///
+    /// ```
+    /// use palpate_field::catalogue::Entry;
+    ///
+    /// assert_eq!(Entry::<3>::find("torus").unwrap().parameters[1].name, "radius");
+    /// assert_eq!(Entry::<3>::find("sphere").unwrap().name, "ball");
+    /// assert!(Entry::<2>::find("sphere").is_none());
+    /// ```
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Self> {
+        let named = |name: &str| Self::all().iter().find(|entry| entry.name == name);
+        let alias = || ALIASES.iter().find(|alias| alias.name == name && alias.dimension == D);
+        named(name).or_else(|| named(alias()?.of))
+    }
+
+    /// The primitive that a kernel is, with the arguments it was made from; `None` for a
+    /// kernel that is not of this crate.
+    pub(crate) fn of_kernel(kernel: &dyn Any) -> Option<(Self, Vec<Argument>)> {
+        let entry = Self::all().iter().find(|entry| entry.kernel == kernel.type_id())?;
+        Some((*entry, (entry.arguments)(kernel)?))
+    }
+
+    /// The field of the primitive from one argument for each parameter.
+    pub(crate) fn field(&self, arguments: &[Argument]) -> Result<SharedField<D>, ShapeError> {
+        (self.build)(arguments)
+    }
+
+    /// Makes the primitive from one argument for each parameter, in their order.
+    ///
+    /// # Errors
+    ///
+    /// If an argument is of the wrong kind or breaks the parameter's rule.
+    pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
+        let primitive = node::Primitive::of_entry(*self, arguments.to_vec());
+        Shape::from_node(Node::Primitive(primitive))
+    }
+
+    /// As [`build`](Self::build), moved by `world_from_body`.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build), or if a number of the pose is not finite.
+    pub fn build_at(
+        &self,
+        arguments: &[Argument],
+        world_from_body: &Pose<D>,
+    ) -> Result<Shape<D>, ShapeError> {
+        self.build(arguments)?.placed(world_from_body)
+    }
+
+    /// The example of the primitive, of about 1 m.
+    ///
+    /// # Errors
+    ///
+    /// None in practice.
+    pub fn example(&self) -> Result<Shape<D>, ShapeError> {
+        self.build(&(self.example)()?)
+    }
+}
+
+/// Another name of a primitive in one dimension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Alias {
+    /// The other name.
+    pub name: &'static str,
+    /// The name in the catalogue.
+    pub of: &'static str,
+    /// The dimension in which it is one.
+    pub dimension: usize,
+}
+
+/// The names that many people look for first.
+pub const ALIASES: &[Alias] = &[
+    Alias { name: "circle", of: "ball", dimension: 2 },
+    Alias { name: "rectangle", of: "cuboid", dimension: 2 },
+    Alias { name: "sphere", of: "ball", dimension: 3 },
+    Alias { name: "box", of: "cuboid", dimension: 3 },
+];
+
+// Statics, and not constants, so that the code of all primitives is in this crate
+// once and not in every crate that looks at the lists.
+static PLANAR: [Entry<2>; 45] = [
+    Entry::of::<Ball>(),
+    Entry::of::<Cuboid<2>>(),
+    Entry::of::<RoundedCuboid<2>>(),
+    Entry::of::<Capsule>(),
+    Entry::of::<Segment<2>>(),
+    Entry::of::<HalfSpace<2>>(),
+    Entry::of::<Simplex<2>>(),
+    Entry::of::<Ellipsoid<2>>(),
+    Entry::of::<Ring>(),
+    Entry::of::<Arc>(),
+    Entry::of::<RegularPolygon>(),
+    Entry::of::<RegularStar>(),
+    Entry::of::<Polygon>(),
+    Entry::of::<CoolS>(),
+    Entry::of::<RoundedRectangle>(),
+    Entry::of::<ChamferedRectangle>(),
+    Entry::of::<OrientedRectangle>(),
+    Entry::of::<Rhombus>(),
+    Entry::of::<IsoscelesTrapezoid>(),
+    Entry::of::<Parallelogram>(),
+    Entry::of::<IsoscelesTriangle>(),
+    Entry::of::<Stairs>(),
+    Entry::of::<Cross>(),
+    Entry::of::<RoundedX>(),
+    Entry::of::<Tunnel>(),
+    Entry::of::<UnevenCapsule>(),
+    Entry::of::<Pie>(),
+    Entry::of::<CutDisk>(),
+    Entry::of::<RingSector>(),
+    Entry::of::<Horseshoe>(),
+    Entry::of::<Vesica>(),
+    Entry::of::<OrientedVesica>(),
+    Entry::of::<Moon>(),
+    Entry::of::<Egg>(),
+    Entry::of::<Heart>(),
+    Entry::of::<RoundedCross>(),
+    Entry::of::<BobblyCross>(),
+    Entry::of::<Parabola>(),
+    Entry::of::<ParabolaSegment>(),
+    Entry::of::<QuadraticBezier>(),
+    Entry::of::<QuadraticCircle>(),
+    Entry::of::<Hyperbola>(),
+    Entry::of::<CircleWave>(),
+    Entry::of::<PowerBall>(),
+    Entry::of::<PowerCuboid<2>>(),
+];
+
+static SPATIAL: [Entry<3>; 41] = [
+    Entry::of::<Ball>(),
+    Entry::of::<Cuboid<3>>(),
+    Entry::of::<RoundedCuboid<3>>(),
+    Entry::of::<Capsule>(),
+    Entry::of::<Segment<3>>(),
+    Entry::of::<HalfSpace<3>>(),
+    Entry::of::<Simplex<3>>(),
+    Entry::of::<Ellipsoid<3>>(),
+    Entry::of::<Cylinder>(),
+    Entry::of::<RoundedCylinder>(),
+    Entry::of::<InfiniteCylinder>(),
+    Entry::of::<CappedCone>(),
+    Entry::of::<Cone>(),
+    Entry::of::<Pyramid>(),
+    Entry::of::<Torus>(),
+    Entry::of::<HexagonalPrism>(),
+    Entry::of::<TriangularPrism>(),
+    Entry::of::<Octahedron>(),
+    Entry::of::<CuboidFrame>(),
+    Entry::of::<CappedTorus>(),
+    Entry::of::<Link>(),
+    Entry::of::<InfiniteCone>(),
+    Entry::of::<CylinderBetween>(),
+    Entry::of::<CappedConeBetween>(),
+    Entry::of::<SolidAngle>(),
+    Entry::of::<CutBall>(),
+    Entry::of::<CutHollowSphere>(),
+    Entry::of::<DeathStar>(),
+    Entry::of::<RoundCone>(),
+    Entry::of::<RoundConeBetween>(),
+    Entry::of::<VesicaSegment>(),
+    Entry::of::<RhombusPrism>(),
+    Entry::of::<Sheet<3>>(),
+    Entry::of::<Sheet<4>>(),
+    Entry::of::<CubeApproximation>(),
+    Entry::of::<CylinderApproximation>(),
+    Entry::of::<ConeApproximation>(),
+    Entry::of::<PyramidApproximation>(),
+    Entry::of::<PowerBall>(),
+    Entry::of::<PowerCuboid<3>>(),
+    Entry::of::<PowerTorus>(),
+];
+
+impl Entry<2> {
+    /// All primitives of the plane.
+    pub const ALL: &[Self] = &PLANAR;
+}
+
+impl Entry<3> {
+    /// All primitives of space.
+    pub const ALL: &[Self] = &SPATIAL;
+}

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What a shape is made of: its operator with its parameters, or its primitive.
+
+mod build;
+mod primitive;
+mod text;
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::field::SharedField;
+use crate::operator::Copies;
+use crate::pose::Pose;
+use crate::shape::Shape;
+
+pub use crate::operator::{Boolean, Profile};
+pub(crate) use build::shape;
+pub use primitive::Primitive;
+
+/// One node of a shape: an operator with its parameters as they were given and the shapes
+/// that it works on, or a primitive.
+///
+/// [`Shape::node`] gives the node of a shape, [`Shape::from_node`] builds a shape from one.
+/// A shape that is built from its own node has the same bits.
+///
+/// # Normal form
+///
+/// `Shape::from_node` rewrites what can be said in several ways, so that loops over
+/// operators do not nest without end:
+///
+/// - A union in a union becomes part of it, and likewise an intersection in an
+///   intersection and a symmetric difference in a symmetric difference.
+/// - A difference of a difference is one: `(a − b) − c` has the shapes `a, b, c`, as
+///   `a − (b ∪ c)` has. A union, intersection or difference of one shape is that shape.
+/// - A shape that is moved twice has one pose, the product, and a shape that is not moved
+///   has none.
+///
+/// ```
+/// use palpate_field::{Node, Shape};
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let mut plate = Shape::cuboid([1.0, 0.1, 1.0])?;
+/// let drill = Shape::cylinder(0.02, 0.2)?;
+/// for i in 0..9 {
+///     plate = plate - drill.clone().translated([0.1 * f64::from(i) - 0.4, 0.0, 0.0])?;
+/// }
+/// let Node::Difference(of) = plate.node() else { unreachable!() };
+/// assert_eq!((of.len(), plate.depth()), (10, 3));
+/// let Node::Primitive(cuboid) = of[0].node() else { unreachable!() };
+/// assert_eq!(cuboid.name(), "cuboid");
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Node<const D: usize> {
+    /// A primitive of the catalogue.
+    Primitive(Primitive<D>),
+    /// What is in any of the shapes.
+    Union(Vec<Shape<D>>),
+    /// What is in all of the shapes.
+    Intersection(Vec<Shape<D>>),
+    /// The first shape without the others.
+    Difference(Vec<Shape<D>>),
+    /// What is in an odd number of the shapes.
+    SymmetricDifference(Vec<Shape<D>>),
+    /// A boolean with its creases filled or cut off.
+    Smooth {
+        /// Which boolean.
+        boolean: Boolean,
+        /// The form of the fill.
+        profile: Profile,
+        /// The fill where two distances are equal [m].
+        width: f64,
+        /// The shapes.
+        of: Vec<Shape<D>>,
+    },
+    /// A shape with its surface moved by another field.
+    Displaced {
+        /// The shape.
+        of: Shape<D>,
+        /// The field that moves its surface, outwards where it is positive.
+        by: Shape<D>,
+        /// The largest displacement [m].
+        height: f64,
+    },
+    /// A shape between two others.
+    Morphed {
+        /// The shape at a progress of 0.
+        from: Shape<D>,
+        /// The shape at a progress of 1.
+        into: Shape<D>,
+        /// How far from the one to the other, from 0 to 1.
+        progress: f64,
+    },
+    /// A shape moved.
+    Placed {
+        /// The motion, world from body.
+        pose: Pose<D>,
+        /// The shape in its own frame.
+        of: Shape<D>,
+    },
+    /// A shape scaled about the origin.
+    Scaled {
+        /// The factor.
+        factor: f64,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// A shape scaled along each axis.
+    Stretched {
+        /// One factor an axis.
+        factors: [f64; D],
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// A shape grown, or shrunk if the distance is negative.
+    Offset {
+        /// How far its surface moves outwards [m].
+        distance: f64,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// A shell about the surface of a shape.
+    Shell {
+        /// The thickness of the wall [m].
+        thickness: f64,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// A shape cut at the coordinate planes and pulled apart.
+    Elongated {
+        /// The length of the gap along each axis [m].
+        lengths: [f64; D],
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// The part of a shape at positive coordinates of an axis, and its mirror image.
+    Mirrored {
+        /// The number of the axis.
+        axis: usize,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// Copies of a shape on a grid.
+    Repeated {
+        /// The copies along each axis.
+        copies: [Copies; D],
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// A shape turned in the plane of x and y by an angle that grows with x.
+    Bent {
+        /// The angle for each metre [rad/m].
+        rate: f64,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// In space: a shape turned about y by an angle that grows with y.
+    Twisted {
+        /// The angle for each metre [rad/m].
+        rate: f64,
+        /// The shape.
+        of: Shape<D>,
+    },
+    /// In space: a profile in x and z as a solid along y.
+    Extruded {
+        /// The full height [m].
+        height: f64,
+        /// The profile.
+        of: Shape<2>,
+    },
+    /// In space: a profile in x and y turned about the y axis.
+    Revolved {
+        /// The profile.
+        of: Shape<2>,
+    },
+    /// A kernel, field or closure of a user: it can be evaluated, not looked into.
+    Opaque(Opaque<D>),
+}
+
+/// A field of a user, of which only the type is known.
+///
+/// It equals itself and its copies alone.
+#[derive(Clone)]
+pub struct Opaque<const D: usize> {
+    kind: &'static str,
+    field: SharedField<D>,
+}
+
+impl<const D: usize> Opaque<D> {
+    pub(crate) fn new(kind: &'static str, field: SharedField<D>) -> Self {
+        Self { kind, field }
+    }
+
+    /// The name of the Rust type of the kernel, field or closure.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        self.kind
+    }
+}
+
+impl<const D: usize> PartialEq for Opaque<D> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::addr_eq(Arc::as_ptr(&self.field), Arc::as_ptr(&other.field))
+    }
+}
+
+impl<const D: usize> fmt::Debug for Opaque<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "opaque({})", self.kind)
+    }
+}
+
+impl<const D: usize> PartialEq for Shape<D> {
+    /// Compares structure: operators, parameters and primitives, in their order.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(self.shared_node(), other.shared_node()) || self.node() == other.node()
+    }
+}

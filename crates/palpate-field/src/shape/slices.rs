@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Many points at once: slices and arrays with strides, through whole blocks.
+
+use super::Shape;
+use crate::field::{DifferentiateBlock, EvaluateBlock, Field};
+use crate::machine::{BLOCK, Block, Column, Gradients, Lane};
+use crate::scalar::Float;
+use crate::strided::{Strided, StridedMut};
+use crate::vector::{Point, Vector};
+
+impl<const D: usize> Shape<D> {
+    /// The signed distances at `points` [m].
+    ///
+    /// Points are evaluated in blocks; the bits are those of
+    /// [`distance`](Self::distance).
+    ///
+    /// # Panics
+    ///
+    /// If `distances` is not as long as `points`.
+    pub fn distances(&self, points: &[Point<D>], distances: &mut [f64]) {
+        assert_eq!(points.len(), distances.len(), "one distance for each point");
+        self.each(points.len(), |i| points[i], |i, distance: f64| distances[i] = distance);
+    }
+
+    /// The signed distances at `points` [m] and their gradients.
+    ///
+    /// The bits are those of [`distance_gradient`](Self::distance_gradient).
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// let points = [[0.0, 2.0], [3.0, 4.0]].map(Vector);
+    /// let (mut distances, mut gradients) = ([0.0; 2], [Vector::ZERO; 2]);
+    /// Shape::circle(1.0)?.distances_gradients(&points, &mut distances, &mut gradients);
+    /// assert_eq!(distances, [1.0, 4.0]);
+    /// assert_eq!(gradients, [Vector([0.0, 1.0]), Vector([0.6, 0.8])]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If `distances` or `gradients` is not as long as `points`.
+    pub fn distances_gradients(
+        &self,
+        points: &[Point<D>],
+        distances: &mut [f64],
+        gradients: &mut [Vector<f64, D>],
+    ) {
+        assert_eq!(points.len(), distances.len(), "one distance for each point");
+        assert_eq!(points.len(), gradients.len(), "one gradient for each point");
+        self.each_gradient(
+            points.len(),
+            |i| points[i],
+            |i, distance: f64, gradient| {
+                (distances[i], gradients[i]) = (distance, gradient);
+            },
+        );
+    }
+
+    /// As [`distances`](Self::distances) in single precision, with the bits of
+    /// [`distance_f32`](Self::distance_f32).
+    ///
+    /// # Panics
+    ///
+    /// If `distances` is not as long as `points`.
+    pub fn distances_f32(&self, points: &[Vector<f32, D>], distances: &mut [f32]) {
+        assert_eq!(points.len(), distances.len(), "one distance for each point");
+        self.each(points.len(), |i| points[i], |i, distance: f32| distances[i] = distance);
+    }
+
+    /// As [`distances_gradients`](Self::distances_gradients) in single precision, with the
+    /// bits of [`distance_gradient_f32`](Self::distance_gradient_f32).
+    ///
+    /// # Panics
+    ///
+    /// If `distances` or `gradients` is not as long as `points`.
+    pub fn distances_gradients_f32(
+        &self,
+        points: &[Vector<f32, D>],
+        distances: &mut [f32],
+        gradients: &mut [Vector<f32, D>],
+    ) {
+        assert_eq!(points.len(), distances.len(), "one distance for each point");
+        assert_eq!(points.len(), gradients.len(), "one gradient for each point");
+        self.each_gradient(
+            points.len(),
+            |i| points[i],
+            |i, distance: f32, gradient| {
+                (distances[i], gradients[i]) = (distance, gradient);
+            },
+        );
+    }
+
+    /// The signed distances at points in an array with strides [m], in `f64` or `f32`, with
+    /// the bits of the call for one point.
+    ///
+    /// ```
+    /// use palpate_field::{Layout, Shape, Strided, StridedMut};
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// // One array for x and one for y, as columns of a table have them.
+    /// let coordinates = [0.0, 3.0, 2.0, 4.0];
+    /// let layout = Layout { start: 0, rows: 2, row_stride: 1, column_stride: 2 };
+    /// let points = Strided::new(&coordinates, layout)?;
+    /// let mut out = [0.0; 2];
+    /// let distances = StridedMut::new(&mut out, Layout::contiguous(2, 1))?;
+    /// Shape::circle(1.0)?.distances_strided(points, distances);
+    /// assert_eq!(out, [1.0, 4.0]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If `distances` has not as many rows as `points`.
+    pub fn distances_strided<T: Float + Lane>(
+        &self,
+        points: Strided<'_, T, D>,
+        mut distances: StridedMut<'_, T, 1>,
+    ) where
+        dyn Field<D>: EvaluateBlock<T, D, BLOCK>,
+    {
+        assert_eq!(points.rows(), distances.rows(), "one distance for each point");
+        self.each(
+            points.rows(),
+            |i| Vector(points.row(i)),
+            |i, distance| distances.set_row(i, [distance]),
+        );
+    }
+
+    /// The signed distances [m] and gradients at points in an array with strides, in `f64`
+    /// or `f32`, with the bits of the call for one point.
+    ///
+    /// # Panics
+    ///
+    /// If `distances` or `gradients` has not as many rows as `points`.
+    pub fn distances_gradients_strided<T: Float + Lane>(
+        &self,
+        points: Strided<'_, T, D>,
+        mut distances: StridedMut<'_, T, 1>,
+        mut gradients: StridedMut<'_, T, D>,
+    ) where
+        dyn Field<D>: DifferentiateBlock<T, D, BLOCK>,
+    {
+        assert_eq!(points.rows(), distances.rows(), "one distance for each point");
+        assert_eq!(points.rows(), gradients.rows(), "one gradient for each point");
+        let point = |i| Vector(points.row(i));
+        self.each_gradient(points.rows(), point, |i, distance, gradient| {
+            distances.set_row(i, [distance]);
+            gradients.set_row(i, gradient.0);
+        });
+    }
+
+    /// Gives `put` the distance at each of `count` points, block by block.
+    #[inline(always)]
+    fn each<T: Float + Lane>(
+        &self,
+        count: usize,
+        point: impl Fn(usize) -> Vector<T, D>,
+        mut put: impl FnMut(usize, T),
+    ) where
+        dyn Field<D>: EvaluateBlock<T, D, BLOCK>,
+    {
+        let mut block = Block::<T, D, BLOCK>::scratch();
+        let mut column = Column::<T, BLOCK>::scratch();
+        for first in (0..count).step_by(BLOCK) {
+            let lanes = BLOCK.min(count - first);
+            block.fill(lanes, |lane| point(first + lane));
+            self.block_distances(&block, lanes, &mut column);
+            (0..lanes).for_each(|lane| put(first + lane, column.get(lane)));
+        }
+    }
+
+    /// As [`each`](Self::each), with gradients.
+    #[inline(always)]
+    fn each_gradient<T: Float + Lane>(
+        &self,
+        count: usize,
+        point: impl Fn(usize) -> Vector<T, D>,
+        mut put: impl FnMut(usize, T, Vector<T, D>),
+    ) where
+        dyn Field<D>: DifferentiateBlock<T, D, BLOCK>,
+    {
+        let mut block = Block::<T, D, BLOCK>::scratch();
+        let mut answers = Gradients::<T, D, BLOCK>::scratch();
+        for first in (0..count).step_by(BLOCK) {
+            let lanes = BLOCK.min(count - first);
+            block.fill(lanes, |lane| point(first + lane));
+            self.block_gradients(&block, lanes, &mut answers);
+            for lane in 0..lanes {
+                put(first + lane, answers.distance.get(lane), answers.gradient.get(lane));
+            }
+        }
+    }
+}
