@@ -8,6 +8,7 @@ use crate::error::QueryError;
 /// The answer of a search: the true value lies in `[lower, upper]`, rounding included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certified<T> {
     /// The best point or contact that was found.
     pub best: T,
@@ -45,6 +46,7 @@ impl<T> Certified<T> {
 
 /// Why a search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stop {
     /// The bounds are no farther apart than the tolerance.
     Converged,
@@ -67,6 +69,7 @@ pub enum Stop {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// How far apart the bounds may be at the end [m].
     pub tolerance: f64,

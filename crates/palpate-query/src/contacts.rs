@@ -36,6 +36,7 @@ const DIRECTION: f64 = 1e-9;
 /// All contacts of one element.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ElementContacts<const D: usize> {
     /// The contacts, the deepest first, in the shape's coordinates.
     pub contacts: Vec<Contact<D>>,

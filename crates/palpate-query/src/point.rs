@@ -11,6 +11,7 @@ use crate::sampler::normal;
 /// The value of a field at a point, with what it promises there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AtPoint<const D: usize> {
     /// The point [m].
     pub point: Point<D>,

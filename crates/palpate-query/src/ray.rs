@@ -76,6 +76,7 @@ impl<const D: usize> Ray<D> {
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayHit<const D: usize> {
     /// The point [m].
     pub point: Point<D>,

@@ -40,6 +40,7 @@ const SHALLOW: f64 = 1e-3;
 /// Which contacts a [`manifold`] has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManifoldSettings {
     /// The largest gap of a contact [m].
     pub margin: f64,
@@ -79,6 +80,7 @@ impl ManifoldSettings {
 /// The contacts of two bodies.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Manifold<const D: usize> {
     /// The contacts, by group, in each group from the deepest.
     pub contacts: Vec<Contact<D>>,

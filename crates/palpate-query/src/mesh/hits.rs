@@ -92,6 +92,7 @@ impl<const N: usize, const D: usize> Default for MeshWorkspace<N, D> {
 /// An element of which the search could not tell whether it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Undecided {
     /// The index of the element in the mesh.
     pub element: u32,
@@ -104,6 +105,7 @@ pub struct Undecided {
 /// Which elements of a mesh touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshHits {
     /// The elements that touch, ascending.
     pub hits: Vec<u32>,

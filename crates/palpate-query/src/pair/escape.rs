@@ -35,6 +35,7 @@ const FAR: f64 = 100.0;
 /// A translation of the second body after which the bodies do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Escape<const D: usize> {
     /// The direction, a unit vector in world coordinates.
     pub direction: Vector<f64, D>,

@@ -13,6 +13,7 @@ use crate::sampler::normal;
 /// Where two bodies are nearest, or overlap most, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearest<const D: usize> {
     /// The point between the bodies, or in both [m].
     pub point: Point<D>,

@@ -17,6 +17,7 @@ use crate::placed::Placed;
 /// The separation of two bodies, and the boxes that prove it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Proof<const D: usize> {
     /// The answer, as [`separation`](crate::separation) gives it.
     pub answer: Certified<Nearest<D>>,
@@ -30,6 +31,7 @@ pub struct Proof<const D: usize> {
 /// A box and its proven bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,

@@ -31,6 +31,7 @@ const ROUNDINGS: f64 = 16.0;
 
 /// A body of a world, as [`World::add`] names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(usize);
 
 impl BodyId {
@@ -44,6 +45,7 @@ impl BodyId {
 /// How a world searches each pair of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorldSettings {
     /// The contacts of each pair: margin, spacing and largest number.
     pub manifold: ManifoldSettings,
@@ -70,6 +72,7 @@ impl WorldSettings {
 /// Two bodies near each other, and their contacts.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Neighbours<const D: usize> {
     /// The bodies; the first was added before the second.
     pub bodies: [BodyId; 2],
@@ -79,6 +82,7 @@ pub struct Neighbours<const D: usize> {
 
 /// Whether two bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
     /// Their separation is at most the margin.
     Touching,
