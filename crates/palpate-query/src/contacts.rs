@@ -70,11 +70,11 @@ impl<const D: usize> ElementContacts<D> {
 /// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
 ///   lies a barrier: every path on the element from one to the other passes a point where
 ///   the field is larger than at both, by more than the tolerance. That is proven.
-/// - **Nothing is missed:** from every point within the gap a path on the element, of cells
-///   that are no higher than it as far as their bounds tell, leads to a contact that is as
-///   deep as it is, up to the tolerance.
+/// - **Nothing is missed:** from every point within the gap a path on the element leads to a
+///   contact at least as deep, up to the tolerance, over cells that no bound proves to be
+///   higher than the point.
 ///
-/// What is not promised: two minima closer to each other than an eighth of a triangle's edge,
+/// Not promised: two minima closer to each other than an eighth of a triangle's edge,
 /// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two
 /// between which no barrier can be proven with a thirty-second of the edge, or with
 /// `limits.budget`.

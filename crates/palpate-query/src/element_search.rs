@@ -14,7 +14,7 @@
 //! since the distance from `p` is convex. From the centre, the loss is the element's
 //! radius r. From a point lifted off it along the gradient by s, the free ball about it
 //! is nearly a half-space, and the loss is about r²/2s: of second order, without
-//! curvature, exactness or a gradient that is right (a wrong one only says less).
+//! curvature, exactness or a correct gradient (a wrong one only widens the bound).
 //!
 //! The first samples are over the centre and then over the lowest point, most often a vertex.
 //! If the other vertices lie above the tangent plane at that point, a ball about a point high
@@ -381,7 +381,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
                 let descent = larger(0.0, -gradient.dot(way));
                 let bend = descent + vertices[i] - value;
                 let share = 0.5 * descent / bend;
-                // Beyond both ends, or no number, where values do not fit to the slope.
+                // Outside of (0, 1) or NaN where the values contradict the slope.
                 if share > 0.0 && share < 1.0 { lowest + way * share } else { lowest }
             }
             Some(k) => {

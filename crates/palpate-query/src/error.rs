@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a question.
+//! Errors of questions.
 
 use palpate_field::{LARGEST_LENGTH, Point};
 
@@ -12,7 +12,7 @@ pub enum QueryError {
     /// A coordinate is not a number, or too large to compute with.
     #[error("{what} must be finite and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Coordinate {
-        /// What the coordinate is of.
+        /// The point or vector with the coordinate.
         what: &'static str,
         /// The coordinate.
         value: f64,
@@ -29,7 +29,7 @@ pub enum QueryError {
     /// A setting that is negative, zero or too large to compute with.
     #[error("{what} must be positive and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Setting {
-        /// What is set.
+        /// The setting.
         what: &'static str,
         /// The number.
         value: f64,

@@ -5,7 +5,7 @@
 //!
 //! The gap between a ball about C with radius r and a shape is `d(C) − r`, with the signed
 //! distance d. Where the field is exact on C's side, `d = f(C)`, and one evaluation is all.
-//! A bound says less: `f(C) > r` proves that they are apart, `f(C) ≤ r` proves nothing.
+//! Where it is a bound, `f(C) > r` proves that they are apart, and `f(C) ≤ r` nothing.
 //! There the nearest point is searched for at which the field has the other sign: d is its
 //! distance from C, and its negative from inside.
 //!
@@ -295,7 +295,7 @@ impl<const D: usize> BallSearch<'_, D> {
         Some(Contact::new(surface, self.centre - direction * self.radius, direction))
     }
 
-    /// What the field may be off by at a point [m].
+    /// The rounding of the field at a point [m].
     fn slack(&self, p: Point<D>) -> f64 {
         self.body.shape.promise().rounding.within(p.norm())
     }

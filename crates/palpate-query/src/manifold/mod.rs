@@ -98,9 +98,9 @@ pub struct Manifold<const D: usize> {
 /// Contacts that span the region in which two bodies touch, up to a gap of
 /// `settings.margin`.
 ///
-/// The separation is found to `limits.tolerance` first; once it is proven to be more than
-/// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
-/// other parts of the region are found is not, if they are smaller than the spacing.
+/// The search finds the separation to `limits.tolerance` first, and stops with no contacts
+/// once it is proven to exceed the margin. The deepest point is certified; other parts of the
+/// region are found if they are larger than the spacing.
 /// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
 ///
 /// ```
@@ -175,7 +175,7 @@ pub(crate) fn spanning<const D: usize>(
     }
     let contacts = touches.iter().map(|member| member.touch.contact(&pair, settings.spacing));
     let mut spanning: Vec<_> = touches.iter().copied().zip(contacts).collect();
-    // Where a field says less than the distance, surfaces are farther apart than it says.
+    // Where a field is a bound, surfaces may be farther apart than its values.
     let mut is_deepest = true;
     spanning.retain(|(_, contact)| {
         std::mem::take(&mut is_deepest) || contact.gap <= settings.margin
@@ -230,7 +230,8 @@ impl ManifoldSettings {
         Ok(())
     }
 
-    /// What precisions are shares of [m]: the margin, unless it is all but nothing.
+    /// The length of which precisions are shares [m]: the margin, or a share of the spacing if
+    /// that is more.
     fn depth(&self) -> f64 {
         self.margin.max(SHALLOW * self.spacing)
     }

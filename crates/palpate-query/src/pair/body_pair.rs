@@ -232,7 +232,7 @@ impl<'a, const D: usize> BodyPair<'a, D> {
     }
 }
 
-/// What two boxes have in common; turned inside out where they are apart.
+/// The intersection of two boxes; its corners are swapped along sides where they are apart.
 fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
     let mut both = *a;
     for k in 0..D {

@@ -14,7 +14,8 @@ const STEPS: u32 = 40;
 /// A descent ends with a step that gains less than this share of the value.
 const SLOW: f64 = 0.1;
 
-/// What steps are multiplied by after one that leads down, and after one that does not.
+/// Factors of the step length: after a step that lowers the value, and after one that does
+/// not.
 const GROW: f64 = 1.5;
 const SHRINK: f64 = 0.25;
 

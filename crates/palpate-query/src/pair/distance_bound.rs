@@ -52,7 +52,7 @@ pub struct DistanceBound<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> DistanceBound<'a, D> {
-    /// The shape where `body_from_frame` says.
+    /// The bound of a shape at a pose.
     pub(crate) fn new(shape: &'a Shape<D>, body_from_frame: Pose<D>) -> Self {
         let promise = shape.promise();
         let is_moved = body_from_frame != Pose::identity();

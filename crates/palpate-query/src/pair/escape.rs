@@ -80,7 +80,7 @@ pub struct Escape<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn escape<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

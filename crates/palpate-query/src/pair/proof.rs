@@ -45,7 +45,7 @@ pub struct ProofBox<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn proof<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

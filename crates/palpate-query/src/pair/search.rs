@@ -24,7 +24,7 @@ const SMALL: f64 = 0.25;
 /// itself, bounds would end a rounding farther apart than the tolerance.
 const SPARE: f64 = 1.0 / 64.0;
 
-/// A model that says nothing.
+/// The model in a lane before the first is written.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
 /// Models are evaluated in lines of this many lanes.
@@ -33,7 +33,7 @@ const LINE: usize = 8;
 /// The largest number of waiting boxes.
 pub(crate) const ROOM: usize = 1 << 16;
 
-/// What is known of the boxes of a round, one item a box.
+/// Radii, values and models of the boxes of a round.
 #[derive(Debug)]
 struct Known {
     radii: [f64; BLOCK],
@@ -372,7 +372,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
     }
 
     /// Bounds by models those boxes that are small and not yet closed, again by the first
-    /// body alone before the second is asked.
+    /// body alone before the second is evaluated.
     fn bound_by_models(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
         let Self { search, open, memory, known: Known { radii, models, .. }, largest } = self;
         let Frontier { queue, pending, round } = frontier;

@@ -96,7 +96,7 @@ impl<const D: usize> Track<D> {
     ///
     /// # Errors
     ///
-    /// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
     pub fn separation(
         &mut self,
         poses: [Pose<D>; 2],
