@@ -8,10 +8,11 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the top layer to the bottom.
-const LAYERS: [&str; 13] = [
+const LAYERS: [&str; 14] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-query",
+    "palpate-local",
     "palpate-haptics",
     "palpate-vibration",
     "palpate-loop",

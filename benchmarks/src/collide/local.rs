@@ -8,7 +8,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Aabb, Point, Vector};
-use palpate::query::local::{ElementMethod, PairMethod};
+use palpate::local::{ElementMethod, PairMethod};
 use palpate::query::{Limits, Workspace, minimum};
 
 use super::pairs::{Pair, placed, plate_and_torus};

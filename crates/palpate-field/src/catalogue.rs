@@ -72,9 +72,9 @@ impl<const D: usize> Entry<D> {
 
     /// The primitive that a kernel is, with the arguments it was made from; `None` for a
     /// kernel that is not of this crate.
-    pub(crate) fn of_kernel(kernel: &dyn Any) -> Option<(&'static Self, Vec<Argument>)> {
+    pub(crate) fn of_kernel(kernel: &dyn Any) -> Option<(Self, Vec<Argument>)> {
         let entry = Self::all().iter().find(|entry| entry.kernel == kernel.type_id())?;
-        Some((entry, (entry.arguments)(kernel)?))
+        Some((*entry, (entry.arguments)(kernel)?))
     }
 
     /// The field of the primitive from one argument for each parameter.
@@ -88,7 +88,7 @@ impl<const D: usize> Entry<D> {
     ///
     /// If an argument is of the wrong kind or breaks the parameter's rule.
     pub fn build(&self, arguments: &[Argument]) -> Result<Shape<D>, ShapeError> {
-        let primitive = node::Primitive::new(self.name, arguments.to_vec())?;
+        let primitive = node::Primitive::of_entry(*self, arguments.to_vec());
         Shape::from_node(Node::Primitive(primitive))
     }
 

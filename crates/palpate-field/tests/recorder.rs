@@ -19,7 +19,7 @@ use palpate_testkit::{arbitrary as draw, cases};
 fn recorded<const D: usize>(
     formula: impl FnOnce(Vector<Recorded, D>) -> Recorded,
 ) -> Expression {
-    Expression::record(|p| Some(formula(p))).unwrap()
+    Expression::record(|p| Some(formula(p))).expect("a formula that always gives a result")
 }
 
 fn formula<K: Kernel<D>, const D: usize>(kernel: &K) -> String {

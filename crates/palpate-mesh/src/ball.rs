@@ -8,11 +8,11 @@ use palpate_field::{BoundingBall, Point, Vector};
 /// Room for the roundings of a centre and a distance, relative to the coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// How much of each vertex the centre of the smallest ball around a segment or a triangle
-/// is. It lies on the element.
+/// The barycentric weights of the centre of the smallest ball around a segment or a triangle,
+/// a point of the element.
 ///
-/// That of the two ends of its longest edge if the triangle is not acute; else its
-/// circumcentre, `a²(b² + c² − a²)` with the edges as seen from each vertex.
+/// The centre is the middle of the longest edge if the triangle is not acute; else it is the
+/// circumcentre, with weights `a²(b² + c² − a²)`, where `a` is the edge opposite to a vertex.
 ///
 /// ```
 /// use palpate_field::Vector;

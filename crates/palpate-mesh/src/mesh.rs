@@ -41,13 +41,13 @@ pub type Outline = Mesh<2, 2>;
 impl<const N: usize, const D: usize> Mesh<N, D> {
     /// The mesh of `elements` between `vertices` [m], and its tree of balls.
     ///
-    /// An element may name a vertex twice, or have no extent: [`report`](Self::report)
-    /// counts those.
+    /// Elements with a vertex twice or without extent are allowed; [`report`](Self::report)
+    /// counts them.
     ///
     /// # Errors
     ///
     /// If there are no elements, a coordinate is not finite or beyond 1e15 m, an element
-    /// names a vertex that does not exist, or there are more than `u32` counts.
+    /// names a vertex that does not exist, or there are more vertices or elements than `u32::MAX`.
     pub fn new(vertices: Vec<Point<D>>, elements: Vec<[u32; N]>) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", vertices.len()), ("faces", elements.len())] {
             if u32::try_from(count).is_err() {
@@ -103,7 +103,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         corners
     }
 
-    /// The smallest box around the elements [m]; vertices that none names do not count.
+    /// The smallest box around the elements [m]; unused vertices do not count.
     #[must_use]
     pub fn bounds(&self) -> Aabb<D> {
         self.bounds
@@ -115,7 +115,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         &self.tree
     }
 
-    /// The mesh `factor` times as large: `0.001` of a file in millimetres.
+    /// The mesh `factor` times as large: `0.001` converts millimetres to metres.
     ///
     /// # Errors
     ///
@@ -128,8 +128,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         Self::new(vertices, self.elements)
     }
 
-    /// The mesh with one vertex in the place of all that are exactly equal, in the order
-    /// in which they first appear.
+    /// The mesh with equal vertices merged into one, in the order in which they first appear.
     #[must_use]
     pub fn welded(self) -> Self {
         let (vertices, names) = weld(&self.vertices);
@@ -142,7 +141,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     }
 }
 
-/// Each of `points` once, and which of them each was; zero and minus zero are equal.
+/// The distinct points, and the index into them of each of `points`; zero equals minus zero.
 pub(crate) fn weld<const D: usize>(points: &[Point<D>]) -> (Vec<Point<D>>, Vec<u32>) {
     let mut places = HashMap::with_capacity(points.len());
     let (mut kept, mut names) = (Vec::new(), Vec::with_capacity(points.len()));

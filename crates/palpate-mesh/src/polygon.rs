@@ -5,15 +5,15 @@
 
 use palpate_field::{Point, Vector};
 
-/// The most corners of a polygon: cutting one takes up to the square of them.
+/// The largest number of corners of a polygon: cutting takes up to its square in time.
 pub const MOST_CORNERS: usize = 1024;
 
-/// Cuts a polygon into triangles between its corners, two fewer than it has, turned as it
-/// is, and appends them.
+/// Cuts a polygon into triangles, two fewer than it has corners and with its orientation, and
+/// appends them.
 ///
-/// By ears (Meisters 1975): a corner whose triangle turns the right way, with no other
-/// corner in it, is cut off. Corners on a straight edge are kept, since a neighbour may
-/// end there. Of a polygon that crosses itself any corner goes when no ear is left.
+/// Ear clipping (Meisters 1975): it cuts off a corner whose triangle has the polygon's
+/// orientation and holds no other corner. Corners on a straight edge stay, since a neighbour
+/// may end there. If a polygon that crosses itself has no ear left, any corner is cut off.
 pub(crate) fn triangulate(
     corners: &[u32],
     vertices: &[Point<3>],
@@ -48,7 +48,7 @@ pub(crate) fn triangulate(
     }
 }
 
-/// A normal of a polygon, as long as twice its area (Newell).
+/// The normal of a polygon with a length of twice its area (Newell).
 fn newell(corners: impl Iterator<Item = Point<3>> + Clone) -> Vector<f64, 3> {
     let next = corners.clone().skip(1);
     let Some(first) = corners.clone().next() else { return Vector::ZERO };

@@ -1,32 +1,33 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What is odd about a mesh, and its measures.
+//! The defects and the measures of a mesh.
 
 use palpate_field::{Aabb, Point, Vector};
 
 use crate::mesh::{Mesh, weld};
 
-/// An element is degenerate if its height is at most this times its largest coordinate:
-/// what roundings of its vertices amount to.
+/// An element is degenerate if its height is at most this times its largest coordinate: the
+/// rounding of its vertices.
 const FLAT: f64 = 4.0 * f64::EPSILON;
 
-/// What a look at all elements says of a mesh.
+/// The defects and the measures of a mesh.
 ///
-/// Elements meet in *rims*: triangles in edges, segments in their ends. A rim is known by
-/// the indices of its vertices: vertices that coincide and have two indices do not join
-/// what they belong to until they are [welded](Mesh::welded).
+/// Elements meet in *rims*: triangles in edges, segments in end points. The indices of its
+/// vertices identify a rim: two vertices at one place with two indices join no elements until
+/// they are [welded](Mesh::welded).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Report<const D: usize> {
-    /// Triangles or segments.
+    /// The number of triangles or segments.
     pub elements: usize,
-    /// Vertices, those that no element names included.
+    /// The number of vertices, unused ones included.
     pub vertices: usize,
-    /// Vertices that no element names.
+    /// Vertices that no element uses.
     pub unreferenced: usize,
-    /// Vertices at the place of an earlier one.
+    /// Vertices equal to an earlier one.
     pub coincident: usize,
-    /// Elements without an extent: that name a vertex twice, or are as flat as rounding.
+    /// Elements without extent: with a vertex twice, or flat up to rounding.
     pub degenerate: usize,
     /// Elements with the same vertices as an earlier one, in any order.
     pub duplicates: usize,
@@ -34,8 +35,7 @@ pub struct Report<const D: usize> {
     pub boundary: usize,
     /// Rims of more than two elements.
     pub non_manifold: usize,
-    /// Rims of two elements that do not pass them in opposite directions: one of the two
-    /// is inside out.
+    /// Rims that two elements pass in the same direction: one of the two is inside out.
     pub inconsistent: usize,
     /// The smallest box around the elements.
     pub bounds: Aabb<D>,
@@ -55,7 +55,7 @@ impl<const D: usize> Report<D> {
 }
 
 impl<const N: usize, const D: usize> Mesh<N, D> {
-    /// Looks at all elements.
+    /// Measures all elements, and counts their defects.
     #[must_use]
     pub fn report(&self) -> Report<D> {
         let mut named = vec![false; self.vertices().len()];
@@ -101,7 +101,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         report
     }
 
-    /// The rims of all elements, sorted, and in which of its two directions each is passed.
+    /// The rims of all elements, sorted, with the direction in which each is passed.
     fn rims(&self) -> Vec<([u32; 2], bool)> {
         let mut rims = Vec::with_capacity(N * self.elements().len());
         for indices in self.elements() {

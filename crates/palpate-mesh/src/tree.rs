@@ -3,11 +3,10 @@
 
 //! An implicit tree of balls over the elements of a mesh.
 //!
-//! Elements are ordered by recursive medians of their middles, so that a left part is
-//! always a power of two times eight. Then each run of `8ᵏ` elements, from the first on,
-//! is compact, and a ball around each run is a tree of eight children a node in which
-//! nothing points to anything: the children of node i are `8i` to `8i + 7` one level
-//! below. Each level is a few plain arrays, and padded to whole groups of eight.
+//! Recursive medians of the centres order the elements; the left part is always eight times a
+//! power of two. So each run of `8ᵏ` elements from the first on is compact, and the balls
+//! around these runs form a tree without pointers: the children of node i are `8i` to
+//! `8i + 7` one level below. A level is a few arrays, padded to whole groups of eight.
 
 use palpate_field::{Aabb, Point, Vector};
 
@@ -24,7 +23,7 @@ pub struct Level<const D: usize> {
 }
 
 impl<const D: usize> Level<D> {
-    /// Those of `balls`, and what completes the last group.
+    /// The level of `balls`, padded to whole groups.
     fn new(balls: impl ExactSizeIterator<Item = (Point<D>, f64)>) -> Self {
         let padded = balls.len().div_ceil(FAN) * FAN;
         let mut level = Self {

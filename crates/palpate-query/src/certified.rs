@@ -3,11 +3,12 @@
 
 //! Answers with their bounds.
 
-use crate::error::{QueryError, check_length};
+use crate::error::QueryError;
 
 /// The answer of a search: the true value lies in `[lower, upper]`, rounding included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certified<T> {
     /// The best point or contact that was found.
     pub best: T,
@@ -45,7 +46,7 @@ impl<T> Certified<T> {
 
 /// Why a search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stop {
     /// The bounds are no farther apart than the tolerance.
     Converged,
@@ -68,6 +69,7 @@ pub enum Stop {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// How far apart the bounds may be at the end [m].
     pub tolerance: f64,
@@ -100,6 +102,6 @@ impl Limits {
 
     /// Refuses a tolerance that is negative, NaN or too large.
     pub(crate) fn check(&self) -> Result<(), QueryError> {
-        check_length(self.tolerance)
+        QueryError::check_length(self.tolerance)
     }
 }

@@ -26,6 +26,7 @@ use palpate_field::{Point, Pose, Vector};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact<const D: usize> {
     /// The point on the surface of body `a` [m].
     pub point_a: Point<D>,

@@ -19,21 +19,24 @@ use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{normal as direction, unit};
 
-/// Heights over and under the centre of an element from which it is seen to be plain, in
-/// radii: half a block each.
+/// Heights over and under the centre of an element, in radii, from which [`is_plain`] proves
+/// that the element has one minimum: half a block each.
+///
+/// [`is_plain`]: ElementSearch::is_plain
 const HEIGHTS: [f64; SHORT / 2] = [1.5, 4.0, 12.0, 40.0];
 
-/// An element that is not plain is looked at in as many cells at least: 8 to the edge of a
-/// triangle. Bumps that are narrower may hide between their centres.
+/// An element that is not plain is divided into at least this many cells: 8 along the edge of
+/// a triangle. Narrower bumps may hide between the centres of cells.
 const FEW_CELLS: usize = 64;
 
-/// A point is this much off the surface, in parts of the coordinates, before the way to
-/// the surface is a direction.
+/// From this distance on, as a share of the coordinates, the vector to the surface gives the
+/// normal.
 const DIRECTION: f64 = 1e-9;
 
 /// All contacts of one element.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ElementContacts<const D: usize> {
     /// The contacts, the deepest first, in the shape's coordinates.
     pub contacts: Vec<Contact<D>>,
@@ -67,11 +70,11 @@ impl<const D: usize> ElementContacts<D> {
 /// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
 ///   lies a barrier: every path on the element from one to the other passes a point where
 ///   the field is larger than at both, by more than the tolerance. That is proven.
-/// - **Nothing is missed:** from every point within the gap a path on the element, of cells
-///   that are no higher than it as far as their bounds tell, leads to a contact that is as
-///   deep as it is, up to the tolerance.
+/// - **Nothing is missed:** from every point within the gap a path on the element leads to a
+///   contact at least as deep, up to the tolerance, over cells that no bound proves to be
+///   higher than the point.
 ///
-/// What is not promised: two minima closer to each other than an eighth of a triangle's edge,
+/// Not promised: two minima closer to each other than an eighth of a triangle's edge,
 /// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two
 /// between which no barrier can be proven with a thirty-second of the edge, or with
 /// `limits.budget`.
@@ -117,7 +120,7 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     Ok(&workspace.found)
 }
 
-/// What values are compared with for a gap [m].
+/// The value of the field that stands for a gap [m].
 pub(crate) fn level<const D: usize>(shape: &Shape<D>, gap: f64) -> Result<f64, QueryError> {
     if !(0.0..=LARGEST_LENGTH).contains(&gap) {
         return Err(QueryError::Length { value: gap });
@@ -151,7 +154,7 @@ pub(crate) fn find<const N: usize, const D: usize>(
 }
 
 impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
-    /// Tells what is known of each patch of an element, and returns what is known of all.
+    /// Hands the answer of each patch to `tell`, and returns the answer for the element.
     fn patches(
         &mut self,
         element: &Element<N, D>,
@@ -185,7 +188,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
             let deepest = patches.copy(patch, &mut frontier.queue);
             self.dropped = f64::INFINITY;
             if !is_whole {
-                // What was found is at the centre.
+                // The least value of a patch was found at the centre of its deepest cell.
                 (self.upper, self.best) = (deepest.upper, deepest.element.at(&self.weights));
             }
             let answer = self.finish(frontier);
@@ -201,8 +204,8 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
         Certified { evaluations: self.sampler.evaluations, ..all }
     }
 
-    /// Halves all cells until there are as many patches as their values let expect, or as
-    /// many cells as are looked at together.
+    /// Halves all cells until the bounds prove as many patches as the values suggest, or there
+    /// are [`MOST_CELLS`].
     fn refine(
         &mut self,
         tolerance: f64,

@@ -5,10 +5,10 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{QueryError, check_coordinates};
+use crate::error::QueryError;
 
-/// A triangle has no area if its height is no more than so many roundings of its largest
-/// coordinate: fewer than searches allow for anyway.
+/// A triangle counts as without area if its height is at most this many roundings of its
+/// largest coordinate: fewer than searches allow for.
 const FLAT_ROUNDINGS: f64 = 4.0;
 
 /// The convex hull of `N` points: a segment of 2 or a triangle of 3, in `D` dimensions.
@@ -27,7 +27,7 @@ impl<const N: usize, const D: usize> Element<N, D> {
     pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
         for vertex in vertices {
-            check_coordinates("a vertex", vertex)?;
+            QueryError::check_point("a vertex", vertex)?;
         }
         Ok(Self { vertices })
     }
@@ -38,14 +38,14 @@ impl<const N: usize, const D: usize> Element<N, D> {
         &self.vertices
     }
 
-    /// How much of each vertex the centre of the smallest ball around the element is.
+    /// The barycentric weights of the centre of the smallest ball around the element.
     #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
         palpate_mesh::centre_weights(&self.vertices)
     }
 
-    /// A triangle without an area as its longest edge, whose second end is there twice, so
-    /// that its first two halves are all of it; `weights` are those of its centre.
+    /// A triangle without area as its longest edge with the second end doubled, so that its
+    /// first two halves are all of it; `weights` are those of the triangle's centre.
     pub(crate) fn flattened(&self, weights: &[f64; N]) -> Option<Self> {
         let middle = (0..N).find(|&k| N == 3 && weights[k] == 0.0)?;
         let v = |k: usize| self.vertices[(middle + k) % N];
@@ -61,9 +61,10 @@ impl<const N: usize, const D: usize> Element<N, D> {
         is_flat.then_some(Self { vertices })
     }
 
-    /// The point with these parts of the vertices.
+    /// The point with these barycentric weights of the vertices [m].
+    #[must_use]
     #[inline]
-    pub(crate) fn at(&self, weights: &[f64; N]) -> Point<D> {
+    pub fn at(&self, weights: &[f64; N]) -> Point<D> {
         let mut point = Vector::ZERO;
         for (vertex, weight) in self.vertices.iter().zip(weights) {
             point += *vertex * *weight;
@@ -71,7 +72,7 @@ impl<const N: usize, const D: usize> Element<N, D> {
         point
     }
 
-    /// The vertex that is least far along `way`.
+    /// The vertex that is lowest along `way`.
     #[inline]
     pub(crate) fn lowest_along(&self, way: Vector<f64, D>) -> Point<D> {
         let (mut lowest, mut least) = (self.vertices[0], f64::INFINITY);
@@ -82,9 +83,10 @@ impl<const N: usize, const D: usize> Element<N, D> {
         lowest
     }
 
-    /// The distance of `p` from the farthest point of the element, a vertex.
+    /// The distance of `p` from the farthest point of the element, a vertex [m].
+    #[must_use]
     #[inline]
-    pub(crate) fn farthest(&self, p: Point<D>) -> f64 {
+    pub fn farthest(&self, p: Point<D>) -> f64 {
         let mut farthest = 0.0;
         for vertex in &self.vertices {
             let apart = *vertex - p;

@@ -14,11 +14,11 @@
 //! since the distance from `p` is convex. From the centre, the loss is the element's
 //! radius r. From a point lifted off it along the gradient by s, the free ball about it
 //! is nearly a half-space, and the loss is about r²/2s: of second order, without
-//! curvature, exactness or a gradient that is right (a wrong one only says less).
+//! curvature, exactness or a correct gradient (a wrong one only widens the bound).
 //!
-//! The first samples are over the centre and then over the lowest point, most often a vertex:
-//! if the others lie above the plane through it along the surface, a ball about a point high
-//! over it that just reaches it holds them all, and nothing is lost.
+//! The first samples are over the centre and then over the lowest point, most often a vertex.
+//! If the other vertices lie above the tangent plane at that point, a ball about a point high
+//! over it that just reaches it holds them all, and the bound is exact.
 //!
 //! Cells are halves of halves of the element, all similar to it, so that one set of
 //! weights gives all their centres, and each level halves the radius.
@@ -35,7 +35,7 @@ use crate::larger::larger;
 use crate::patches::{MOST_CELLS, Patches};
 use crate::sampler::{Sampler, Samples, unit};
 
-/// Heights that are tried first, in radii.
+/// The first heights over the centre, in radii.
 pub(crate) const FIRST_HEIGHTS: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 
 /// Heights over the lowest point, in radii.
@@ -44,31 +44,31 @@ const OVER_LOWEST: [f64; 5] = [1.0, 2.0, 4.0, 8.0, HIGHEST];
 /// A cell's second height, as a share of its first.
 const LOWER: f64 = 0.4;
 
-/// What a height becomes when the plain ball said more, and when the lifted one nearly
-/// said all there is to say.
+/// Factors of a height: where the ball about the centre gave the better bound, and where the
+/// lifted ball nearly gave the value at the centre.
 const SHRINK: f64 = 0.5;
 const GROW: f64 = 1.5;
 
-/// No sample is higher over the element, in radii of the whole: what values may be off by
-/// counts on it.
+/// The highest sample over the element, in radii of the whole; the rounding of values is
+/// computed for points up to there.
 const HIGHEST: f64 = FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1] * GROW;
 
-/// Cells are halved no more often: they are then as small as roundings of the whole.
+/// The largest number of halvings: such cells are as small as roundings of the whole.
 const MOST_LEVELS: u32 = 48;
 
-/// Cells that a workspace holds.
+/// The largest number of waiting cells.
 const ROOM: usize = 4096;
 
-/// A part of the element, and what is known of it: 128 bytes of a triangle in space. What
-/// is larger is copied by a call, which takes longer than all else that is done to a cell.
+/// A part of the element with its bounds: 128 bytes for a triangle in space. Larger values
+/// are copied by a call, which takes longer than all other work on a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ElementCell<const N: usize, const D: usize> {
     pub(crate) element: Element<N, D>,
-    /// Nothing on the cell is less [m].
+    /// Proven lower bound on the cell [m].
     pub(crate) lower: f64,
-    /// Something on the cell is no more [m].
+    /// Upper bound of the least value on the cell [m].
     pub(crate) upper: f64,
-    /// How far samples are lifted [m], and which way.
+    /// How far samples are lifted [m], and in which direction.
     height: f64,
     pub(crate) direction: Vector<f64, D>,
     /// How often the element was halved.
@@ -92,7 +92,7 @@ impl<const N: usize, const D: usize> ElementCell<N, D> {
     }
 }
 
-/// Memory of searches, to be kept between them: it is allocated once.
+/// Memory of searches over elements, kept from one to the next: it is allocated once.
 #[derive(Debug)]
 pub struct Workspace<const N: usize, const D: usize> {
     pub(crate) frontier: Frontier<Vec<ElementCell<N, D>>>,
@@ -144,9 +144,8 @@ pub fn minimum<const N: usize, const D: usize>(
 
 /// Whether a field is at most zero anywhere on an element.
 ///
-/// Stops as soon as that is known, in [`Certified::is_hit`]. A touch that is neither
-/// deeper nor further off than rounding stays unknown, and `limits.tolerance` says up to
-/// which clearance it is to be looked for.
+/// Stops as soon as [`Certified::is_hit`] is decided. A touch within rounding of the surface
+/// stays undecided; `limits.tolerance` is the clearance at which the search stops.
 ///
 /// # Errors
 ///
@@ -162,14 +161,14 @@ pub fn touches<const N: usize, const D: usize>(
     Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
-/// What is asked of a search.
+/// The terms of a search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     pub(crate) goal: Goal,
     pub(crate) budget: u32,
-    /// What is taken from all values [m].
+    /// Subtracted from all values [m].
     pub(crate) level: f64,
-    /// Roundings are those of coordinates as large as this, at least [m].
+    /// Rounding is computed for coordinates at least this large [m].
     pub(crate) reach: f64,
 }
 
@@ -190,27 +189,27 @@ pub(crate) fn search<const N: usize, const D: usize>(
         .run(element, &mut workspace.frontier)
 }
 
-/// A search under way.
+/// The search for the least value on an element, as a problem of the engine.
 pub(crate) struct ElementSearch<'a, const N: usize, const D: usize> {
     pub(crate) sampler: Sampler<'a, D>,
     pub(crate) goal: Goal,
     pub(crate) budget: u32,
-    /// Of each vertex in a cell's centre.
+    /// The weights of a cell's vertices in its centre.
     pub(crate) weights: [f64; N],
-    /// How many halves of a cell make it up.
+    /// The number of halves of a cell.
     pub(crate) parts: usize,
     pub(crate) radius: f64,
-    /// The least value found, what it may be off by included, and where.
+    /// The least value found plus its rounding, and where it was found.
     pub(crate) upper: f64,
     pub(crate) best: Point<D>,
-    /// Nothing in the cells that were dropped is less.
+    /// The least bound of closed cells.
     pub(crate) dropped: f64,
-    /// Cells are kept for all that is below zero, and not for the least alone.
+    /// Keeps all cells that may be below zero, not only those that may hold the minimum.
     pub(crate) keeps_all: bool,
 }
 
 impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
-    // Inlined always, since a search that ends at its first look is mostly this.
+    // Always inlined: most searches end after the first samples and are mostly this.
     #[inline(always)]
     pub(crate) fn new(
         shape: &'a Shape<D>,
@@ -246,13 +245,13 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         self.radius * share
     }
 
-    /// Cells with nothing below this need no more looking at.
+    /// Cells with a lower bound from this on are closed.
     #[inline]
     fn threshold(&self) -> f64 {
         if self.keeps_all { f64::MIN_POSITIVE } else { self.goal.threshold(self.upper) }
     }
 
-    /// A value found on the element.
+    /// Takes a value on the element as the least, if it is.
     #[inline]
     fn found(&mut self, p: Point<D>, value: f64) {
         let value = value + self.sampler.steepness.slack;
@@ -283,7 +282,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         }
     }
 
-    /// The whole element as a cell, unless a first look is all that is needed.
+    /// The whole element as a cell, or the answer if the first samples suffice.
     #[inline(always)]
     pub(crate) fn begin(
         &mut self,
@@ -292,7 +291,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         let centre = self.best;
         let (value, gradient) = self.sampler.slope(centre);
         self.found(centre, value);
-        // Of what is no number nothing is known.
+        // A NaN bounds nothing.
         let lower =
             larger(f64::NEG_INFINITY, self.sampler.steepness.bound(centre, value, self.radius));
         if let Some(stop) = self.goal.reached(lower, self.upper) {
@@ -337,7 +336,8 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         self.answer(frontier.lower(self.dropped), end.stop())
     }
 
-    /// The vertices, whose values it returns, and points over the centre at several heights.
+    /// Samples the vertices, and points over the centre at several heights; returns the
+    /// values at the vertices.
     #[inline(always)]
     fn look_around(&mut self, cell: &mut ElementCell<N, D>, centre: Point<D>) -> [f64; N] {
         let heights = FIRST_HEIGHTS.map(|height| height * self.radius);
@@ -362,8 +362,8 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         std::array::from_fn(|i| values[i])
     }
 
-    /// From the lowest point that is known: towards each vertex as far as its value and slope
-    /// and the vertex' value, as a parabola, make it least, and points over it.
+    /// Samples around the lowest known point: towards each vertex, at the minimum of the
+    /// parabola through both values with the slope at the lowest, and points over the lowest.
     #[inline]
     fn look_from_lowest(
         &mut self,
@@ -381,7 +381,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
                 let descent = larger(0.0, -gradient.dot(way));
                 let bend = descent + vertices[i] - value;
                 let share = 0.5 * descent / bend;
-                // Beyond both ends, or no number, where values do not fit to the slope.
+                // Outside of (0, 1) or NaN where the values contradict the slope.
                 if share > 0.0 && share < 1.0 { lowest + way * share } else { lowest }
             }
             Some(k) => {
@@ -398,7 +398,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         }
     }
 
-    /// What a value anywhere says of a cell.
+    /// The lower bound that a value at any point gives a cell.
     #[inline]
     fn over(&self, cell: &ElementCell<N, D>, p: Point<D>, value: f64) -> f64 {
         self.sampler.steepness.bound(p, value, cell.element.farthest(p))
@@ -424,7 +424,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
                 self.lift(parts, &points, &values, &[LOWER]);
             }
         } else if count <= SHORT / 2 {
-            // There is room for what is over them.
+            // The block has room for the lifted points too.
             let (centres, lifted) = points.split_at_mut(SHORT / 2);
             for ((part, centre), point) in parts.iter().zip(&*centres).zip(lifted) {
                 *point = *centre + part.direction * part.height;
@@ -486,8 +486,8 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         }
     }
 
-    /// Bounds parts by values over their centres, at `share` of their heights, and learns
-    /// which heights say much.
+    /// Bounds parts by values over their centres, at `share` of their heights, and adapts the
+    /// heights.
     #[inline]
     fn learn(
         &mut self,

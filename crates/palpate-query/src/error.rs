@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a question.
+//! Errors of questions.
 
 use palpate_field::{LARGEST_LENGTH, Point};
 
@@ -12,7 +12,7 @@ pub enum QueryError {
     /// A coordinate is not a number, or too large to compute with.
     #[error("{what} must be finite and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Coordinate {
-        /// What the coordinate is of.
+        /// The point or vector with the coordinate.
         what: &'static str,
         /// The coordinate.
         value: f64,
@@ -29,7 +29,7 @@ pub enum QueryError {
     /// A setting that is negative, zero or too large to compute with.
     #[error("{what} must be positive and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Setting {
-        /// What is set.
+        /// The setting.
         what: &'static str,
         /// The number.
         value: f64,
@@ -58,33 +58,32 @@ pub enum QueryError {
         /// How many places there are.
         places: usize,
     },
-    /// A name that no method has.
-    #[error("there is no method {name:?}; there are {known}")]
-    UnknownMethod {
-        /// The name.
-        name: String,
-        /// The names there are.
-        known: String,
-    },
 }
 
-/// Refuses coordinates that are not finite or too large; `what` they are of.
-pub(crate) fn check_coordinates<const D: usize>(
-    what: &'static str,
-    p: Point<D>,
-) -> Result<(), QueryError> {
-    let is_wrong = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
-    match p.0.into_iter().find(is_wrong) {
-        Some(value) => Err(QueryError::Coordinate { what, value }),
-        None => Ok(()),
+impl QueryError {
+    /// Refuses coordinates that are not finite or beyond 1e15 m; `what` they are of.
+    ///
+    /// # Errors
+    ///
+    /// [`QueryError::Coordinate`], with the first wrong coordinate.
+    pub fn check_point<const D: usize>(what: &'static str, p: Point<D>) -> Result<(), Self> {
+        let is_wrong = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
+        match p.0.into_iter().find(is_wrong) {
+            Some(value) => Err(Self::Coordinate { what, value }),
+            None => Ok(()),
+        }
     }
-}
 
-/// Refuses lengths that are negative, no numbers or too large.
-pub(crate) fn check_length(value: f64) -> Result<(), QueryError> {
-    if (0.0..=LARGEST_LENGTH).contains(&value) {
-        Ok(())
-    } else {
-        Err(QueryError::Length { value })
+    /// Refuses lengths that are negative, NaN or beyond 1e15 m.
+    ///
+    /// # Errors
+    ///
+    /// [`QueryError::Length`].
+    pub fn check_length(value: f64) -> Result<(), Self> {
+        if (0.0..=LARGEST_LENGTH).contains(&value) {
+            Ok(())
+        } else {
+            Err(Self::Length { value })
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::certified::Stop;
 
-/// What is asked of a least value.
+/// The question about a least value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
     /// How far apart the bounds may be [m].

@@ -1,42 +1,45 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where fields touch other things, with a proof.
+//! Where fields touch each other, balls, rays, segments, triangles and meshes, with a proof.
 //!
-//! Every search returns a [`Certified`] answer: the best point that was found, between
-//! which bounds the truth lies, and why the search stopped. A search that stops early
-//! says less; it never says what is wrong.
-//!
-//! - [`separation`] says how far two bodies are apart, or how much they overlap;
-//!   [`overlap`] whether they do.
-//! - [`point`] says all that a field says at a point; [`ball`] how deep a ball is in it,
-//!   [`touches_ball`] whether it is.
-//! - [`ray`] finds the first surface along a [`Ray`]; nothing is skipped.
-//! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a
-//!   triangle, in two or three dimensions; [`contacts`] finds all places where it touches.
-//! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
-//! - [`local`] has the searches of the literature that prove nothing, for comparison.
+//! [`Query`] asks all questions, and owns the memory that they need:
 //!
 //! ```
-//! use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
-//! use palpate_query::{Element, Limits, Stop, Workspace, minimum};
+//! use palpate_field::{Shape, Vector, kernel::{Ball, Cuboid}};
+//! use palpate_query::{Query, Stop};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let ball = Shape::from_kernel(Ball::new(1.0)?);
-//! let triangle = Element::new([
-//!     Vector([2.0, 0.0, 0.0]),
-//!     Vector([0.0, 2.0, 0.0]),
-//!     Vector([0.0, 0.0, 2.0]),
-//! ])?;
-//! let limits = Limits::new(1e-6);
-//! let nearest = minimum(&ball, &triangle, &limits, &mut Workspace::new())?;
-//! // The plane x + y + z = 2 is 2/√3 from the centre.
-//! let truth = 2.0 / 3.0_f64.sqrt() - 1.0;
-//! assert_eq!(nearest.stop, Stop::Converged);
-//! assert!(nearest.lower <= truth && truth <= nearest.upper);
+//! let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?);
+//! let ball = Shape::from_kernel(Ball::new(0.25)?).translated(Vector([1.0, 0.0, 0.0]))?;
+//! let mut query = Query::new();
+//! let apart = query.separation(&cube, &ball)?;
+//! assert_eq!(apart.stop, Stop::Converged);
+//! assert!(apart.lower <= 0.25 && 0.25 <= apart.upper);
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! Every search returns a [`Certified`] answer: the best point that was found, the bounds
+//! between which the true value lies, and why the search stopped. A search that stops early
+//! returns wider bounds, never wrong ones. Every contact is a [`Contact`].
+//!
+//! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
+//!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
+//!   region in which they touch; [`escape`] bounds the minimum translation. [`Track`] follows
+//!   a pair that moves, [`World`] many bodies.
+//! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
+//!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
+//!   surface along a [`Ray`].
+//! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a triangle, in
+//!   two or three dimensions; [`contacts`] finds all places where the element touches.
+//! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
+//!
+//! These functions take [`Limits`] and a workspace, for real time: once a workspace has
+//! grown, they allocate nothing but the lists of a manifold.
+//!
+//! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
+//! adds [`World`].
 
 mod ball;
 mod certified;
@@ -50,7 +53,6 @@ mod engine;
 mod error;
 mod goal;
 mod larger;
-pub mod local;
 mod manifold;
 mod mesh;
 mod pair;
@@ -61,6 +63,7 @@ mod pool;
 mod query;
 mod ray;
 mod sampler;
+mod track;
 #[cfg(feature = "world")]
 mod world;
 
@@ -77,12 +80,13 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates, Track, escape,
-    overlap, proof, rates, separation,
+    DistanceBound, Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
+    escape, minimax_step, overlap, proof, rates, separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
+pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

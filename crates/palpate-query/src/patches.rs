@@ -1,27 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Parts of an element with a minimum of their own.
+//! Parts of an element that each have a minimum of their own.
 //!
-//! Water rises over the cells of an element. A cell is under water from its lower bound
-//! on, and joined with the cells under water that it may touch. Where two pools meet, a
-//! path between them must climb to the lower bound of the cell that joins them, at least.
-//! If that is higher than the floor found in each pool, by more than the tolerance, the
-//! shallower pool is a patch, complete as it is; else the two are one. What is
-//! left at the end, the deepest pool of each connected part, is a patch too.
+//! This is the persistence of minima (Edelsbrunner, Letscher and Zomorodian 2002) with bounds
+//! in place of values, so that two minima that are told apart are proven to be apart.
 //!
-//! This is the persistence of minima (Edelsbrunner, Letscher and Zomorodian 2002), with
-//! bounds in the place of values, so that what is told apart is apart.
+//! Water rises over the cells of an element. A cell floods at its lower bound, and joins the
+//! flooded cells that it may touch. A path between two pools climbs at least to the lower
+//! bound of the cell that joins them. If this bound exceeds the least value found in each
+//! pool by more than the tolerance, the shallower pool is a patch; else the pools become one.
+//! At the end the deepest pool of each connected part is a patch too.
 
 use palpate_field::Point;
 
 use crate::element_search::ElementCell;
 use crate::sampler::unit;
 
-/// The most cells that are looked at together: 32 to the edge of a triangle.
+/// The largest number of cells divided together: 32 along the edge of a triangle.
 pub(crate) const MOST_CELLS: usize = 1024;
 
-/// Room for the rounding of how far centres of cells are apart, relative to their radii.
+/// Room for the rounding of distances between centres of cells, relative to their radii.
 const ROUNDINGS: f64 = 1e-9;
 
 /// Memory of a division into patches.
@@ -30,16 +29,16 @@ pub(crate) struct Patches<const N: usize, const D: usize> {
     pub(crate) cells: Vec<ElementCell<N, D>>,
     /// Of all cells [m].
     pub(crate) radius: f64,
-    /// While cells are halved: those that become `cells`.
+    /// While cells are halved: the next `cells`.
     pub(crate) halves: Vec<ElementCell<N, D>>,
-    /// How far cells lie along a direction; they are sorted by it.
+    /// The places of the cells along a direction, by which they are sorted.
     places: Vec<f64>,
     centres: Vec<Point<D>>,
-    /// Cells as they go under water; in the end the deepest of each patch.
+    /// Cells in the order of flooding; at the end the deepest cell of each patch.
     order: Vec<u32>,
     is_wet: Vec<bool>,
-    /// For each cell, one whose water it is connected with, and one of the same patch: in
-    /// the end both lead to the deepest.
+    /// For each cell, another of the same pool, and another of the same patch (union-find):
+    /// both chains end at the deepest.
     water: Vec<u32>,
     patch: Vec<u32>,
 }
@@ -60,9 +59,8 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         }
     }
 
-    /// Finds the patches of `cells`, which are all of one size, and how many there are. A
-    /// cell is under water from `shore` of it on, its lower bound if what is told apart is
-    /// to be so.
+    /// Divides `cells`, all of one size, into patches, and returns their number. A cell
+    /// floods at its `shore`: its lower bound where patches are to be proven apart.
     pub(crate) fn divide(
         &mut self,
         weights: &[f64; N],
@@ -96,7 +94,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         order.len()
     }
 
-    /// Sorts the cells along the longest edge, so that those that touch are not far apart.
+    /// Sorts the cells along the longest edge: touching cells are near in this order.
     fn sort_along_element(&mut self, weights: &[f64; N]) {
         let Self { cells, places, centres, .. } = self;
         let Some(first) = cells.first() else { return };
@@ -112,8 +110,8 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         centres.extend(cells.iter().map(|cell| cell.element.at(weights)));
     }
 
-    /// Puts a cell under water, and joins those pools through it of which the shallower has
-    /// its floor at `least` or above.
+    /// Floods a cell, and joins the pools that it connects; the shallower of two becomes part
+    /// of the other's patch if its floor is at `least` or above.
     fn flood(&mut self, cell: u32, least: f64) {
         let (centre, place) = (self.centres[cell as usize], self.places[cell as usize]);
         let touching = 2.0 * self.radius * (1.0 + ROUNDINGS);
@@ -131,7 +129,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
             }
             let floor = |i: u32| self.cells[i as usize].upper;
             let (deep, shallow) = if floor(a) <= floor(b) { (a, b) } else { (b, a) };
-            // A cell that is alone has its floor above its shore, and is never apart.
+            // A single cell has its floor above its shore, and never becomes a patch here.
             if floor(shallow) >= least {
                 self.patch[shallow as usize] = deep;
             }
@@ -139,8 +137,8 @@ impl<const N: usize, const D: usize> Patches<N, D> {
         }
     }
 
-    /// The cells of a patch, into `cells`, and the one with the least value found. The patch
-    /// of which that is least comes first.
+    /// Writes the cells of a patch into `cells`, and returns the one with the least value
+    /// found. Patches are in the order of that value.
     pub(crate) fn copy(
         &mut self,
         patch: usize,
@@ -157,7 +155,7 @@ impl<const N: usize, const D: usize> Patches<N, D> {
     }
 }
 
-/// The last of those that each name the next; they are made to name it sooner.
+/// The end of a chain of names; shortens the chain.
 fn root(names: &mut [u32], mut name: u32) -> u32 {
     while names[name as usize] != name {
         let next = names[names[name as usize] as usize];

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Shapes that are somewhere in the world.
+//! Shapes with a pose in the world.
 
 use palpate_field::{LARGEST_LENGTH, Pose, Shape};
 
 use crate::error::QueryError;
 
-/// A shape and where it is. A plain `&Shape` is one where it was built.
+/// A shape and its pose. A plain `&Shape` converts to one at the identity.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};

@@ -1,20 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a field says at a point.
+//! A field at a point, with what its value promises.
 
 use palpate_field::{Point, Quality, Shape, Vector};
 
-use crate::error::{QueryError, check_coordinates};
+use crate::error::QueryError;
 use crate::sampler::normal;
 
-/// All that a field says at a point.
+/// The value of a field at a point, with what it promises there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AtPoint<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
-    /// The signed distance, as far as [`quality`](Self::quality) goes [m].
+    /// The field's value [m]; [`quality`](Self::quality) says whether it is the distance.
     pub distance: f64,
     /// The gradient of the field.
     pub gradient: Vector<f64, D>,
@@ -23,13 +24,13 @@ pub struct AtPoint<const D: usize> {
     /// The nearest point of the surface where the promise is exact, else one close by;
     /// `None` if the way there was not found ([`Shape::surface_point`]) [m].
     pub surface: Option<Point<D>>,
-    /// Whether the distance is negative.
+    /// `true` if the value is negative.
     pub is_inside: bool,
     /// The radius of a ball that is sure to hold no surface, rounding included [m].
     pub safe_radius: f64,
     /// What the distance promises on this side of the surface.
     pub quality: Quality,
-    /// What the distance may be off by from the formula's [m].
+    /// The largest rounding of the value [m].
     pub rounding: f64,
 }
 
@@ -59,8 +60,7 @@ impl<const D: usize> AtPoint<D> {
     }
 }
 
-/// What a field says at `p` [m]: one evaluation with its gradient, and those on the way
-/// to the surface.
+/// Evaluates a field at `p` [m] with its gradient, and finds the surface next to it.
 ///
 /// ```
 /// use palpate_field::{Quality, Shape, Vector, kernel::Ball};
@@ -86,7 +86,7 @@ pub fn evaluate_point<const D: usize>(
     shape: &Shape<D>,
     p: Point<D>,
 ) -> Result<AtPoint<D>, QueryError> {
-    check_coordinates("a point", p)?;
+    QueryError::check_point("a point", p)?;
     Ok(AtPoint::of_slope(shape, p, shape.distance_gradient(p)))
 }
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Workspaces that threads lend each other.
+//! Workspaces that threads share in turn.
 
 use std::sync::{Mutex, PoisonError};
 
 use crate::pair::PairWorkspace;
 
-/// Workspaces that nobody uses now. What one holds from before changes no answer. Each in a
-/// box, as to move one takes as long as a fifth of what is asked with it.
+/// Idle workspaces, in boxes: moving one takes a fifth of the time of a question. The contents
+/// of a workspace change no answer.
 #[derive(Debug)]
 pub(crate) struct Pool<const D: usize>(Mutex<Vec<Box<PairWorkspace<D>>>>);
 

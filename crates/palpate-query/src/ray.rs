@@ -1,29 +1,29 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The first surface along a ray, with nothing skipped.
+//! The first surface along a ray; none is skipped.
 //!
-//! Conservative advancement: where the value is f, nothing is within f/L, so the ray may
-//! go on by that (Hart 1996). Past a surface at a small distance, such steps are small,
-//! and there are many. Then points lifted off the ray along the gradient help: the ball
-//! that a value proves empty about such a point is larger, and the ray leaves it later.
+//! Conservative advancement: a value f proves a ball of radius f/L empty, and the ray advances
+//! by that radius (Hart 1996). Along a near surface such steps are small and many. There the
+//! search samples points lifted off the ray along the gradient: the balls about them that are
+//! proven empty are larger, and the ray leaves them later.
 
 use palpate_field::{Point, SHORT, Shape, Vector};
 
 use crate::certified::{Certified, Limits, Stop};
-use crate::error::{QueryError, check_coordinates, check_length};
+use crate::error::QueryError;
 use crate::sampler::{Sampler, Samples, normal, unit};
 
-/// Heights of lifted points, as shares of the one that said most the time before.
+/// Heights of lifted points, as shares of the height that gave the longest step before.
 const HEIGHTS: [f64; SHORT - 1] = [8.0, 3.0, 1.5, 0.7, 0.3, 0.1, 0.03];
 
 /// The first height, as a share of the ray.
 const FIRST_HEIGHT: f64 = 0.25;
 
-/// Steps that are at least this share of the ray are worth taking without lifting.
+/// A plain step at least this share of the ray long is taken without lifting.
 const LONG: f64 = 0.05;
 
-/// As are those that come near fast: the value falls at least to this share.
+/// So is a step after which the value falls to this share or less.
 const NEARING: f64 = 0.4;
 
 /// A part of a straight line: from `origin` in a `direction` of length one.
@@ -48,13 +48,13 @@ impl<const D: usize> Ray<D> {
         length: f64,
     ) -> Result<Self, QueryError> {
         for (what, numbers) in [("an origin", origin), ("a direction", direction)] {
-            check_coordinates(what, numbers)?;
+            QueryError::check_point(what, numbers)?;
         }
         let largest = direction.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if largest == 0.0 {
             return Err(QueryError::NoDirection);
         }
-        check_length(length)?;
+        QueryError::check_length(length)?;
         // Divided by the largest first, since squares may underflow.
         let direction = direction * (1.0 / largest);
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
@@ -76,6 +76,7 @@ impl<const D: usize> Ray<D> {
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayHit<const D: usize> {
     /// The point [m].
     pub point: Point<D>,
@@ -127,12 +128,12 @@ pub fn cast_ray<const D: usize>(
     Ok(advance.run(limits))
 }
 
-/// A ray on its way.
+/// A ray cast, and how far it has advanced.
 struct Advance<'a, const D: usize> {
     sampler: Sampler<'a, D>,
     ray: &'a Ray<D>,
     height: f64,
-    /// Where the field was found to be at most the tolerance, and nowhere before.
+    /// The earliest place where the field was found to be at most the tolerance.
     witness: Option<f64>,
 }
 
@@ -176,7 +177,7 @@ impl<const D: usize> Advance<'_, D> {
             }
             is_short &= ahead - free < LONG * length;
             if ahead <= free {
-                // Nearer than what rounding leaves to be known.
+                // The surface is within rounding.
                 let upper = self.witness.unwrap_or(f64::INFINITY);
                 return self.hit(free, upper, Stop::BudgetSpent);
             }
@@ -208,7 +209,7 @@ impl<const D: usize> Advance<'_, D> {
             self.witness = Some(there);
         }
         let mut ahead = free;
-        // Unless one of them says more, they were far too high.
+        // If no lifted point gives a longer step, all were far too high.
         self.height *= HEIGHTS[HEIGHTS.len() - 1];
         for ((point, value), height) in points.iter().zip(values).zip(heights) {
             let radius = self.sampler.free_radius(*point, value);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A field as searches see it: values with all that they may be off by.
+//! A field as searches see it: values with their rounding.
 
 use palpate_field::{Block, BoundingBall, Column, Gradients, Point, SHORT, Shape, Vector};
 
@@ -23,13 +23,13 @@ impl<const D: usize> Samples<D> {
     }
 }
 
-/// What one value of a field says of others.
+/// How far a value bounds the field around it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steepness<const D: usize> {
     pub(crate) lipschitz: f64,
     /// Where `lipschitz` holds, if not everywhere.
     region: Option<BoundingBall<D>>,
-    /// What a value may be off by, and what it bounds elsewhere [m].
+    /// The rounding of values and of their bounds [m].
     pub(crate) slack: f64,
 }
 
@@ -46,8 +46,7 @@ impl<const D: usize> Steepness<D> {
         }
     }
 
-    /// How much values change at most within `far` of `p`, what they may be off by
-    /// included [m].
+    /// The largest change of values within `far` of `p`, rounding included [m].
     #[inline]
     pub(crate) fn change(&self, p: impl FnOnce() -> Point<D>, far: f64) -> f64 {
         match &self.region {
@@ -56,19 +55,19 @@ impl<const D: usize> Steepness<D> {
         }
     }
 
-    /// What a value at `p` says of all points at most `far` from it [m].
+    /// Lower bound within `far` of `p`, from the value there [m].
     #[inline]
     pub(crate) fn bound(&self, p: Point<D>, value: f64, far: f64) -> f64 {
         value - self.change(|| p, far)
     }
 }
 
-/// Asks a field, a short block at a time, and counts.
+/// Evaluates a field, a short block at a time, and counts evaluations.
 pub(crate) struct Sampler<'a, const D: usize> {
     shape: &'a Shape<D>,
     samples: &'a mut Samples<D>,
     pub(crate) steepness: Steepness<D>,
-    /// What is taken from every value, so that zero is where the question is [m].
+    /// Subtracted from every value, so that the question is about zero [m].
     level: f64,
     pub(crate) evaluations: u32,
 }
@@ -139,7 +138,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 
     /// The radius of a ball about `p` in which the field is positive, from a positive
-    /// value there [m]; negative where rounding leaves nothing to know.
+    /// value there [m]; negative where rounding exceeds the value.
     #[inline]
     pub(crate) fn free_radius(&self, p: Point<D>, value: f64) -> f64 {
         let (promise, reach) = (self.shape.promise(), p.norm());
@@ -150,7 +149,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     }
 }
 
-/// A gradient shorter than this says nothing of a direction.
+/// A gradient shorter than this gives no direction.
 const FLAT: f64 = 1e-6;
 
 /// The unit vector in which a field with this gradient grows; `None` below [`FLAT`].

@@ -50,6 +50,8 @@ pub use error::{Error, ErrorKind};
 pub use palpate_devices as devices;
 pub use palpate_field as field;
 pub use palpate_haptics as haptics;
+#[cfg(feature = "local")]
+pub use palpate_local as local;
 #[cfg(feature = "std-loop")]
 pub use palpate_loop as servo_loop;
 pub use palpate_mesh as mesh;

@@ -11,9 +11,9 @@ use std::path::Path;
 use std::str::FromStr;
 
 use palpate::field::{Point, Shape, Vector};
+use palpate::local::{Descent, ElementMethod, UnknownMethod};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
-use palpate::query::local::{Descent, ElementMethod};
-use palpate::query::{Certified, Element, Limits, QueryError, Workspace, minimum};
+use palpate::query::{Certified, Element, Limits, Workspace, minimum};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
@@ -103,7 +103,7 @@ where
 }
 
 /// The method that is asked for, or `first`.
-fn method<T: FromStr<Err = QueryError>>(
+fn method<T: FromStr<Err = UnknownMethod>>(
     options: &DescendOptions,
     first: T,
 ) -> Result<T, Failure> {

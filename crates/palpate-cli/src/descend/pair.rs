@@ -7,8 +7,8 @@ use std::io::Write;
 use std::path::Path;
 
 use palpate::field::{Aabb, Point};
+use palpate::local::{Descent, PairMethod};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice};
-use palpate::query::local::{Descent, PairMethod};
 use palpate::query::{Certified, Nearest, PairWorkspace, separation};
 use palpate::scene::BuiltScene;
 use serde_json::json;

@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Vector, array, unrolled};
 
 /// Halvings of the range of the unknown, in its exponent: seven leave a factor of
@@ -147,7 +147,7 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, D>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.largest)
     }
 

@@ -36,7 +36,7 @@ pub use simplex::Simplex;
 pub use spatial::*;
 
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Model, Scalar};
+use crate::scalar::{AffineModel, Dual, Float, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// A closed formula for a signed distance.
@@ -84,9 +84,9 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     }
 
     /// Bounds over the cell whose coordinates are `cell`: by the formula, unless
-    /// it is not closed in the operations of [`Model`] or a bound is tighter.
+    /// it is not closed in the operations of [`AffineModel`] or a bound is tighter.
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, D>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         self.distance(cell)
     }
 
@@ -104,7 +104,10 @@ macro_rules! answered_by_inner {
             }
 
             #[inline(always)]
-            fn model(&self, cell: Vector<Model, $dimension>) -> Model {
+            fn model<const N: usize>(
+                &self,
+                cell: Vector<AffineModel<N>, $dimension>,
+            ) -> AffineModel<N> {
                 self.$field.model(cell)
             }
 
@@ -194,16 +197,16 @@ fn sure_normal<K: Kernel<D>, const D: usize>(
 /// the corners of the cell; `operations` and `size` as for
 /// [`Rounding::of_operations`](crate::Rounding::of_operations).
 #[inline(always)]
-pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
+pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
     kernel: &K,
-    cell: Vector<Model, D>,
+    cell: Vector<AffineModel<N>, D>,
     operations: f64,
     size: f64,
-) -> Model {
+) -> AffineModel<N> {
     let centre = Vector(array!(i < D => cell.0[i].value));
     let (distance, mut normal) = gradient_apart(kernel, centre);
     let mut rounding = operations * f64::EPSILON * (size + centre.norm());
-    let radius = Model::radius(&cell.0);
+    let radius = AffineModel::radius(&cell.0);
     // Else what is nearest is far enough for its direction to be known over the cell.
     if distance < radius {
         let far = 4.0 * (size + centre.norm() + radius);
@@ -215,33 +218,33 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize>(
         rounding += lost + (0.25 * operations + 2.0) * f64::EPSILON * radius;
     }
     let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
-    Model::tangent(distance, normal.0, distance_at, &cell.0, rounding)
+    AffineModel::tangent(distance, normal.0, distance_at, &cell.0, rounding)
 }
 
 /// Bounds an exact kernel that is not convex over a cell by its value at the centre;
 /// `operations` and `size` as for [`tangent_model`].
 #[inline(always)]
-pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize>(
+pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize, const N: usize>(
     kernel: &K,
-    cell: Vector<Model, D>,
+    cell: Vector<AffineModel<N>, D>,
     operations: f64,
     size: f64,
-) -> Model {
+) -> AffineModel<N> {
     let centre = Vector(array!(i < D => cell.0[i].value));
     by_steepness(kernel.distance(centre), &cell, operations, size)
 }
 
 /// A cell's bound by its `value` at the centre alone.
 #[inline(always)]
-fn by_steepness<const D: usize>(
+fn by_steepness<const D: usize, const N: usize>(
     value: f64,
-    cell: &Vector<Model, D>,
+    cell: &Vector<AffineModel<N>, D>,
     operations: f64,
     size: f64,
-) -> Model {
+) -> AffineModel<N> {
     let centre = Vector(array!(i < D => cell.0[i].value));
-    let far = size + centre.norm() + Model::radius(&cell.0);
-    Model::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
+    let far = size + centre.norm() + AffineModel::radius(&cell.0);
+    AffineModel::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
 }
 
 /// Bounds an exact kernel that is not convex over a cell by its formula or, where that
@@ -249,14 +252,14 @@ fn by_steepness<const D: usize>(
 /// medial axis, a choice between far values has wide remainders; `operations` and `size`
 /// as for [`tangent_model`].
 #[inline(always)]
-pub(crate) fn formula_model<K: Kernel<D>, const D: usize>(
+pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
     kernel: &K,
-    cell: Vector<Model, D>,
+    cell: Vector<AffineModel<N>, D>,
     operations: f64,
     size: f64,
-) -> Model {
+) -> AffineModel<N> {
     let formula = kernel.distance(cell);
     let by_steepness = by_steepness(formula.value, &cell, operations, size);
-    let width = |model: &Model| model.maximum() - model.minimum();
+    let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
     if width(&formula) <= width(&by_steepness) { formula } else { by_steepness }
 }

@@ -9,7 +9,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// The largest number of rounded operations of the distance.
@@ -206,7 +206,7 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
         S::select_less(inside, zero, inside, outside)
     }
 
-    fn model(&self, cell: Vector<Model, D>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size)
     }
 

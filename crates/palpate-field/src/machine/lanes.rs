@@ -7,19 +7,19 @@ use std::fmt;
 use std::mem::MaybeUninit;
 
 use crate::pose::{Placement, Pose};
-use crate::scalar::{Float, Model, Scalar, TurnedBoxes};
-use crate::vector::Vector;
+use crate::scalar::{AffineModel, Float, Scalar, TurnedBoxes};
+use crate::vector::{Vector, array, unrolled};
 
 /// Room for `W` numbers, aligned to a cache line.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub struct Lanes<T: Copy, const W: usize>([MaybeUninit<T>; W]);
 
-/// Room for `W` models, one array for each of their parts.
+/// Room for `W` models of `N` parameters, one array for each of their parts.
 #[derive(Clone, Copy)]
-pub struct ModelLanes<const W: usize> {
+pub struct ModelLanes<const N: usize, const W: usize> {
     value: Lanes<f64, W>,
-    gradient: [Lanes<f64, W>; 3],
+    gradient: [Lanes<f64, W>; N],
     lower: Lanes<f64, W>,
     upper: Lanes<f64, W>,
 }
@@ -30,7 +30,7 @@ impl<T: Copy, const W: usize> fmt::Debug for Lanes<T, W> {
     }
 }
 
-impl<const W: usize> fmt::Debug for ModelLanes<W> {
+impl<const N: usize, const W: usize> fmt::Debug for ModelLanes<N, W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "ModelLanes<{W}>")
     }
@@ -124,25 +124,21 @@ impl<T: Float, const W: usize> Lanes<T, W> {
     }
 }
 
-impl<const W: usize> LaneArray<Model> for ModelLanes<W> {
+impl<const N: usize, const W: usize> LaneArray<AffineModel<N>> for ModelLanes<N, W> {
     #[inline(always)]
     fn unwritten() -> Self {
         let none = Lanes::unwritten();
-        Self { value: none, gradient: [none; 3], lower: none, upper: none }
+        Self { value: none, gradient: [none; N], lower: none, upper: none }
     }
 
     #[inline(always)]
-    unsafe fn read(&self, i: usize) -> Model {
+    unsafe fn read(&self, i: usize) -> AffineModel<N> {
         // SAFETY: the caller promises that lane `i` was written, and `write`
         // writes every part.
         unsafe {
-            Model {
+            AffineModel {
                 value: self.value.read(i),
-                gradient: [
-                    self.gradient[0].read(i),
-                    self.gradient[1].read(i),
-                    self.gradient[2].read(i),
-                ],
+                gradient: array!(k < N => self.gradient[k].read(i)),
                 lower: self.lower.read(i),
                 upper: self.upper.read(i),
             }
@@ -150,11 +146,9 @@ impl<const W: usize> LaneArray<Model> for ModelLanes<W> {
     }
 
     #[inline(always)]
-    fn write(&mut self, i: usize, number: Model) {
+    fn write(&mut self, i: usize, number: AffineModel<N>) {
         self.value.write(i, number.value);
-        self.gradient[0].write(i, number.gradient[0]);
-        self.gradient[1].write(i, number.gradient[1]);
-        self.gradient[2].write(i, number.gradient[2]);
+        unrolled!(k < N => self.gradient[k].write(i, number.gradient[k]));
         self.lower.write(i, number.lower);
         self.upper.write(i, number.upper);
     }
@@ -178,8 +172,8 @@ macro_rules! float_lane {
 float_lane!(f32);
 float_lane!(f64);
 
-impl Lane for Model {
-    type Lanes<const W: usize> = ModelLanes<W>;
+impl<const N: usize> Lane for AffineModel<N> {
+    type Lanes<const W: usize> = ModelLanes<N, W>;
     const LINE: usize = 8;
     const MOVED_IN_LOOP: bool = false;
 

@@ -4,6 +4,7 @@
 //! A primitive with its arguments.
 
 use std::any::Any;
+use std::fmt;
 
 use crate::catalogue::Entry;
 use crate::error::ShapeError;
@@ -24,9 +25,9 @@ use crate::kernel::{Argument, Parameter};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Primitive<const D: usize> {
-    entry: &'static Entry<D>,
+    entry: Entry<D>,
     arguments: Vec<Argument>,
 }
 
@@ -39,11 +40,16 @@ impl<const D: usize> Primitive<D> {
     ///
     /// If the catalogue has no such primitive in this dimension.
     pub fn new(name: &str, arguments: Vec<Argument>) -> Result<Self, ShapeError> {
-        let entry = Entry::find(name).ok_or_else(|| ShapeError::Unsuitable {
+        let entry = *Entry::find(name).ok_or_else(|| ShapeError::Unsuitable {
             operator: "primitive",
             needs: format!("a name of the catalogue in {D}D, got `{name}`").into(),
         })?;
         Ok(Self { entry, arguments })
+    }
+
+    /// The primitive of an entry.
+    pub(crate) fn of_entry(entry: Entry<D>, arguments: Vec<Argument>) -> Self {
+        Self { entry, arguments }
     }
 
     /// The primitive that a kernel is; `None` for a kernel of a user.
@@ -60,8 +66,8 @@ impl<const D: usize> Primitive<D> {
 
     /// The entry of the catalogue, with the parameters.
     #[must_use]
-    pub fn entry(&self) -> &'static Entry<D> {
-        self.entry
+    pub fn entry(&self) -> &Entry<D> {
+        &self.entry
     }
 
     /// The arguments in the order of the parameters.
@@ -84,6 +90,12 @@ impl<const D: usize> Primitive<D> {
     /// The field of the primitive, after its arguments are checked.
     pub(super) fn field(&self) -> Result<SharedField<D>, ShapeError> {
         self.entry.field(&self.arguments)
+    }
+}
+
+impl<const D: usize> fmt::Debug for Primitive<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

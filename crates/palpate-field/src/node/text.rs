@@ -78,7 +78,7 @@ impl<const D: usize> Text<'_, D> {
         let before = |of| Text { shape: of, within: Some(Tightness::Difference), ..*self };
         let inside = |of| Text { shape: of, within: None, ..*self };
         match self.shape.node() {
-            Node::Primitive(primitive) => write!(f, "{}", Call(primitive)),
+            Node::Primitive(primitive) => write!(f, "{primitive}"),
             Node::Union(of) => self.chain(f, of, " | ", Tightness::Union),
             Node::SymmetricDifference(of) => {
                 self.chain(f, of, " ^ ", Tightness::SymmetricDifference)
@@ -165,13 +165,11 @@ impl<const D: usize> Text<'_, D> {
     }
 }
 
-/// A primitive as the call of its constructor.
-struct Call<'a, const D: usize>(&'a Primitive<D>);
-
-impl<const D: usize> Display for Call<'_, D> {
+impl<const D: usize> Display for Primitive<D> {
+    /// Writes the call of the constructor.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{}(", self.0.name())?;
-        for (i, argument) in self.0.arguments().iter().enumerate() {
+        write!(f, "{}(", self.name())?;
+        for (i, argument) in self.arguments().iter().enumerate() {
             f.write_str(if i == 0 { "" } else { ", " })?;
             match argument {
                 Argument::Number(number) => write!(f, "{number:?}")?,

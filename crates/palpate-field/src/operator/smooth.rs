@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Profile booleans: the creases between children filled or cut off.
+//! Smooth booleans: the creases between shapes filled or cut off.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -28,9 +28,9 @@ pub enum Profile {
     Circular,
     /// [`Root`]: a hyperbola, without end.
     Root,
-    /// [`Exponential`]: without end; the order of the children makes no difference.
+    /// [`Exponential`]: without end; the order of the shapes makes no difference.
     Exponential,
-    /// A circle that touches both children where they meet at right angles; reach 3.41
+    /// A circle that touches both shapes where they meet at right angles; reach 3.41
     /// times the width.
     ///
     /// Unlike the others it depends on more than the difference of the fields: its
@@ -217,7 +217,7 @@ impl Boolean {
     }
 }
 
-/// Fields whose values are nowhere below the distance to their box.
+/// Each child, guarded.
 fn guarded<const D: usize>(
     children: Vec<SharedField<D>>,
 ) -> Result<Vec<SharedField<D>>, ShapeError> {

@@ -29,8 +29,8 @@ pub use blend::{Blend, Circular, Cubic, Exponential, Quadratic, Quartic, Root};
 pub use dual::Dual;
 pub use expression::{Expression, Operation, Step};
 pub use float::Float;
-pub use model::Model;
 pub(crate) use model::TurnedBoxes;
+pub use model::{AffineModel, Model};
 pub use recorded::Recorded;
 
 use crate::vector::array;

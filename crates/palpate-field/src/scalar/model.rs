@@ -31,8 +31,9 @@ const UNBOUNDED: f64 = 1e60;
 
 /// An affine function with remainders, which encloses a formula over a cell.
 ///
-/// The cell is the image of the cube `|uₖ| ≤ 1` (in the plane, `u₂` is not
-/// used). For every `u` in it,
+/// The cell is the image of the cube `|uₖ| ≤ 1` of `N` parameters, at most four: three for
+/// boxes in space ([`Model`]; in the plane, `u₂` is not used), four for boxes in space and
+/// time. For every `u` in the cube,
 ///
 /// ```text
 /// value + gradient·u − lower  ≤  f  ≤  value + gradient·u + upper
@@ -56,24 +57,45 @@ const UNBOUNDED: f64 = 1e60;
 /// assert!(circle.minimum() <= 0.9 && circle.minimum() > 0.899_999);
 /// assert!(circle.maximum() >= 2.1_f64.hypot(0.1) - 1.0);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Model {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AffineModel<const N: usize> {
     /// The value at the centre of the cell.
     pub value: f64,
     /// The change from the centre to the cell's side along each parameter.
-    pub gradient: [f64; 3],
+    pub gradient: [f64; N],
     /// How far `f` may lie below the affine function; never negative.
     pub lower: f64,
     /// How far `f` may lie above the affine function; never negative.
     pub upper: f64,
 }
 
-impl Model {
-    /// The coordinates of the box with `centre` and `half` side lengths.
+/// A model over a box in space or in the plane.
+pub type Model = AffineModel<3>;
+
+impl<const N: usize> Default for AffineModel<N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::constant(0.0)
+    }
+}
+
+impl<const N: usize> AffineModel<N> {
+    /// The coordinates of the box with `centre` and `half` side lengths, one parameter a
+    /// coordinate: of a box in space and time, time is the last coordinate.
+    ///
+    /// ```
+    /// use palpate_field::scalar::AffineModel;
+    ///
+    /// // x in [1, 3] and t in [0, 1]: x − t is in [0, 3].
+    /// let [x, t] = AffineModel::<4>::cell([2.0, 0.5], [1.0, 0.5]);
+    /// let left = x - t;
+    /// assert!((left.minimum() - 0.0).abs() < 1e-14 && (left.maximum() - 3.0).abs() < 1e-14);
+    /// ```
     #[inline(always)]
     pub fn cell<const D: usize>(centre: [f64; D], half: [f64; D]) -> [Self; D] {
+        const { assert!(D <= N, "a parameter for each coordinate") };
         std::array::from_fn(|i| {
-            let mut gradient = [0.0; 3];
+            let mut gradient = [0.0; N];
             gradient[i] = half[i];
             Self { value: centre[i], gradient, lower: 0.0, upper: 0.0 }
         })
@@ -126,7 +148,7 @@ impl Model {
         cell: &[Self; D],
         rounding: f64,
     ) -> Self {
-        let mut gradient = [0.0; 3];
+        let mut gradient = [0.0; N];
         let (mut lower, mut upper, mut remainders) = (0.0, 0.0, 0.0);
         unrolled!(i < D => {
             let positive = normal[i] > 0.0;
@@ -135,15 +157,15 @@ impl Model {
             upper += size * choose(positive, cell[i].upper, cell[i].lower);
             let remainder = cell[i].lower.max_of(cell[i].upper);
             remainders += remainder * remainder;
-            unrolled!(k < 3 => gradient[k] += normal[i] * cell[i].gradient[k]);
+            unrolled!(k < N => gradient[k] += normal[i] * cell[i].gradient[k]);
         });
         let mut above = 0.0;
-        for corner in 0..8 {
-            let side: [f64; 3] =
-                array!(k < 3 => if (corner >> k) & 1 == 0 { -1.0 } else { 1.0 });
+        for corner in 0..1_usize << N {
+            let side: [f64; N] =
+                array!(k < N => if (corner >> k) & 1 == 0 { -1.0 } else { 1.0 });
             let mut plane = value;
             let mut point = array!(i < D => cell[i].value);
-            unrolled!(k < 3 => {
+            unrolled!(k < N => {
                 plane += gradient[k] * side[k];
                 unrolled!(i < D => point[i] += cell[i].gradient[k] * side[k]);
             });
@@ -173,21 +195,23 @@ impl Model {
         rounding: f64,
     ) -> Self {
         let remainder = lipschitz * Self::radius(cell) * INFLATE + rounding;
-        Self { value, gradient: [0.0; 3], lower: remainder, upper: remainder }
+        Self { value, gradient: [0.0; N], lower: remainder, upper: remainder }
     }
 
     /// `Σ|gradientₖ|`: how far the affine part moves over the cell.
     #[inline(always)]
     fn slope(&self) -> f64 {
-        f64::abs(self.gradient[0]) + f64::abs(self.gradient[1]) + f64::abs(self.gradient[2])
+        let mut sum = NONE;
+        unrolled!(k < N => sum += f64::abs(self.gradient[k]));
+        sum
     }
 
     /// `Σ|self.gradientₖ − other.gradientₖ|`.
     #[inline(always)]
     fn slope_between(&self, other: &Self) -> f64 {
-        f64::abs(self.gradient[0] - other.gradient[0])
-            + f64::abs(self.gradient[1] - other.gradient[1])
-            + f64::abs(self.gradient[2] - other.gradient[2])
+        let mut sum = NONE;
+        unrolled!(k < N => sum += f64::abs(self.gradient[k] - other.gradient[k]));
+        sum
     }
 
     /// The largest of the numbers over the cell, remainders included.
@@ -222,7 +246,7 @@ impl Model {
         let up = slope > 0.0;
         Self {
             value,
-            gradient: array!(k < 3 => slope * self.gradient[k]),
+            gradient: array!(k < N => slope * self.gradient[k]),
             lower: size * choose(up, self.lower, self.upper) + below,
             upper: size * choose(up, self.upper, self.lower) + above,
         }
@@ -233,7 +257,7 @@ impl Model {
     fn choose(condition: bool, a: Self, b: Self) -> Self {
         Self {
             value: choose(condition, a.value, b.value),
-            gradient: array!(k < 3 => choose(condition, a.gradient[k], b.gradient[k])),
+            gradient: array!(k < N => choose(condition, a.gradient[k], b.gradient[k])),
             lower: choose(condition, a.lower, b.lower),
             upper: choose(condition, a.upper, b.upper),
         }
@@ -256,7 +280,7 @@ impl Model {
             choose(positive, 0.0, curved),
             choose(positive, curved, 0.0),
         );
-        let unbounded = Self { value, gradient: [0.0; 3], lower: UNBOUNDED, upper: UNBOUNDED };
+        let unbounded = Self { value, gradient: [0.0; N], lower: UNBOUNDED, upper: UNBOUNDED };
         Self::choose(bounded, exact, unbounded)
     }
 }
@@ -278,14 +302,14 @@ impl MaxOf for f64 {
     }
 }
 
-impl Add for Model {
+impl<const N: usize> Add for AffineModel<N> {
     type Output = Self;
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
         let sum = Self {
             value: self.value + other.value,
-            gradient: array!(k < 3 => self.gradient[k] + other.gradient[k]),
+            gradient: array!(k < N => self.gradient[k] + other.gradient[k]),
             lower: self.lower + other.lower,
             upper: self.upper + other.upper,
         };
@@ -294,26 +318,28 @@ impl Add for Model {
             let is_sum = self.gradient[k] != 0.0 && other.gradient[k] != 0.0;
             choose(is_sum, f64::abs(sum.gradient[k]), 0.0)
         };
-        let size = f64::abs(sum.value) + (rounded(0) + rounded(1) + rounded(2));
+        let mut slopes = NONE;
+        unrolled!(k < N => slopes += rounded(k));
+        let size = f64::abs(sum.value) + slopes;
         sum.widened(2.0 * UNIT * (size + (sum.lower + sum.upper)))
     }
 }
 
-impl Neg for Model {
+impl<const N: usize> Neg for AffineModel<N> {
     type Output = Self;
 
     #[inline(always)]
     fn neg(self) -> Self {
         Self {
             value: -self.value,
-            gradient: array!(k < 3 => -self.gradient[k]),
+            gradient: array!(k < N => -self.gradient[k]),
             lower: self.upper,
             upper: self.lower,
         }
     }
 }
 
-impl Sub for Model {
+impl<const N: usize> Sub for AffineModel<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -322,7 +348,7 @@ impl Sub for Model {
     }
 }
 
-impl Mul for Model {
+impl<const N: usize> Mul for AffineModel<N> {
     type Output = Self;
 
     /// `ab = vₐv_b + vₐB + v_bA + AB`, where `A` and `B` are the deviations.
@@ -334,7 +360,7 @@ impl Mul for Model {
         let (up_a, up_b) = (a.value > 0.0, b.value > 0.0);
         Self {
             value: a.value * b.value,
-            gradient: array!(k < 3 => {
+            gradient: array!(k < N => {
                 a.value * b.gradient[k] + b.value * a.gradient[k]
             }),
             lower: size_a * choose(up_a, b.lower, b.upper)
@@ -348,7 +374,7 @@ impl Mul for Model {
     }
 }
 
-impl Div for Model {
+impl<const N: usize> Div for AffineModel<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -358,12 +384,13 @@ impl Div for Model {
     }
 }
 
-impl Scalar for Model {
+impl<const N: usize> Scalar for AffineModel<N> {
     const EPSILON: f64 = f64::EPSILON;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self { value, ..Self::default() }
+        const { assert!(N <= 4, "loops over parameters are unrolled up to four") };
+        Self { value, gradient: [0.0; N], lower: 0.0, upper: 0.0 }
     }
 
     #[inline(always)]
@@ -372,7 +399,7 @@ impl Scalar for Model {
         let up = factor > 0.0;
         Self {
             value: self.value * factor,
-            gradient: array!(k < 3 => self.gradient[k] * factor),
+            gradient: array!(k < N => self.gradient[k] * factor),
             lower: size * choose(up, self.lower, self.upper),
             upper: size * choose(up, self.upper, self.lower),
         }
@@ -389,28 +416,28 @@ impl Scalar for Model {
     /// One remainder for the roundings of the whole sum: what is rounded is at most the
     /// sum of the absolute terms.
     #[inline(always)]
-    fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
+    fn weighted_sum<const M: usize>(x: [Self; M], weights: &[f64; M]) -> Self {
         let term = |i: usize| {
             let weight = f64::abs(weights[i]);
             let up = weights[i] > 0.0;
             let term = Self {
                 value: weights[i] * x[i].value,
-                gradient: array!(k < 3 => weights[i] * x[i].gradient[k]),
+                gradient: array!(k < N => weights[i] * x[i].gradient[k]),
                 lower: weight * choose(up, x[i].lower, x[i].upper),
                 upper: weight * choose(up, x[i].upper, x[i].lower),
             };
             (term, weight * (f64::abs(x[i].value) + x[i].slope()))
         };
         let (mut sum, mut size) = term(0);
-        for i in 1..N {
+        for i in 1..M {
             let (term, its_size) = term(i);
             sum.value += term.value;
-            unrolled!(k < 3 => sum.gradient[k] += term.gradient[k]);
+            unrolled!(k < N => sum.gradient[k] += term.gradient[k]);
             sum.lower += term.lower;
             sum.upper += term.upper;
             size += its_size;
         }
-        sum.widened((N as f64 + 2.0) * UNIT * (size + (sum.lower + sum.upper)))
+        sum.widened((M as f64 + 2.0) * UNIT * (size + (sum.lower + sum.upper)))
     }
 
     #[inline(always)]
@@ -438,7 +465,7 @@ impl Scalar for Model {
         let top = (self.value.max_of(0.0) + deviation).sqrt() * INFLATE;
         let near = Self {
             value: root,
-            gradient: [0.0; 3],
+            gradient: [0.0; N],
             lower: root,
             upper: (top - root) * INFLATE + UNIT * top,
         };
@@ -501,23 +528,23 @@ impl Scalar for Model {
     }
 
     #[inline(always)]
-    fn norm<const N: usize>(x: [Self; N]) -> Self {
+    fn norm<const M: usize>(x: [Self; M]) -> Self {
         norms::norm(x)
     }
 
     #[inline(always)]
-    fn power_norm<const P: u32, const N: usize>(x: [Self; N]) -> Self {
-        norms::power_norm::<P, N>(x)
+    fn power_norm<const P: u32, const M: usize>(x: [Self; M]) -> Self {
+        norms::power_norm::<P, M, N>(x)
     }
 
     #[inline(always)]
-    fn orthant<const N: usize>(q: [Self; N]) -> Self {
+    fn orthant<const M: usize>(q: [Self; M]) -> Self {
         norms::orthant(q)
     }
 
     #[inline(always)]
-    fn power_orthant<const P: u32, const N: usize>(q: [Self; N]) -> Self {
-        norms::power_orthant::<P, N>(q)
+    fn power_orthant<const P: u32, const M: usize>(q: [Self; M]) -> Self {
+        norms::power_orthant::<P, M, N>(q)
     }
 
     /// That of the value, for the whole cell: who crosses a step says by how much that
@@ -557,7 +584,7 @@ impl Scalar for Model {
             * INFLATE;
         Self {
             value: <f64 as Scalar>::smooth_min::<B>(self.value, other.value, unit),
-            gradient: array!(k < 3 => {
+            gradient: array!(k < N => {
                 weight * self.gradient[k] + rest * other.gradient[k]
             }),
             lower: Scalar::min(lower, coarse),

@@ -23,7 +23,8 @@ impl<const D: usize> Shape<D> {
 
     /// The intersection of all `shapes`: `max(a, b, …)`.
     ///
-    /// A bound outside, exact inside if all are.
+    /// A bound outside, exact inside if all are. Intersections among the shapes are
+    /// flattened.
     ///
     /// # Errors
     ///
@@ -35,7 +36,7 @@ impl<const D: usize> Shape<D> {
     /// This shape without `others`: `max(a, −b, …)`.
     ///
     /// A bound outside; exact inside if this shape is exact inside and all
-    /// others outside.
+    /// others outside. A difference of a difference is flattened.
     ///
     /// # Errors
     ///

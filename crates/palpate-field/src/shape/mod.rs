@@ -132,8 +132,8 @@ impl<const D: usize> Shape<D> {
 
     /// Builds the shape that a node describes, after its parameters are checked.
     ///
-    /// Every shape is built by this function. The [`Node`] says which nodes are rewritten
-    /// to a normal form.
+    /// Operators and constructors build by this function. [`Node`] says which nodes are
+    /// rewritten to a normal form.
     ///
     /// # Errors
     ///

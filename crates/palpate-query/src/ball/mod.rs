@@ -5,14 +5,14 @@
 //!
 //! The gap between a ball about C with radius r and a shape is `d(C) − r`, with the signed
 //! distance d. Where the field is exact on C's side, `d = f(C)`, and one evaluation is all.
-//! A bound says less: `f(C) > r` proves that they are apart, `f(C) ≤ r` proves nothing.
+//! Where it is a bound, `f(C) > r` proves that they are apart, and `f(C) ≤ r` nothing.
 //! There the nearest point is searched for at which the field has the other sign: d is its
 //! distance from C, and its negative from inside.
 //!
-//! The search is over boxes, the nearest to C first. A box is left out if the field's
-//! value at its centre, or its model, proves that no such point is in it. Of the others
-//! the model bounds the field by an affine function, so that such points lie in a
-//! half-space, and the box is no nearer than that.
+//! The search is over boxes, the nearest to C first. It leaves out a box if the field's value
+//! at its centre, or its model, proves that the box holds no such point. For the other boxes
+//! the model bounds the field by an affine function: such points lie in a half-space, and the
+//! distance to the part of the box in it bounds the distance of the points.
 
 mod rounds;
 
@@ -23,10 +23,10 @@ use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::cut_box::distance_to_cut_box;
 use crate::engine::{self, End, Frontier, Heap, Queue};
-use crate::error::{QueryError, check_coordinates, check_length};
+use crate::error::QueryError;
 use crate::goal::Goal;
-use crate::pair::body::Body;
 use crate::pair::cell::{BoxCell, ROUNDINGS};
+use crate::pair::distance_bound::DistanceBound;
 use crate::sampler::normal;
 use rounds::BallRounds;
 
@@ -39,7 +39,7 @@ const ROOM: usize = 1 << 16;
 /// Slides along a surface towards the centre at most.
 const MOST_SLIDES: u32 = 24;
 
-/// Memory of searches about balls, to be kept between them.
+/// Memory of searches about balls, kept from one to the next.
 #[derive(Debug)]
 pub struct BallWorkspace<const D: usize> {
     frontier: Frontier<Heap<BoxCell<D>>>,
@@ -85,10 +85,9 @@ impl<const D: usize> Default for BallWorkspace<D> {
 /// signed distance of the `centre` [m] less the `radius` [m]. Negative, it is how deep the
 /// ball is in the shape.
 ///
-/// The contact is from the shape's surface, the point nearest to the centre, to the ball's,
-/// with the normal from the shape to the ball. There is none if the shape has no surface
-/// in reach, and then `upper` is infinite. A surface is where the field is zero, also one
-/// that lies inside, as where two parts of a union touch.
+/// Body `a` of the contact is the shape, at the surface point nearest to the centre; body `b`
+/// is the ball. Without a surface in reach there is no contact, and `upper` is infinite. Any
+/// zero of the field is a surface, also inside a union where two members touch.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
@@ -132,9 +131,9 @@ pub fn contact_ball<const D: usize>(
 /// Whether a ball and a shape touch, in [`Certified::is_hit`]; arguments and errors as of
 /// [`contact_ball`].
 ///
-/// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
-/// One evaluation decides where the field is exact, where it is a bound above the radius,
-/// and where the centre is inside.
+/// Stops as soon as that is decided, or the gap is proven to be within `limits.tolerance` of
+/// zero. One evaluation decides where the field is exact, where it is a bound that exceeds
+/// the radius, and where the centre is inside.
 ///
 /// # Errors
 ///
@@ -156,15 +155,15 @@ fn search<const D: usize>(
     (goal, budget): (Goal, u32),
     workspace: &mut BallWorkspace<D>,
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
-    check_coordinates("a centre", centre)?;
-    check_length(radius)?;
-    check_length(goal.tolerance)?;
+    QueryError::check_point("a centre", centre)?;
+    QueryError::check_length(radius)?;
+    QueryError::check_length(goal.tolerance)?;
     let (value, gradient) = shape.distance_gradient(centre);
     let promise = shape.promise();
     let is_inside = value < 0.0;
     let extent = promise.bounds.map_or(value.abs(), |bounds| bounds.radius_about_origin());
     let mut search = BallSearch {
-        body: Body::new(shape, Pose::identity()),
+        body: DistanceBound::new(shape, Pose::identity()),
         lipschitz: promise.lipschitz,
         centre,
         radius,
@@ -194,10 +193,10 @@ fn search<const D: usize>(
     Ok(search.run(workspace))
 }
 
-/// A search under way, for the nearest point at which the field has not the sign of the
-/// centre.
+/// A search for the nearest point at which the field does not have the sign that it has at
+/// the centre.
 struct BallSearch<'a, const D: usize> {
-    body: Body<'a, D>,
+    body: DistanceBound<'a, D>,
     lipschitz: f64,
     centre: Point<D>,
     radius: f64,
@@ -207,14 +206,14 @@ struct BallSearch<'a, const D: usize> {
     sign: f64,
     /// The normal where the centre lies on the surface.
     fallback: Option<Vector<f64, D>>,
-    /// What distances from the centre may be off by [m].
+    /// The rounding of distances from the centre [m].
     geometry: f64,
-    /// No surface is nearer [m].
+    /// Proven lower bound of the distance to the surface, from the value at the centre [m].
     safe: f64,
-    /// How far the nearest point that was found is, and the point [m].
+    /// The distance of the nearest point found, and the point [m].
     reach: f64,
     best: Option<Point<D>>,
-    /// Nothing in the boxes that were left out is nearer [m].
+    /// The least bound of closed boxes [m].
     dropped: f64,
     evaluations: u32,
 }
@@ -239,14 +238,14 @@ impl<const D: usize> BallSearch<'_, D> {
         let end = engine::search(&mut BallRounds { search: self, memory }, frontier);
         let lower = frontier.lower(self.dropped).max(self.safe);
         let stop = match end {
-            // There is no surface as far as was looked.
+            // The whole box was searched, and holds no surface.
             End::Exhausted if self.gaps(lower).0 > 0.0 => Stop::SignKnown,
             end => end.stop(),
         };
         self.finish(lower, stop)
     }
 
-    /// What the gap is between, if nothing is nearer than `lower`.
+    /// The bounds of the gap, if no surface is nearer than `lower`.
     fn gaps(&self, lower: f64) -> (f64, f64) {
         let lower = (lower - self.geometry).max(0.0);
         let reach = self.reach + self.geometry;
@@ -296,20 +295,20 @@ impl<const D: usize> BallSearch<'_, D> {
         Some(Contact::new(surface, self.centre - direction * self.radius, direction))
     }
 
-    /// What the field may be off by at a point [m].
+    /// The rounding of the field at a point [m].
     fn slack(&self, p: Point<D>) -> f64 {
         self.body.shape.promise().rounding.within(p.norm())
     }
 
-    /// Whether a value is proven not to have the sign of the centre's: what has no inside
-    /// is reached where it is zero up to rounding.
+    /// Whether a value is proven not to have `sign`. A shape without interior is reached where
+    /// the value is zero up to rounding.
     fn is_through(&self, sign: f64, value: f64, slack: f64) -> bool {
         let has_inside = self.body.shape.promise().has_interior;
         sign * value <= if has_inside || sign < 0.0 { -slack } else { slack }
     }
 
-    /// A point at which the field has not `sign`, by Newton's method from `start`, and near
-    /// the surface: from a step that went far through it, back.
+    /// A point near the surface at which the field does not have `sign`, by Newton's method
+    /// from `start`; bisects back from a step that overshot.
     fn through(&mut self, start: Point<D>, sign: f64) -> Option<Point<D>> {
         let (mut before, mut p) = (None, start);
         for _ in 0..MOST_STEPS {
@@ -397,7 +396,7 @@ impl<const D: usize> BallSearch<'_, D> {
         }
     }
 
-    /// A box that holds all points that matter.
+    /// A box that holds all points that can decide the question.
     fn root(&mut self) -> Option<Aabb<D>> {
         let aabb = self.body.aabb().filter(|_| self.sign > 0.0);
         let enough = self.radius + self.goal.tolerance.max(self.geometry);
@@ -418,7 +417,7 @@ impl<const D: usize> BallSearch<'_, D> {
         Some(root)
     }
 
-    /// Boxes that are no nearer need no more looking at.
+    /// Boxes at least this far are closed.
     fn threshold(&self) -> f64 {
         self.goal.threshold(self.reach - self.radius) + self.radius + 2.0 * self.geometry
     }

@@ -21,7 +21,7 @@ pub(crate) struct Heap<C> {
     /// Places in `cells` that are free.
     free: Vec<u32>,
     room: usize,
-    /// What every bound in the heap exceeds the cell's own by [m].
+    /// Subtracted from every bound in the heap [m].
     drift: f64,
 }
 

@@ -30,7 +30,7 @@ pub(crate) trait Bounded {
 
 /// Cells that wait with a bound, the least first.
 pub(crate) trait Queue {
-    /// What waits.
+    /// A waiting cell.
     type Cell: Bounded;
 
     /// The least bound; infinite if no cell waits.
@@ -125,7 +125,7 @@ pub(crate) enum End {
 }
 
 impl End {
-    /// What the answer says of it.
+    /// The reason that the answer gives.
     #[inline]
     pub(crate) fn stop(self) -> Stop {
         match self {

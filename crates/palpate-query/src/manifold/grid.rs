@@ -187,6 +187,6 @@ impl<const D: usize> Grid<D> {
 
 /// How far two points are apart [m].
 #[inline]
-pub(super) fn distance<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
+pub(crate) fn distance<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
     (a - b).norm()
 }

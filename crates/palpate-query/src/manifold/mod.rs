@@ -3,25 +3,23 @@
 
 //! Contacts that span the region in which two bodies touch.
 //!
-//! Two bodies touch along the surface `g_a = g_b` between them, where both are at most
-//! half the margin. Boxes that cannot hold a part of it are ruled out by values and
-//! models, as in the search for the separation, and those that remain are halved down to
-//! the spacing. Each then gives a candidate on the surface between. Candidates that are
-//! neighbours and have like normals make a patch, and of each patch the contacts are its
-//! deepest point and the corners that span it, and more where these do not span it all.
+//! Two bodies touch along the surface `g_a = g_b` between them, where both are at most half
+//! the margin. Values and models rule out boxes that cannot hold a part of this surface; the
+//! others are halved down to the spacing, and each gives a candidate on the surface.
+//! Neighbouring candidates with like normals form a patch. The contacts of a patch are its
+//! deepest point, the corners that span it, and more points where the corners do not span
+//! all of it.
 
 mod fill;
-mod grid;
-mod names;
+pub(crate) mod grid;
 mod patch;
 mod region;
-mod track;
 
 use palpate_field::{Point, Vector};
 
 use crate::certified::{Certified, Limits};
 use crate::contact::Contact;
-use crate::error::{QueryError, check_length};
+use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::pair::body_pair::BodyPair;
 use crate::pair::search::PairSearch;
@@ -31,26 +29,25 @@ use grid::distance;
 use patch::Patches;
 use region::Region;
 
-pub(crate) use names::Names;
-
 /// Contacts closer than this many spacings, with normals within 37°, are copies.
 const COPIES: f64 = 1.5;
 const LIKE: f64 = 0.8;
 
-/// Margins below this share of the spacing ask for no more precision: where it is zero,
-/// nothing would be precise enough.
+/// Precisions are shares of the margin, but of no less than this share of the spacing: with
+/// a margin of zero no point would be precise enough.
 const SHALLOW: f64 = 1e-3;
 
-/// Which contacts are to be found.
+/// Which contacts a [`manifold`] has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManifoldSettings {
-    /// Up to this gap bodies count as touching [m].
+    /// The largest gap of a contact [m].
     pub margin: f64,
-    /// How finely the region is looked at [m]: what is smaller than that may be missed,
-    /// except for the certified best point, and contacts are at least as far apart.
+    /// The size of the smallest boxes searched [m]. Parts of the region that are smaller may be
+    /// missed, except for the certified deepest point; contacts are at least as far apart.
     pub spacing: f64,
-    /// The most contacts to keep: the deepest, and those that are farthest apart.
+    /// The largest number of contacts: the deepest is kept, and those farthest apart.
     pub most: usize,
 }
 
@@ -80,29 +77,30 @@ impl ManifoldSettings {
     }
 }
 
-/// How two bodies touch.
+/// The contacts of two bodies.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Manifold<const D: usize> {
-    /// The contacts, by group, and in each from the deepest.
+    /// The contacts, by group, in each group from the deepest.
     pub contacts: Vec<Contact<D>>,
-    /// How many contacts each group has: those of one patch, with like normals.
+    /// The number of contacts in each group. A group is one patch with like normals.
     pub groups: Vec<usize>,
-    /// The separation and where it is found, which is the deepest contact's point unless
-    /// the separation is more than the margin.
+    /// The separation and where it is found: at the deepest contact, unless the separation
+    /// exceeds the margin.
     pub separation: Certified<Nearest<D>>,
-    /// How many contacts there were beyond the most that were to be kept.
+    /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,
-    /// `false` if the budget was spent before the whole region was looked at.
+    /// `false` if the budget ended before the whole region was searched.
     pub is_whole: bool,
 }
 
 /// Contacts that span the region in which two bodies touch, up to a gap of
 /// `settings.margin`.
 ///
-/// The separation is found to `limits.tolerance` first; once it is proven to be more than
-/// the margin, there are no contacts, and it is not looked for any further. What is proven is that best point: that all
-/// other parts of the region are found is not, if they are smaller than the spacing.
+/// The search finds the separation to `limits.tolerance` first, and stops with no contacts
+/// once it is proven to exceed the margin. The deepest point is certified; other parts of the
+/// region are found if they are larger than the spacing.
 /// [`Track::manifold`](crate::Track::manifold) keeps the ids of contacts from step to step.
 ///
 /// ```
@@ -115,7 +113,7 @@ pub struct Manifold<const D: usize> {
 /// // One millimetre into its top.
 /// let there = Placed::new(&cube, Pose::translation(Vector([0.1, 0.0, 0.499])));
 /// let limits = Limits::new(1e-3);
-/// let settings = ManifoldSettings::default();
+/// let settings = ManifoldSettings::of_size(1.0);
 /// let touching = manifold(&table, there, &settings, &limits, &mut PairWorkspace::new())?;
 /// assert_eq!(touching.groups.len(), 1);
 /// for contact in &touching.contacts {
@@ -147,7 +145,7 @@ pub fn manifold<'a, const D: usize>(
 }
 
 /// The manifold of a pair whose separation was found at `best`, in its frame.
-fn spanning<const D: usize>(
+pub(crate) fn spanning<const D: usize>(
     mut pair: BodyPair<'_, D>,
     (best, separation): (Point<D>, Certified<Nearest<D>>),
     settings: &ManifoldSettings,
@@ -177,7 +175,7 @@ fn spanning<const D: usize>(
     }
     let contacts = touches.iter().map(|member| member.touch.contact(&pair, settings.spacing));
     let mut spanning: Vec<_> = touches.iter().copied().zip(contacts).collect();
-    // Where a field says less than the distance, surfaces are farther apart than it says.
+    // Where a field is a bound, surfaces may be farther apart than its values.
     let mut is_deepest = true;
     spanning.retain(|(_, contact)| {
         std::mem::take(&mut is_deepest) || contact.gap <= settings.margin
@@ -219,20 +217,21 @@ impl<const D: usize> Manifold<D> {
 
 impl ManifoldSettings {
     /// The separation, if it is within the margin.
-    fn goal(&self, limits: &Limits) -> Goal {
+    pub(crate) fn goal(&self, limits: &Limits) -> Goal {
         Goal::least_within(0.5 * self.margin, 0.5 * limits.tolerance)
     }
 
     pub(crate) fn check(&self) -> Result<(), QueryError> {
-        check_length(self.margin)?;
-        check_length(self.spacing)?;
+        QueryError::check_length(self.margin)?;
+        QueryError::check_length(self.spacing)?;
         if self.spacing == 0.0 {
             return Err(QueryError::Setting { what: "a spacing", value: self.spacing });
         }
         Ok(())
     }
 
-    /// What precisions are shares of [m]: the margin, unless it is all but nothing.
+    /// The length of which precisions are shares [m]: the margin, or a share of the spacing if
+    /// that is more.
     fn depth(&self) -> f64 {
         self.margin.max(SHALLOW * self.spacing)
     }
@@ -246,7 +245,7 @@ struct Touch<const D: usize> {
     gap: f64,
 }
 
-/// A contact and the patch that it is of.
+/// A contact and its patch.
 #[derive(Clone, Copy, Debug)]
 struct Member<const D: usize> {
     touch: Touch<D>,
@@ -254,8 +253,8 @@ struct Member<const D: usize> {
 }
 
 impl<const D: usize> Touch<D> {
-    /// The point as it is. Where no gradient says which way, bodies are parted by their
-    /// centres, or else upwards.
+    /// The touch at a point. Where no gradient gives a normal, the line between the bodies'
+    /// centres does, or else the second axis.
     fn at(pair: &mut BodyPair<'_, D>, point: Point<D>) -> Self {
         let [(a, slope_a), (b, slope_b)] = pair.slopes(point);
         let ways = [slope_a - slope_b, pair.between_centres(), Vector::unit(1)];
@@ -263,8 +262,8 @@ impl<const D: usize> Touch<D> {
         Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
     }
 
-    /// The contact in world coordinates, with the surfaces' points within `near` and 45° of
-    /// the normal: in the middle of a body the gradient may lead to any side.
+    /// The contact in world coordinates. Points of the surfaces count only within `near` and
+    /// 45° of the normal: in the middle of a body the gradient may lead to any side.
     fn contact(&self, pair: &BodyPair<'_, D>, near: f64) -> Contact<D> {
         let near = near.max(2.0 * self.gap.abs());
         let on = |body: usize, side: f64| {

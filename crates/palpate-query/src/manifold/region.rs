@@ -25,7 +25,7 @@ const ON: f64 = 1e-3;
 /// function are flat.
 const FLAT: f64 = 0.05;
 
-/// What was found of the region in which two bodies touch.
+/// The region in which two bodies touch, in candidates and flat boxes.
 #[derive(Debug, Default)]
 pub(super) struct Region<const D: usize> {
     /// Points on the surface between the bodies.
@@ -169,7 +169,7 @@ impl<const D: usize> Problem for RegionSearch<'_, '_, D> {
     }
 }
 
-/// What the models of a box say of the surface between.
+/// What models prove of the surface between the bodies in a box.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Look {
     /// The box may hold a part of it.
@@ -241,7 +241,7 @@ fn settle<const D: usize>(
     }
 }
 
-/// What a point and its slopes say of the surface between.
+/// Where the surface between the bodies is, as seen from a point with its slopes.
 pub(super) enum Towards<const D: usize> {
     /// It is here, and within the margin.
     There(Touch<D>),

@@ -16,6 +16,7 @@ use crate::placed::Placed;
 /// A contact of an element of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshContact<const D: usize> {
     /// The contact, from the field to the mesh, in world coordinates.
     pub contact: Contact<D>,
@@ -26,6 +27,7 @@ pub struct MeshContact<const D: usize> {
 /// All contacts of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshContacts<const D: usize> {
     /// The contacts, by ascending elements, and of each element from the deepest.
     pub contacts: Vec<MeshContact<D>>,

@@ -7,14 +7,14 @@
 //! block. From the value at a centre, with the ball's radius r and the field's steepness L,
 //!
 //! ```text
-//! f(centre) > L·r     nothing below touches;
-//! f(centre) < −L·r    everything below does, and nothing more is asked of it.
+//! f(centre) > L·r     no element below touches;
+//! f(centre) < −L·r    every element below touches, without further evaluations.
 //! ```
 //!
-//! What is left of the elements is looked at 64 at a time: a point lifted off the centre
-//! along the gradient frees most (see [`search`](crate::element_search)), the lowest corner of the
-//! linear model hits most. Those that stay open are halved twice and looked at again. Few
-//! remain to be searched one by one.
+//! The remaining elements are bounded 64 at a time. A point lifted off the centre along the
+//! gradient proves most of them free (see [`element_search`](crate::element_search)), and the
+//! lowest corner of the linear model proves most hits. Elements still open are halved twice
+//! and bounded again; the few that stay open are searched one by one.
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
 use palpate_mesh::FAN;
@@ -33,11 +33,11 @@ use crate::sampler::{Steepness, unit};
 /// How high points are lifted off elements, in radii.
 const HEIGHT: f64 = 4.0;
 
-/// How often elements that stay open are halved together with others.
+/// How often open elements are halved in blocks before each is searched alone.
 const HALVINGS: u32 = 2;
 
-/// Memory of searches over meshes, to be kept between them: after the first on a mesh of
-/// some size, none allocates.
+/// Memory of searches over meshes, kept from one to the next: after the first search over a
+/// mesh of some size, none allocates.
 #[derive(Debug)]
 pub struct MeshWorkspace<const N: usize, const D: usize> {
     block: Block<f64, D, BLOCK>,
@@ -53,7 +53,7 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     pub(crate) search: Workspace<N, D>,
 }
 
-/// An element or a part of one, where the field sees it.
+/// An element or a part of one, in the field's coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Part<const N: usize, const D: usize> {
     name: u32,
@@ -92,6 +92,7 @@ impl<const N: usize, const D: usize> Default for MeshWorkspace<N, D> {
 /// An element of which the search could not tell whether it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Undecided {
     /// The index of the element in the mesh.
     pub element: u32,
@@ -104,6 +105,7 @@ pub struct Undecided {
 /// Which elements of a mesh touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshHits {
     /// The elements that touch, ascending.
     pub hits: Vec<u32>,
@@ -115,14 +117,14 @@ pub struct MeshHits {
 
 /// Which elements of a mesh come as close to a field as `gap` [m], for certain.
 ///
-/// An element touches if the field is at most `gap` somewhere on it, times the field's
-/// steepness if that is more than one: so no element within `gap` of the surface is
-/// missed, and where the field is exact none that is further off is named.
+/// An element touches if the field is somewhere on it at most `gap`, times the steepness of
+/// the field if that exceeds one. So no element within `gap` of the surface is missed, and
+/// where the field is exact every element named is within `gap`.
 ///
-/// The mesh stays as it is: its tree is moved on the way. Each element of which the tree
-/// and a few points say too little is searched with `limits` of its own, and is undecided
-/// if they do not suffice. Before that, the field is asked at most 65 times an element, and
-/// not even once of those in large balls that are all free, or all inside.
+/// The mesh is not copied: the search moves centres of its tree as it needs them. `limits`
+/// hold for each element that the tree and a few points do not decide; an element that they
+/// do not suffice for is undecided. Before that, the search evaluates the field at most 65
+/// times per element, and not at all on elements in a ball that is wholly free or inside.
 ///
 /// # Errors
 ///
@@ -185,8 +187,8 @@ pub(super) fn find<const N: usize, const D: usize>(
     Ok(())
 }
 
-/// A bit for each element that touches: there may be thousands, and to sort them would take
-/// longer than finding them did.
+/// A bit for each element that touches. Hits may be thousands, and sorting them would take
+/// longer than finding them.
 #[derive(Debug, Default)]
 struct Marks(Vec<u64>);
 
@@ -220,7 +222,7 @@ impl Marks {
     }
 }
 
-/// A way through a mesh.
+/// A search through a mesh, from the top of its tree.
 struct Sweep<'a, const N: usize, const D: usize> {
     shape: &'a Shape<D>,
     view: View<'a, N, D>,
@@ -235,7 +237,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
         workspace.open.clear();
         workspace.hits.undecided.clear();
         workspace.frontier.clear();
-        // The top level is the children of one node that is not asked.
+        // The top level holds the children of one root, which is not evaluated.
         workspace.frontier.push(0);
         for level in (0..self.view.mesh.tree().levels().len()).rev() {
             self.descend(level, workspace);
@@ -246,13 +248,13 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
             self.look_closer(workspace);
         }
         self.search_rest(limits, workspace);
-        // Lists that take turns may each need the room of the other next time.
+        // Two lists that swap may each need the capacity of the other next time.
         equalise(&mut workspace.frontier, &mut workspace.next);
         equalise(&mut workspace.open, &mut workspace.still_open);
         self.evaluations
     }
 
-    /// Asks at the centres of all children of the frontier.
+    /// Evaluates the field at the centres of all children of the frontier.
     fn descend(&mut self, level: usize, workspace: &mut MeshWorkspace<N, D>) {
         let tree = self.view.mesh.tree();
         let MeshWorkspace { block, values, frontier, next, open, marks, .. } = workspace;
@@ -274,7 +276,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
                     let (child, lane) = (first + i, lane * FAN + i);
                     let value = values.get(lane) - self.level;
                     let change = self.steepness.change(|| block.get(lane), radius);
-                    // What completes a group has no radius. NaN is neither free nor a hit.
+                    // Padding of a group has a negative radius. NaN is neither free nor a hit.
                     if radius < 0.0 || value > change {
                         continue;
                     }
@@ -302,7 +304,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
         std::mem::swap(frontier, next);
     }
 
-    /// Asks about the parts that are open, a block at a time, and keeps those that stay so.
+    /// Bounds the open parts, a block at a time, and keeps those that stay open.
     fn look_closer(&mut self, workspace: &mut MeshWorkspace<N, D>) {
         let MeshWorkspace { block, values, slopes, open, still_open, marks, .. } = workspace;
         still_open.clear();
@@ -373,7 +375,7 @@ impl<const N: usize, const D: usize> Sweep<'_, N, D> {
     }
 }
 
-/// Gives two lists the room of the larger, and empties them.
+/// Empties two lists, and gives both the larger capacity.
 fn equalise<T>(a: &mut Vec<T>, b: &mut Vec<T>) {
     let room = a.capacity().max(b.capacity());
     for list in [a, b] {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Meshes that are somewhere in the world.
+//! Meshes with a pose in the world.
 
 use palpate_field::{LARGEST_LENGTH, Pose};
 use palpate_mesh::Mesh;
@@ -10,7 +10,7 @@ use crate::element::Element;
 use crate::error::QueryError;
 use crate::placed::Placed;
 
-/// A mesh and where it is. A plain `&Mesh` is one where it was made.
+/// A mesh and its pose. A plain `&Mesh` converts to one at the identity.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedMesh<'a, const N: usize, const D: usize> {
     /// The mesh.
@@ -26,7 +26,7 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
         Self { mesh, world_from_mesh }
     }
 
-    /// The mesh where a field sees it.
+    /// The mesh in the coordinates of a field.
     pub(super) fn seen_from(
         &self,
         field: &Placed<'_, D>,
@@ -46,12 +46,12 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
     }
 }
 
-/// A mesh where a field sees it.
+/// A mesh in the coordinates of a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View<'a, const N: usize, const D: usize> {
     pub(super) mesh: &'a Mesh<N, D>,
     pub(super) field_from_mesh: Pose<D>,
-    /// How large coordinates become on the way [m].
+    /// An upper bound of the coordinates in the conversion [m].
     pub(super) reach: f64,
 }
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Two bodies in one frame, asked a block at a time.
+//! Two bodies in one frame, evaluated a block at a time.
 
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Block, Column, Gradients, Point, Pose, Vector};
 
-use super::body::Body;
 use super::cell::BoxCell;
+use super::distance_bound::DistanceBound;
 use crate::error::QueryError;
 use crate::placed::{Placed, check_pose};
 
@@ -39,24 +39,23 @@ impl<const D: usize> Memory<D> {
 }
 
 impl<const D: usize> Memory<D> {
-    /// Moves what is known of one place to another.
+    /// Moves the entry of one box to another lane.
     #[inline]
     pub(crate) fn keep(&mut self, body: usize, from: usize, to: usize) {
         self.locals[body][to] = self.locals[body][from];
     }
 }
 
-/// Two bodies in the frame of the first, so that what is known of places stays true of
-/// it while both move.
+/// Two bodies in the frame of the first: bounds over its places hold for it while both move.
 #[derive(Clone, Copy)]
 pub(crate) struct BodyPair<'a, const D: usize> {
-    pub(crate) bodies: [Body<'a, D>; 2],
+    pub(crate) bodies: [DistanceBound<'a, D>; 2],
     /// Boxes of the frame that hold the bodies; one of them at least is there.
     aabbs: [Option<Aabb<D>>; 2],
     pub(crate) world_from_frame: Pose<D>,
     /// From the frame to the second shape's coordinates.
     pub(crate) second_from_frame: Pose<D>,
-    /// What the second body may be off by in the frame where both are far from the
+    /// The rounding of the second body's pose in the frame where both bodies are far from the
     /// world's origin [m].
     placing: f64,
     /// A gradient counts twice.
@@ -68,8 +67,10 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         check_pose(0, &a.world_from_body)?;
         check_pose(1, &b.world_from_body)?;
         let second_from_frame = b.world_from_body.inverse() * a.world_from_body;
-        let bodies =
-            [Body::new(a.shape, Pose::identity()), Body::new(b.shape, second_from_frame)];
+        let bodies = [
+            DistanceBound::new(a.shape, Pose::identity()),
+            DistanceBound::new(b.shape, second_from_frame),
+        ];
         let aabbs = bodies.map(|body| body.aabb());
         if aabbs == [None, None] {
             return Err(QueryError::Unbounded);
@@ -80,7 +81,7 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         Ok(Self { bodies, aabbs, world_from_frame, second_from_frame, placing, evaluations: 0 })
     }
 
-    /// What values may be off by within `reach` of the frame's origin [m].
+    /// The rounding of values within `reach` of the frame's origin [m].
     pub(crate) fn slack(&self, reach: f64) -> f64 {
         self.bodies[0].slack(reach).max(self.bodies[1].slack(reach)) + self.placing
     }
@@ -89,7 +90,7 @@ impl<'a, const D: usize> BodyPair<'a, D> {
     #[inline]
     pub(crate) fn slopes(&mut self, p: Point<D>) -> [(f64, Vector<f64, D>); 2] {
         self.evaluations += 4;
-        [self.bodies[0].slope(p), self.bodies[1].slope(p)]
+        [self.bodies[0].distance_gradient(p), self.bodies[1].distance_gradient(p)]
     }
 
     /// A point of a body's surface near a point of the frame, in the frame.
@@ -231,7 +232,7 @@ impl<'a, const D: usize> BodyPair<'a, D> {
     }
 }
 
-/// What two boxes have in common; turned inside out where they are apart.
+/// The intersection of two boxes; its corners are swapped along sides where they are apart.
 fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
     let mut both = *a;
     for k in 0..D {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Boxes of a search, and what is known of them.
+//! Boxes of a search with their bounds.
 
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BLOCK, Point, Vector};
@@ -9,28 +9,28 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 use crate::engine::{Bounded, Rebound};
 use crate::larger::larger;
 
-/// Sides that are halved, as a share of the longest.
+/// A side is halved if it is longer than this share of the longest.
 const LONG_SIDE: f64 = 0.63;
 
-/// Sides along which fields change by less than this share of the most are level.
+/// A side is level if fields change along it by less than this share of the largest change.
 const LEVEL: f64 = 0.01;
 
-/// A level side is at most so many times as long as the others.
+/// A level side is at most this many times as long as the others.
 const THIN: f64 = 8.0;
 
-/// The last bits of a sum of models.
+/// The rounding of a sum of models, relative to the sum of sizes.
 pub(crate) const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 /// A box, and what is known of it, in a cache line of its own.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct BoxCell<const D: usize> {
-    /// Nothing in it is less [m].
+    /// Proven lower bound in the box [m].
     pub(crate) lower: f64,
     pub(crate) centre: Point<D>,
     /// Half of its sides.
     pub(crate) half: Vector<f64, D>,
-    /// Bit k: neither field seems to vary along side k.
+    /// Bit k: side k is level.
     pub(crate) level: u8,
 }
 
@@ -52,7 +52,7 @@ impl<const D: usize> BoxCell<D> {
     pub(crate) const NOTHING: Self =
         Self { lower: f64::NEG_INFINITY, centre: Vector::ZERO, half: Vector::ZERO, level: 0 };
 
-    /// A box of which nothing is known.
+    /// A box without a bound.
     pub(crate) fn unknown(aabb: &Aabb<D>) -> Self {
         let mut half = aabb.half_extents();
         for k in 0..D {
@@ -67,7 +67,7 @@ impl<const D: usize> BoxCell<D> {
         self.half.norm() * (1.0 + ROUNDINGS)
     }
 
-    /// Learns from models along which sides fields vary.
+    /// Marks the level sides, from models.
     #[inline]
     pub(crate) fn learn(&mut self, [a, b]: &[Model; 2]) {
         let change = |k: usize| a.gradient[k].abs() + b.gradient[k].abs();
@@ -78,7 +78,7 @@ impl<const D: usize> BoxCell<D> {
         }
     }
 
-    /// Leaves out ends of the box beyond which one of the models is nowhere less than `enough`.
+    /// Cuts off the ends of the box where one of the models is everywhere at least `enough`.
     #[inline]
     pub(crate) fn contract(&mut self, models: &[Model; 3], enough: f64) {
         let (mut low, mut high) = ([-1.0_f64; D], [1.0_f64; D]);

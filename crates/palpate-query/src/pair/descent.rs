@@ -11,18 +11,29 @@ use crate::goal::Goal;
 /// Steps of a descent at most.
 const STEPS: u32 = 40;
 
-/// A gain that is less than this share of the value is slow.
+/// A descent ends with a step that gains less than this share of the value.
 const SLOW: f64 = 0.1;
 
-/// What steps are multiplied by after one that leads down, and after one that does not.
-pub(crate) const GROW: f64 = 1.5;
-pub(crate) const SHRINK: f64 = 0.25;
+/// Factors of the step length: after a step that lowers the value, and after one that does
+/// not.
+const GROW: f64 = 1.5;
+const SHRINK: f64 = 0.25;
 
-/// The way whose opposite leads to where the larger of two tangent planes,
-/// `a + slope_a·e` and `b + slope_b·e`, plus `|e|²/2 step` is least: `step` times a mean of
-/// both slopes.
+/// The negative of a minimax proximal step: `p − minimax_step(planes, step)` is where the
+/// larger of two tangent planes at `p`, `a + slope_a·e` and `b + slope_b·e`, plus
+/// `|e|²/(2·step)` is least. It is `step` times a mean of both slopes.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_query::minimax_step;
+///
+/// // Two planes that rise towards each other meet in the middle.
+/// let planes = [(1.0, Vector([1.0, 0.0])), (1.0, Vector([-1.0, 0.0]))];
+/// assert_eq!(minimax_step(planes, 0.5), Vector([0.0, 0.0]));
+/// ```
+#[must_use]
 #[inline]
-pub(crate) fn way<const D: usize>(
+pub fn minimax_step<const D: usize>(
     [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
     step: f64,
 ) -> Vector<f64, D> {
@@ -51,7 +62,7 @@ pub(crate) fn descend<const D: usize>(
     let mut step = first.unwrap_or(value.abs().max(goal.tolerance));
     let mut small_gains = 0;
     for _ in 0..STEPS {
-        let next = p - way(here, step);
+        let next = p - minimax_step(here, step);
         let there = pair.slopes(next);
         let next_value = there[0].0.max(there[1].0);
         if next_value < value {
@@ -82,11 +93,11 @@ mod tests {
     #[test]
     fn the_way_is_along_the_larger_plane_or_to_where_both_are_equal() {
         let (left, up) = (Vector([-1.0, 0.0]), Vector([0.0, 1.0]));
-        assert_eq!(way([(5.0, left), (1.0, up)], 0.5), Vector([-0.5, 0.0]));
-        assert_eq!(way([(1.0, left), (1.0, up)], 0.5), Vector([-0.25, 0.25]));
+        assert_eq!(minimax_step([(5.0, left), (1.0, up)], 0.5), Vector([-0.5, 0.0]));
+        assert_eq!(minimax_step([(1.0, left), (1.0, up)], 0.5), Vector([-0.25, 0.25]));
         // Planes that face each other: to the middle, whatever the size.
         for size in [2.0, 50.0] {
-            let way = way([(1.0, left), (2.0, -left)], size);
+            let way = minimax_step([(1.0, left), (2.0, -left)], size);
             assert!((way - Vector([0.5, 0.0])).norm() < 1e-13, "{way:?}");
         }
     }

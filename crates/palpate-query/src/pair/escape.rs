@@ -35,6 +35,7 @@ const FAR: f64 = 100.0;
 /// A translation of the second body after which the bodies do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Escape<const D: usize> {
     /// The direction, a unit vector in world coordinates.
     pub direction: Vector<f64, D>,
@@ -79,7 +80,7 @@ pub struct Escape<const D: usize> {
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn escape<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

@@ -11,16 +11,15 @@
 //! order. Minimax proximal steps improve the best point: the maximum of the two tangent
 //! planes plus a parabola is least at a step along a mean of both gradients.
 
-pub(crate) mod body;
 pub(crate) mod body_pair;
 pub(crate) mod cell;
 pub(crate) mod descent;
+pub(crate) mod distance_bound;
 mod escape;
 mod nearest;
 mod proof;
 mod rates;
 pub(crate) mod search;
-mod track;
 
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
@@ -29,12 +28,13 @@ use crate::placed::Placed;
 use body_pair::BodyPair;
 use search::PairSearch;
 
+pub use descent::minimax_step;
+pub use distance_bound::DistanceBound;
 pub use escape::{Escape, escape};
 pub use nearest::Nearest;
 pub use proof::{Proof, ProofBox, proof};
 pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
-pub use track::Track;
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
@@ -73,7 +73,7 @@ pub use track::Track;
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn separation<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
@@ -91,7 +91,7 @@ pub fn separation<'a, const D: usize>(
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn overlap<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

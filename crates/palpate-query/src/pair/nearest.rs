@@ -13,11 +13,12 @@ use crate::sampler::normal;
 /// Where two bodies are nearest, or overlap most, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearest<const D: usize> {
     /// The point between the bodies, or in both [m].
     pub point: Point<D>,
-    /// The unit vector from the first body to the second; `None` where neither's
-    /// gradient says.
+    /// The unit vector from the first body to the second; `None` where the gradients of both
+    /// are equal or vanish.
     pub normal: Option<Vector<f64, D>>,
 }
 
@@ -32,11 +33,11 @@ impl<const D: usize> Nearest<D> {
         }
     }
 
-    /// The points of both surfaces next to the point, found along the gradients.
+    /// The points of both surfaces next to [`Nearest::point`], found along the gradients.
     ///
-    /// Apart, they are points of both bodies, so that their distance is an upper bound of
-    /// the bodies' distance, as the separation is a lower one. `None` if there is no
-    /// normal, or no surface is found from here.
+    /// Where the bodies are apart, the distance of these points is an upper bound of the
+    /// bodies' distance, and the separation a lower bound. `None` if there is no normal, or
+    /// no surface was found.
     #[must_use]
     pub fn contact<'a>(
         &self,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A search with all that it ruled out.
+//! A separation with the boxes that prove it.
 
 use palpate_field::{Aabb, Pose};
 
@@ -17,33 +17,35 @@ use crate::placed::Placed;
 /// The separation of two bodies, and the boxes that prove it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Proof<const D: usize> {
     /// The answer, as [`separation`](crate::separation) gives it.
     pub answer: Certified<Nearest<D>>,
     /// From the coordinates of the boxes, which are the first body's, to the world's.
     pub world_from_boxes: Pose<D>,
-    /// Boxes without gaps between them: within them, as outside, nothing is less than
-    /// the answer's lower bound.
+    /// Boxes that cover the searched region without gaps: in them, as outside, twice the larger
+    /// `g` is at least the answer's lower bound.
     pub boxes: Vec<ProofBox<D>>,
 }
 
-/// A box, and what was proven of it.
+/// A box and its proven bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProofBox<const D: usize> {
     /// The box, in the first body's coordinates.
     pub aabb: Aabb<D>,
-    /// Twice the larger of both distances is nowhere in the box less [m].
+    /// Proven lower bound of twice the larger `g` in the box [m].
     pub lower: f64,
 }
 
-/// The [`separation`](crate::separation) of two bodies with its proof: the box that was
-/// searched, in parts, each with its own bound. Outside of it, both bodies are never as
-/// near as the best point is.
+/// The [`separation`](crate::separation) of two bodies with its proof: the searched box in
+/// parts, each with its own bound. Outside of this box, the larger `g` exceeds that of the
+/// best point.
 ///
 /// # Errors
 ///
-/// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+/// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
 pub fn proof<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,

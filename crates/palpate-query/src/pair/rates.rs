@@ -31,6 +31,7 @@ const STEPS: usize = 200;
 /// `Σ wᵢ·∇gᵢ`, the parts of one body times −2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rates<const D: usize> {
     /// Where the separation is found [m].
     pub point: Point<D>,
@@ -44,6 +45,7 @@ pub struct Rates<const D: usize> {
 /// How a separation changes with the pose of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseDerivative<const D: usize> {
     /// By its translation, in metres a metre.
     pub translation: Vector<f64, D>,

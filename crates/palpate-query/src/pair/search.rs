@@ -16,24 +16,24 @@ use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::larger::larger;
 
-/// Boxes are bounded by models below this radius, as a share of the first box's: above,
-/// remainders are larger than radii.
+/// Models bound boxes below this radius, as a share of the first box's: above, remainders
+/// exceed radii.
 const SMALL: f64 = 0.25;
 
-/// Boxes are cut by this share of the tolerance above what matters: just there, bounds would
-/// be as far apart as the tolerance, and by a rounding more.
+/// Boxes are cut at the threshold plus this share of the tolerance: cut at the threshold
+/// itself, bounds would end a rounding farther apart than the tolerance.
 const SPARE: f64 = 1.0 / 64.0;
 
-/// A model that says nothing.
+/// The model in a lane before the first is written.
 const NOTHING: Model = Model { value: 0.0, gradient: [0.0; 3], lower: 0.0, upper: 0.0 };
 
-/// Models are worked through in lines of so many lanes.
+/// Models are evaluated in lines of this many lanes.
 const LINE: usize = 8;
 
-/// Boxes that a workspace holds.
+/// The largest number of waiting boxes.
 pub(crate) const ROOM: usize = 1 << 16;
 
-/// What is known of the boxes of a round, one item a box.
+/// Radii, values and models of the boxes of a round.
 #[derive(Debug)]
 struct Known {
     radii: [f64; BLOCK],
@@ -43,7 +43,7 @@ struct Known {
     models: [Model; BLOCK],
 }
 
-/// Memory of searches between bodies, to be kept between them.
+/// Memory of searches between bodies, kept from one to the next.
 #[derive(Debug)]
 pub struct PairWorkspace<const D: usize> {
     /// Boxes that may hold less than the best; or all, if they are to be kept.
@@ -81,23 +81,23 @@ impl<const D: usize> Default for PairWorkspace<D> {
     }
 }
 
-/// A search under way; its bounds are of `max(g_a, g_b)`, half the separation.
+/// A search between two bodies; its bounds are of `max(g_a, g_b)`, half the separation.
 pub(crate) struct PairSearch<'a, const D: usize> {
-    pub(super) pair: BodyPair<'a, D>,
-    pub(super) goal: Goal,
+    pub(crate) pair: BodyPair<'a, D>,
+    pub(crate) goal: Goal,
     budget: u32,
-    /// Whether a descent was made from a box that is no better than the best.
+    /// Whether a descent from a box elsewhere was made; one is enough.
     has_tried: bool,
-    pub(super) upper: f64,
+    pub(crate) upper: f64,
     pub(crate) best: Point<D>,
-    /// Nothing in the boxes that were dropped is less.
-    pub(super) dropped: f64,
-    /// What values may be off by [m].
-    pub(super) slack: f64,
-    /// Whether boxes that need no more looking at are kept with the others.
-    pub(super) keeps_all: bool,
-    /// How far above what matters bounds are still made better by models [m].
-    pub(super) reserve: f64,
+    /// The least bound of closed boxes.
+    pub(crate) dropped: f64,
+    /// The rounding of values [m].
+    pub(crate) slack: f64,
+    /// Whether closed boxes are kept with the others, for a track or a proof.
+    pub(crate) keeps_all: bool,
+    /// How far above the threshold models still improve bounds [m].
+    pub(crate) reserve: f64,
 }
 
 impl<'a, const D: usize> PairSearch<'a, D> {
@@ -121,7 +121,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         })
     }
 
-    /// Searches everywhere, from the middle of what the boxes of both have in common.
+    /// Searches all places that matter.
     pub(crate) fn run(&mut self, workspace: &mut PairWorkspace<D>) -> Certified<Nearest<D>> {
         match self.told_by_boxes() {
             Some(answer) => answer,
@@ -130,25 +130,26 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     }
 
     /// The answer, if the boxes of both bodies are as far apart as matters.
-    pub(super) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
+    pub(crate) fn told_by_boxes(&mut self) -> Option<Certified<Nearest<D>>> {
         let gap = self.pair.gap_of_boxes()?;
         self.best = self.pair.root(0.0).centre();
-        // One of both values is at least half of it, everywhere.
+        // At every point one of both values is at least half of the gap.
         self.slack = self.pair.slack(self.best.norm() + gap);
         let lower = 0.5 * gap - self.slack;
         (lower > self.goal.apart).then(|| self.answer(Stop::SignKnown, lower))
     }
 
     /// Improves the best point, from `start`, with `first` as in [`descend`].
-    pub(super) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
+    pub(crate) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
         let (value, p) = descend(&mut self.pair, (start, first), self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
     }
 
-    /// Searches everywhere, and `margin` around it; also returns the box that it searched.
-    pub(super) fn run_within(
+    /// Searches all places that matter and `margin` around them; also returns the box that it
+    /// searched.
+    pub(crate) fn run_within(
         &mut self,
         margin: f64,
         workspace: &mut PairWorkspace<D>,
@@ -166,9 +167,9 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         (self.refine(&root, workspace), root)
     }
 
-    /// Takes over the boxes of the workspace, parts of `root`, of which something is known:
-    /// those of which too little is are pending.
-    pub(super) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
+    /// Continues with the boxes of the workspace, parts of `root`: those whose bounds no
+    /// longer suffice become pending.
+    pub(crate) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
         let Frontier { queue, pending, .. } = &mut workspace.frontier;
         pending.clear();
         self.slack = self.pair.slack(reach(root));
@@ -178,8 +179,8 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         }
     }
 
-    /// Searches the pending boxes, parts of `root`, and all that is found in them.
-    pub(super) fn refine(
+    /// Searches the pending boxes, parts of `root`, until enough is known.
+    pub(crate) fn refine(
         &mut self,
         root: &Aabb<D>,
         workspace: &mut PairWorkspace<D>,
@@ -193,7 +194,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         self.answer(end.stop(), frontier.lower(self.dropped))
     }
 
-    pub(super) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
+    pub(crate) fn answer(&mut self, stop: Stop, lower: f64) -> Certified<Nearest<D>> {
         let upper = self.upper + self.slack;
         Certified {
             best: Nearest::at(&mut self.pair, self.best),
@@ -204,14 +205,14 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         }
     }
 
-    /// Boxes with nothing below this need no more looking at.
+    /// Boxes with a lower bound from this on are closed.
     fn threshold(&self) -> f64 {
         self.goal.threshold(self.upper + self.slack)
     }
 
-    /// A box that holds all points that matter, and `margin` more: where neither `g` is
-    /// more than the best so far, or than what is asked for. Elsewhere one is.
-    pub(super) fn root(&mut self, margin: f64) -> Aabb<D> {
+    /// A box that holds all points where both `g` are at most the best so far and the largest
+    /// value asked for, and `margin` around them.
+    pub(crate) fn root(&mut self, margin: f64) -> Aabb<D> {
         let slack = self.pair.slack(self.best.norm() + self.upper.abs());
         let least = self.goal.most(self.upper);
         self.dropped = least + slack;
@@ -219,14 +220,14 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         self.pair.tightened(&self.pair.root(grown), grown)
     }
 
-    /// Whether a descent from a box may find bodies to overlap, although its centre is no
-    /// better than the best: it is elsewhere, and may hold such a point.
+    /// Whether a descent from a box may prove an overlap although its centre is no better than
+    /// the best point: it is elsewhere, and may hold a point in both bodies.
     fn is_worth_a_try(&self, least: &LeastBox<D>) -> bool {
         let is_elsewhere = (least.centre - self.best).norm() > least.radius;
         self.goal.is_sign() && !self.has_tried && least.value < least.radius && is_elsewhere
     }
 
-    /// Leaves a box alone; keeps it all the same where all boxes are kept.
+    /// Closes a box; keeps it in the queue where all boxes are kept.
     fn drop_cell(&mut self, cell: &BoxCell<D>, queue: &mut Heap<BoxCell<D>>) {
         self.dropped = self.dropped.min(cell.lower);
         if self.keeps_all {
@@ -328,7 +329,8 @@ struct LeastBox<const D: usize> {
 }
 
 impl<const D: usize> PairRounds<'_, '_, D> {
-    /// Closes what the first body alone rules out, which the second is not asked.
+    /// Closes the boxes that the first body alone rules out: the second body is not evaluated
+    /// there.
     fn bound_by_first(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
         let Self { search, memory, known: Known { radii, values, .. }, .. } = self;
         let Frontier { queue, round, .. } = frontier;
@@ -370,7 +372,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
     }
 
     /// Bounds by models those boxes that are small and not yet closed, again by the first
-    /// body alone before the second is asked.
+    /// body alone before the second is evaluated.
     fn bound_by_models(&mut self, frontier: &mut Frontier<Heap<BoxCell<D>>>) {
         let Self { search, open, memory, known: Known { radii, models, .. }, largest } = self;
         let Frontier { queue, pending, round } = frontier;
@@ -381,7 +383,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         open.extend((0..round.len()).filter(is_open));
         search.pair.keep_known(round, open, memory);
         if !search.keeps_all && queue.least() < threshold {
-            // The rest of a line waits for the boxes of the next round.
+            // The rest of a line waits for the next round, to fill a line with others.
             for i in open.drain(open.len() / LINE * LINE..).rev() {
                 pending.push(round.swap_remove(i));
             }

@@ -17,7 +17,7 @@ use crate::pool::Pool;
 /// beside them, few enough that threads end together.
 const CHUNK: usize = 16;
 
-/// What is asked of each pose.
+/// The question about each pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Asked {
     Separation,

@@ -12,6 +12,7 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tolerance {
     /// As a share of the size of the smaller body: the diagonal of its box, the length of a
     /// ray, the diameter of a ball. Unbounded bodies have no size; where neither body has

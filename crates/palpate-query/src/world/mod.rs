@@ -3,10 +3,9 @@
 
 //! Many bodies, and where any two of them touch.
 //!
-//! Boxes around the bodies, grown by half the margin, are kept in an R-tree, which says
-//! which pairs are near; a pair is asked again only when one of its bodies has moved, from
-//! what was proven of it the last time. Pairs are independent of each other, so that
-//! threads change no bit of the answer.
+//! An R-tree of the bodies' boxes, grown by half the margin, finds the near pairs. A pair is
+//! searched again only when one of its bodies has moved, from what its track has proven.
+//! Pairs are independent, so that the number of threads changes no bit of the answer.
 
 mod near;
 
@@ -21,10 +20,10 @@ use crate::certified::{Limits, Stop};
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings};
-use crate::pair::Track;
 use crate::pair::cell::reach;
 use crate::placed::check_pose;
 use crate::pool::Pool;
+use crate::track::Track;
 use near::pairs_near;
 
 /// Roundings of a placed box, relative to its largest coordinate.
@@ -32,6 +31,7 @@ const ROUNDINGS: f64 = 16.0;
 
 /// A body of a world, as [`World::add`] names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(usize);
 
 impl BodyId {
@@ -42,13 +42,14 @@ impl BodyId {
     }
 }
 
-/// What a world's answers are to be like.
+/// How a world searches each pair of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorldSettings {
-    /// Of each pair: the margin, how finely it is looked at, how many contacts.
+    /// The contacts of each pair: margin, spacing and largest number.
     pub manifold: ManifoldSettings,
-    /// Of each pair: how far apart the bounds may be, and the budget.
+    /// The tolerance and the budget of each pair.
     pub limits: Limits,
 }
 
@@ -68,26 +69,26 @@ impl WorldSettings {
     }
 }
 
-/// What is known of two bodies that are near each other.
+/// Two bodies near each other, and their contacts.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Neighbours<const D: usize> {
-    /// The bodies, the one that was added first first.
+    /// The bodies; the first was added before the second.
     pub bodies: [BodyId; 2],
-    /// How they touch; `None` if neither is bounded, of which nothing can be said.
+    /// Their contacts; `None` if neither is bounded.
     pub manifold: Option<Manifold<D>>,
 }
 
 /// Whether two bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
     /// Their separation is at most the margin.
     Touching,
     /// Their separation is more than the margin.
     Apart,
-    /// The budget came to its end first, or neither is bounded: the truth is between the
-    /// bounds.
+    /// The budget ended first, or neither body is bounded: the margin lies between the bounds.
     Undecided,
 }
 
@@ -102,7 +103,7 @@ impl fmt::Display for Verdict {
 }
 
 impl<const D: usize> Neighbours<D> {
-    /// The bounds of the separation [m]: nothing is known of two bodies without bounds.
+    /// The bounds of the separation [m]; infinite if neither body is bounded.
     #[must_use]
     pub fn bounds(&self) -> [f64; 2] {
         let separation = self.manifold.as_ref().map(|manifold| &manifold.separation);
@@ -113,8 +114,8 @@ impl<const D: usize> Neighbours<D> {
 
     /// Whether they touch, up to `margin` [m].
     ///
-    /// Bounds that are no farther apart than the tolerance and hold the margin between
-    /// them count as touching: contacts are given of them.
+    /// Bounds within the tolerance of each other with the margin between them count as
+    /// touching, and have contacts.
     #[must_use]
     pub fn verdict(&self, margin: f64) -> Verdict {
         let Some(manifold) = &self.manifold else { return Verdict::Undecided };
@@ -159,7 +160,7 @@ impl<const D: usize> Neighbours<D> {
 #[derive(Debug)]
 pub struct World<const D: usize> {
     settings: WorldSettings,
-    /// Bodies that were removed leave their place empty.
+    /// Empty places are those of removed bodies.
     bodies: Vec<Option<Body<D>>>,
     ignored: BTreeSet<[usize; 2]>,
     pairs: BTreeMap<[usize; 2], Pair<D>>,
@@ -172,18 +173,18 @@ struct Body<const D: usize> {
     pose: Pose<D>,
     groups: u32,
     mask: u32,
-    /// Around the body and half the margin; `None` if it has no bounds.
+    /// A box around the body, grown by half the margin; `None` if the body is unbounded.
     aabb: Option<Aabb<D>>,
-    /// Whether it is not where it was in the last step.
+    /// Whether the body has moved since the last step.
     has_moved: bool,
 }
 
-/// Two bodies near each other, and what was found.
+/// Two bodies near each other, and the last answer.
 #[derive(Debug)]
 struct Pair<const D: usize> {
     track: Track<D>,
     found: Neighbours<D>,
-    /// Whether it is near in this step, and whether it is to be asked again.
+    /// Whether the bodies are near in this step, and whether they must be searched again.
     is_near: bool,
     is_stale: bool,
 }
@@ -237,7 +238,7 @@ impl<const D: usize> World<D> {
         Ok(BodyId(self.bodies.len() - 1))
     }
 
-    /// Takes a body out; its name is not given again.
+    /// Removes a body; its id is not used again.
     ///
     /// # Errors
     ///
@@ -259,7 +260,7 @@ impl<const D: usize> World<D> {
         found.map(|body| body.pose).ok_or(QueryError::NoBody { body: body.0 })
     }
 
-    /// Moves bodies to where they are now; all of them, or none if one is refused.
+    /// Moves bodies to new poses: all of them, or none if one is refused.
     ///
     /// # Errors
     ///
@@ -276,8 +277,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Puts a body into `groups`, a bit each, and asks it only with bodies of a group in
-    /// `mask`. Two bodies are asked if each is in a group of the other's mask.
+    /// Puts a body into `groups`, one bit each, and lets it touch only groups in `mask`. A
+    /// pair is searched if each body is in a group of the other's mask.
     ///
     /// # Errors
     ///
@@ -293,7 +294,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Asks two bodies no more, as those of a joint.
+    /// Never searches two bodies again, such as those of a joint.
     ///
     /// # Errors
     ///
@@ -307,8 +308,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Finds what touches where bodies are now: all pairs whose boxes are within the
-    /// margin and that are not proven to be farther apart, in the order of their bodies.
+    /// Finds the contacts at the current poses: of all pairs that are not proven to be farther
+    /// apart than the margin, in the order of their bodies.
     ///
     /// With the feature `parallel` rayon's threads share the pairs; the bits do not depend on
     /// how many there are.
@@ -338,7 +339,7 @@ impl<const D: usize> World<D> {
         found.filter(|found| found.verdict(margin) != Verdict::Apart).collect()
     }
 
-    /// Updates which pairs are near, and which of them are to be asked again.
+    /// Updates which pairs are near, and which of them must be searched again.
     fn find_near(&mut self) {
         for pair in self.pairs.values_mut() {
             pair.is_near = false;
@@ -358,7 +359,7 @@ impl<const D: usize> World<D> {
             pair.is_near = true;
             pair.is_stale |= a.has_moved || b.has_moved;
         }
-        // Of pairs that have not moved nothing is asked, so that they are near as before.
+        // The R-tree is not asked about bodies that rest: their pairs stay near.
         let bodies = &self.bodies;
         let is_still = |i: usize| bodies[i].as_ref().is_some_and(|body| !body.has_moved);
         self.pairs

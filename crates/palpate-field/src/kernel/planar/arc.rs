@@ -8,7 +8,7 @@ use crate::error::ShapeError;
 use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -62,7 +62,7 @@ impl Kernel<2> for Arc {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.ring_radius + self.radius)
     }
 

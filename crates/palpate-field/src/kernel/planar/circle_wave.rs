@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// Foldings of the x axis: as many as a double has digits, so that further out
@@ -122,13 +122,13 @@ impl Kernel<2> for CircleWave {
 
     /// By the formula or, over cells of many waves, by the Lipschitz constant.
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let formula = self.distance(cell);
-        let reach = Model::radius(&cell.0);
+        let reach = AffineModel::radius(&cell.0);
         let far = self.ring_radius + self.radius + reach;
         let centre = Vector([cell.0[0].value, cell.0[1].value]);
         let rounding = OPERATIONS * f64::EPSILON * (far + centre.norm());
-        let rough = Model::lipschitz(formula.value, 1.0, &cell.0, rounding);
+        let rough = AffineModel::lipschitz(formula.value, 1.0, &cell.0, rounding);
         if rough.deviation() < formula.deviation() { rough } else { formula }
     }
 

@@ -8,7 +8,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -92,7 +92,7 @@ impl Kernel<2> for CoolS {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.half_height)
     }
 

@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, finite, positive};
 use crate::kernel::profile::{self, CutDisc};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance of a cut disc.
@@ -63,7 +63,7 @@ impl Kernel<2> for CutDisk {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
     }
 
@@ -152,7 +152,7 @@ impl Kernel<2> for Moon {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, MOON_OPERATIONS, self.half.size())
     }
 

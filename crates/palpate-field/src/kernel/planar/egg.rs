@@ -7,7 +7,7 @@ use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -85,7 +85,7 @@ impl Kernel<2> for Egg {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, 2.0 * self.bottom_radius)
     }
 

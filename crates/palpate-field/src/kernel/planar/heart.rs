@@ -9,7 +9,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The height of a heart whose square has edges of one.
@@ -84,7 +84,7 @@ impl Kernel<2> for Heart {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.height)
     }
 

@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::profile::half_of_less_than_a_turn;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -104,7 +104,7 @@ impl Kernel<2> for Horseshoe {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.size())
     }
 

@@ -6,7 +6,7 @@
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::Vector;
 
 /// Halvings of the range of the unknown, in its exponent: six leave a factor of less
@@ -146,7 +146,7 @@ impl Kernel<2> for Hyperbola {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
     }
 

@@ -8,7 +8,7 @@ use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance from a parabola.
@@ -71,7 +71,7 @@ impl Kernel<2> for Parabola {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.focal_length)
     }
 
@@ -184,7 +184,7 @@ impl Kernel<2> for ParabolaSegment {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, SEGMENT_OPERATIONS, self.size())
     }
 

@@ -10,7 +10,7 @@ use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::{Kernel, lipschitz_model, primitive, tangent_model};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Vector, array};
 
 /// The largest number of rounded operations of the distance of a quadratic circle.
@@ -109,7 +109,7 @@ impl Kernel<2> for QuadraticCircle {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CIRCLE_OPERATIONS, self.radius)
     }
 
@@ -224,7 +224,7 @@ impl Kernel<2> for BobblyCross {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         lipschitz_model(self, cell, CROSS_OPERATIONS, self.tip + self.rounding)
     }
 

@@ -10,7 +10,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Dual, Float, Model, Scalar};
+use crate::scalar::{AffineModel, Dual, Float, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The most edges of one polygon: a distance looks at each.
@@ -165,12 +165,12 @@ impl Kernel<2> for Polygon {
         (signed, gradient)
     }
 
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let centre = Vector(cell.0.map(|x| x.value));
         let size = self.bounds.radius_about_origin();
-        let far = size + centre.norm() + Model::radius(&cell.0);
+        let far = size + centre.norm() + AffineModel::radius(&cell.0);
         let rounding = OPERATIONS * f64::EPSILON * far;
-        Model::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
+        AffineModel::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
     }
 
     fn promise(&self) -> Promise<2> {

@@ -8,7 +8,7 @@ use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative};
 use crate::kernel::{Kernel, lipschitz_model, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{Float, Model, Scalar};
+use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// Newton steps in the curve's own parameter, each of which doubles the digits.
@@ -276,7 +276,7 @@ impl Kernel<2> for QuadraticBezier {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let size = self.promise.rounding.constant / self.promise.rounding.per_metre;
         lipschitz_model(self, cell, OPERATIONS, size)
     }

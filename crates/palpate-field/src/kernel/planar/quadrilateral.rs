@@ -10,7 +10,7 @@ use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::profile::{self, beside, intersection};
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distances.
@@ -60,7 +60,7 @@ impl Kernel<2> for Rhombus {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius())
     }
 
@@ -153,7 +153,7 @@ impl Kernel<2> for Parallelogram {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
     }
 
@@ -240,7 +240,7 @@ impl Kernel<2> for IsoscelesTrapezoid {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
     }
 

@@ -10,7 +10,7 @@ use crate::field::Placement;
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Cuboid, Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector, array};
 
 /// The signs of x and y at the top left, top right, bottom right and bottom left.
@@ -205,7 +205,7 @@ impl Kernel<2> for ChamferedRectangle {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CHAMFERED_OPERATIONS, self.radius())
     }
 

@@ -8,7 +8,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, face_if_on_it, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
 
 /// The most corners or branches.
@@ -124,7 +124,7 @@ impl Kernel<2> for RegularPolygon {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, POLYGON_OPERATIONS, self.radius)
     }
 
@@ -260,7 +260,7 @@ impl Kernel<2> for RegularStar {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, STAR_OPERATIONS, self.outer_radius)
     }
 

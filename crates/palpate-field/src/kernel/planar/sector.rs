@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::profile::Wedge;
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distances.
@@ -72,7 +72,7 @@ impl Kernel<2> for Pie {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
@@ -159,7 +159,7 @@ impl Kernel<2> for RingSector {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.wedge.outer())
     }
 

@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, lipschitz_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The most steps.
@@ -159,7 +159,7 @@ impl Kernel<2> for Stairs {
 
     /// A cell may hold many steps, of which the formula sees one.
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         lipschitz_model(self, cell, OPERATIONS, self.size())
     }
 

@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The cross-section of a tunnel, a rectangle below and half a disc on top, about
@@ -148,7 +148,7 @@ impl Kernel<2> for UnevenCapsule {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, CAPSULE_OPERATIONS, self.size())
     }
 

@@ -10,7 +10,7 @@ use crate::field::Placement;
 use crate::kernel::profile::Lens;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The largest number of rounded operations of the distance.
@@ -64,7 +64,7 @@ impl Kernel<2> for Vesica {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.half.half_height())
     }
 
@@ -131,7 +131,7 @@ impl Kernel<2> for OrientedVesica {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 2>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         self.lens.model(self.placement.to_body(cell))
     }
 

@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, finite, not_negative, positive};
 use crate::kernel::profile::{Curve, CutDisc, Moon, Wedge, bounds_of_zone};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance of a part.
@@ -56,7 +56,7 @@ impl Kernel<3> for SolidAngle {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         if self.0.is_convex() {
             tangent_model(self, cell, OPERATIONS, self.0.outer())
         } else {
@@ -155,7 +155,7 @@ impl Kernel<3> for CutBall {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
     }
 
@@ -236,7 +236,7 @@ impl Kernel<3> for CutHollowSphere {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.radius + self.half_thickness)
     }
 
@@ -312,7 +312,7 @@ impl Kernel<3> for DeathStar {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.0.size())
     }
 

@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::between::Between;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The bounds of what is between two discs across the frame's axis, of the given radii
@@ -142,7 +142,7 @@ impl Kernel<3> for CappedConeBetween {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         self.cone.model(self.between.to_body(cell))
     }
 

@@ -8,7 +8,7 @@ use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -99,7 +99,7 @@ impl Kernel<3> for CappedCone {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.size())
     }
 
@@ -222,7 +222,7 @@ impl Kernel<3> for InfiniteCone {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, INFINITE_OPERATIONS, 0.0)
     }
 

@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
 
 /// The largest number of rounded operations of the distance.
@@ -88,7 +88,7 @@ impl Kernel<3> for CuboidFrame {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, Vector(self.half_extents).norm())
     }
 

@@ -9,7 +9,7 @@ use crate::kernel::between::Between;
 use crate::kernel::profile::Lens;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The largest number of rounded operations of the distance.
@@ -66,7 +66,7 @@ impl Kernel<3> for VesicaSegment {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         self.spindle.model(self.between.to_body(cell))
     }
 
@@ -89,7 +89,7 @@ impl Kernel<3> for Spindle {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.0.half_height())
     }
 

@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance.
@@ -70,7 +70,7 @@ impl Kernel<3> for Octahedron {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.radius)
     }
 

@@ -9,7 +9,7 @@ use crate::error::ShapeError;
 use crate::kernel::exponent::{Exponent, in_another_norm};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// Rounded operations of the formula.
@@ -88,7 +88,7 @@ impl Kernel<3> for PowerTorus {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(self, cell, OPERATIONS, self.round.ring_radius + self.round.radius)
     }
 

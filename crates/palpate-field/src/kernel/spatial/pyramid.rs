@@ -8,7 +8,7 @@ use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Vector, array};
 
 /// The largest number of rounded operations of the distance.
@@ -105,7 +105,7 @@ impl Kernel<3> for Pyramid {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.ridge_length + self.half_side)
     }
 

@@ -10,7 +10,7 @@ use crate::kernel::between::Between;
 use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The largest number of rounded operations of the distance.
@@ -71,7 +71,7 @@ impl Kernel<3> for RoundCone {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         tangent_model(self, cell, OPERATIONS, self.0.size())
     }
 
@@ -153,7 +153,7 @@ impl Kernel<3> for RoundConeBetween {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         self.cone.model(self.between.to_body(cell))
     }
 

@@ -10,7 +10,7 @@ use crate::kernel::planar::line::Edge;
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::pose::{Pose, Rotation};
 use crate::promise::Promise;
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
 /// The largest number of rounded operations of the distance.
@@ -216,7 +216,7 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const M: usize>(&self, cell: Vector<AffineModel<M>, 3>) -> AffineModel<M> {
         tangent_model(self, cell, OPERATIONS, self.size)
     }
 

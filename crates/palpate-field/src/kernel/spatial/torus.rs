@@ -9,7 +9,7 @@ use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
-use crate::scalar::{Model, Scalar};
+use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
 /// The largest number of rounded operations of the distance of a capped torus.
@@ -132,7 +132,7 @@ impl Kernel<3> for CappedTorus {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(self, cell, CAPPED_OPERATIONS, self.ring_radius + self.radius)
     }
 
@@ -223,7 +223,7 @@ impl Kernel<3> for Link {
     }
 
     #[inline(always)]
-    fn model(&self, cell: Vector<Model, 3>) -> Model {
+    fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 3>) -> AffineModel<N> {
         formula_model(
             self,
             cell,

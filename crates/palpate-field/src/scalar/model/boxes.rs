@@ -3,7 +3,7 @@
 
 //! Cells that are boxes, and how they move: with fewer operations than cells of any form.
 
-use super::{Model, NONE, UNIT};
+use super::{AffineModel, NONE, UNIT};
 use crate::vector::{array, unrolled};
 
 /// Units by which a turned coordinate of a box may be off, as a share of the sum of its half
@@ -39,7 +39,7 @@ impl<const D: usize> TurnedBoxes<D> {
     }
 }
 
-impl Model {
+impl<const N: usize> AffineModel<N> {
     /// The coordinates of the box with `half` side lengths, turned by the rotation of which
     /// `rows` are given about its `centre`.
     #[inline(always)]
@@ -49,8 +49,9 @@ impl Model {
         rows: &[[f64; D]; D],
     ) -> [Self; D] {
         array!(i < D => {
-            let gradient = array!(k < 3 => if k < D { rows[i][k] * half[k] } else { 0.0 });
-            let size = gradient[0].abs() + gradient[1].abs() + gradient[2].abs();
+            let gradient = array!(k < N => if k < D { rows[i][k] * half[k] } else { 0.0 });
+            let mut size = NONE;
+            unrolled!(k < N => size += f64::abs(gradient[k]));
             let rounding = 2.0 * UNIT * size;
             Self { value: centre[i], gradient, lower: rounding, upper: rounding }
         })
@@ -59,7 +60,7 @@ impl Model {
     /// `true` of coordinate `i` of a [`cell`](Self::cell).
     #[inline(always)]
     pub(crate) fn is_side(&self, i: usize) -> bool {
-        let along_others = (0..3).filter(|k| *k != i).map(|k| self.gradient[k]);
+        let along_others = (0..N).filter(|k| *k != i).map(|k| self.gradient[k]);
         along_others.chain([self.lower, self.upper]).all(|part| part == 0.0)
     }
 
@@ -74,11 +75,11 @@ impl Model {
     ) -> [Self; D] {
         let centre = array!(k < D => cell[k].value - translation[k]);
         array!(i < D => {
-            let gradient = array!(k < 3 => {
+            let gradient = array!(k < N => {
                 if k < D { rows[k][i] * cell[k].gradient[k] } else { 0.0 }
             });
             let mut size = NONE;
-            unrolled!(k < 3 => size += f64::abs(gradient[k]));
+            unrolled!(k < N => size += f64::abs(gradient[k]));
             Self::moved(i, &centre, rows, gradient, (D as f64 + 4.0) * size)
         })
     }
@@ -92,7 +93,7 @@ impl Model {
         TurnedBoxes { product, sides }: &TurnedBoxes<D>,
     ) -> [Self; D] {
         let centre = array!(k < D => cell[k].value - translation[k]);
-        let half: [f64; 3] = array!(k < 3 => {
+        let half: [f64; N] = array!(k < N => {
             let mut side = NONE;
             if k < D {
                 unrolled!(i < D => side += sides[i][k] * cell[i].gradient[k]);
@@ -100,9 +101,9 @@ impl Model {
             side
         });
         let mut size = NONE;
-        unrolled!(k < 3 => size += f64::abs(half[k]));
+        unrolled!(k < N => size += f64::abs(half[k]));
         array!(i < D => {
-            let gradient = array!(k < 3 => if k < D { product[i][k] * half[k] } else { 0.0 });
+            let gradient = array!(k < N => if k < D { product[i][k] * half[k] } else { 0.0 });
             Self::moved(i, &centre, rows, gradient, TURNED_UNITS * size)
         })
     }
@@ -114,7 +115,7 @@ impl Model {
         i: usize,
         centre: &[f64; D],
         rows: &[[f64; D]; D],
-        gradient: [f64; 3],
+        gradient: [f64; N],
         units: f64,
     ) -> Self {
         let (mut value, mut size) = (NONE, NONE);

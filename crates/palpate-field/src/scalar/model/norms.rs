@@ -4,27 +4,27 @@
 //! Models of norms, and of distances to an orthant in them: convex, so that below
 //! they are bounded by a tangent plane, and above by their curvature.
 
-use super::{INFLATE, MaxOf, Model, NONE, UNBOUNDED, UNIT, choose};
+use super::{AffineModel, INFLATE, MaxOf, NONE, UNBOUNDED, UNIT, choose};
 use crate::scalar::power;
 use crate::scalar::{Scalar, power::TINY};
 use crate::vector::{array, unrolled};
 
 /// How far the arguments of a function move over a cell.
-struct Moves<const N: usize> {
+struct Moves<const M: usize> {
     /// Each by at most this.
-    each: [f64; N],
+    each: [f64; M],
     /// `Σ eachᵢ`: no less than the length of the whole move.
     sum: f64,
     /// `Σ eachᵢ²`.
     squares: f64,
 }
 
-impl<const N: usize> Moves<N> {
+impl<const M: usize> Moves<M> {
     #[inline(always)]
-    fn of(x: &[Model; N]) -> Self {
-        let each = array!(i < N => x[i].deviation());
+    fn of<const N: usize>(x: &[AffineModel<N>; M]) -> Self {
+        let each = array!(i < M => x[i].deviation());
         let (mut sum, mut squares) = (NONE, NONE);
-        unrolled!(i < N => {
+        unrolled!(i < M => {
             sum += each[i];
             squares += each[i] * each[i];
         });
@@ -72,19 +72,19 @@ const fn of_powers<const P: u32>() -> Roundings {
 /// A component's rounding is relative: of a remainder that lifts the plane, it takes
 /// nothing that the remainder does not bring. So it counts over what may lower it alone.
 #[inline(always)]
-fn convex<const N: usize>(
+fn convex<const M: usize, const N: usize>(
     value: f64,
-    gradient: [f64; N],
-    x: &[Model; N],
-    (moves, above): (&Moves<N>, f64),
+    gradient: [f64; M],
+    x: &[AffineModel<N>; M],
+    (moves, above): (&Moves<M>, f64),
     (roundings, size): (Roundings, f64),
-) -> Model {
-    let mut slopes = [NONE; 3];
+) -> AffineModel<N> {
+    let mut slopes = [NONE; N];
     let (mut lower, mut upper, mut reach) = (NONE, NONE, NONE);
-    unrolled!(i < N => {
+    unrolled!(i < M => {
         let size = f64::abs(gradient[i]);
         let positive = gradient[i] > 0.0;
-        unrolled!(k < 3 => slopes[k] += gradient[i] * x[i].gradient[k]);
+        unrolled!(k < N => slopes[k] += gradient[i] * x[i].gradient[k]);
         lower += size * choose(positive, x[i].lower, x[i].upper);
         upper += size * choose(positive, x[i].upper, x[i].lower);
         reach += size * x[i].slope();
@@ -92,7 +92,7 @@ fn convex<const N: usize>(
     let steepest = (moves.sum + (reach + lower.max_of(upper))) * INFLATE;
     let above = Scalar::min(above, steepest);
     let fixed = roundings.value * size + roundings.gradient * reach;
-    Model {
+    AffineModel {
         value,
         gradient: slopes,
         lower: lower + roundings.gradient * lower + fixed,
@@ -102,11 +102,11 @@ fn convex<const N: usize>(
 
 /// Below: `‖x‖ ≥ û·x` for every unit `û`, so no second-order term.
 #[inline(always)]
-pub(super) fn norm<const N: usize>(x: [Model; N]) -> Model {
-    let n = <f64 as Scalar>::norm(array!(i < N => x[i].value));
+pub(super) fn norm<const M: usize, const N: usize>(x: [AffineModel<N>; M]) -> AffineModel<N> {
+    let n = <f64 as Scalar>::norm(array!(i < M => x[i].value));
     let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
     let moves = Moves::of(&x);
-    let unit = array!(i < N => x[i].value * inverse);
+    let unit = array!(i < M => x[i].value * inverse);
     let above = moves.curved(n, inverse, 1.0);
     convex(n, unit, &x, (&moves, above), (OF_SQUARES, n))
 }
@@ -115,9 +115,11 @@ pub(super) fn norm<const N: usize>(x: [Model; N]) -> Model {
 /// `P − 1` in that norm (Ball, Carlen and Lieb, 1994), which is no longer than the
 /// Euclidean one.
 #[inline(always)]
-pub(super) fn power_norm<const P: u32, const N: usize>(x: [Model; N]) -> Model {
-    let values = array!(i < N => x[i].value);
-    let split = power::split::<f64, P, N>(values);
+pub(super) fn power_norm<const P: u32, const M: usize, const N: usize>(
+    x: [AffineModel<N>; M],
+) -> AffineModel<N> {
+    let values = array!(i < M => x[i].value);
+    let split = power::split::<f64, P, M>(values);
     let n = split.largest * split.root;
     let moves = Moves::of(&x);
     let above = moves.curved(n, 1.0 / choose(n > 0.0, n, 1.0), f64::from(P) - 1.0);
@@ -126,18 +128,22 @@ pub(super) fn power_norm<const P: u32, const N: usize>(x: [Model; N]) -> Model {
 }
 
 #[inline(always)]
-pub(super) fn orthant<const N: usize>(q: [Model; N]) -> Model {
-    let positive = array!(i < N => q[i].value.max_of(0.0));
+pub(super) fn orthant<const M: usize, const N: usize>(
+    q: [AffineModel<N>; M],
+) -> AffineModel<N> {
+    let positive = array!(i < M => q[i].value.max_of(0.0));
     let n = <f64 as Scalar>::norm(positive);
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
-    let outside = array!(i < N => positive[i] * inverse);
+    let outside = array!(i < M => positive[i] * inverse);
     to_orthant((n, inverse, outside), &q, 1.0, OF_SQUARES)
 }
 
 #[inline(always)]
-pub(super) fn power_orthant<const P: u32, const N: usize>(q: [Model; N]) -> Model {
-    let positive = array!(i < N => q[i].value.max_of(0.0));
-    let split = power::split::<f64, P, N>(positive);
+pub(super) fn power_orthant<const P: u32, const M: usize, const N: usize>(
+    q: [AffineModel<N>; M],
+) -> AffineModel<N> {
+    let positive = array!(i < M => q[i].value.max_of(0.0));
+    let split = power::split::<f64, P, M>(positive);
     let n = split.largest * split.root;
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
     let outside = split.gradient::<P>(positive);
@@ -155,14 +161,14 @@ pub(super) fn power_orthant<const P: u32, const N: usize>(q: [Model; N]) -> Mode
 /// `other − low`, or nothing; if they become positive, by no more than the sum of their
 /// positive parts on top of what `low` lacks to zero.
 #[inline(always)]
-fn to_orthant<const N: usize>(
-    (n, inverse, outside): (f64, f64, [f64; N]),
-    q: &[Model; N],
+fn to_orthant<const M: usize, const N: usize>(
+    (n, inverse, outside): (f64, f64, [f64; M]),
+    q: &[AffineModel<N>; M],
     curvature: f64,
     roundings: Roundings,
-) -> Model {
+) -> AffineModel<N> {
     let (mut largest, mut second) = (q[0].value, -UNBOUNDED);
-    unrolled!(i < N => {
+    unrolled!(i < M => {
         if i > 0 {
             second = choose(q[i].value > largest, largest, second.max_of(q[i].value));
             largest = largest.max_of(q[i].value);
@@ -171,7 +177,7 @@ fn to_orthant<const N: usize>(
     let moves = Moves::of(q);
     let mut free = 1.0;
     let (mut low, mut other, mut beyond) = (NONE, -UNBOUNDED, NONE);
-    let gradient = array!(i < N => {
+    let gradient = array!(i < M => {
         let face = choose(q[i].value < largest, 0.0, free);
         free -= face;
         let top = q[i].value + moves.each[i];

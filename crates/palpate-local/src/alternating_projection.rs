@@ -4,11 +4,9 @@
 //! Projections on two bodies in turns: memoir 3.3, after Liu et al. (2024).
 
 use palpate_field::Point;
+use palpate_query::{DistanceBound, Placed, QueryError};
 
-use super::Descent;
-use crate::error::{QueryError, check_coordinates, check_length};
-use crate::pair::body::Body;
-use crate::placed::Placed;
+use crate::{Descent, check_start};
 
 /// Newton steps of a projection at most.
 const PROJECTION: u32 = 16;
@@ -33,7 +31,7 @@ const PAST: f64 = 4.0;
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::local::AlternatingProjection;
+/// use palpate_local::AlternatingProjection;
 /// use palpate_query::{Limits, PairWorkspace, overlap};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -78,10 +76,9 @@ impl AlternatingProjection {
         start: Point<D>,
         tolerance: f64,
     ) -> Result<Descent<D>, QueryError> {
-        check_coordinates("a start", start)?;
-        check_length(tolerance)?;
-        let (a, b) = (Body::in_world(0, a.into())?, Body::in_world(1, b.into())?);
-        let value = |p| a.slope(p).0.max(b.slope(p).0);
+        check_start(start, tolerance)?;
+        let [a, b] = DistanceBound::of_both(a, b)?;
+        let value = |p| a.distance_gradient(p).0.max(b.distance_gradient(p).0);
         let visit = |descent: &mut Descent<D>, p| {
             descent.evaluations += 4;
             descent.visit(p, value(p));
@@ -107,12 +104,12 @@ impl AlternatingProjection {
 /// The point after a Newton step onto a body, and `past` its surface as far as the gradient
 /// tells [m]; the same if it is in it, or its gradient vanishes.
 fn onto<const D: usize>(
-    body: &Body<'_, D>,
+    body: &DistanceBound<'_, D>,
     p: Point<D>,
     past: f64,
     descent: &mut Descent<D>,
 ) -> Point<D> {
-    let (value, gradient) = body.slope(p);
+    let (value, gradient) = body.distance_gradient(p);
     descent.evaluations += 2;
     let squared = gradient.dot(gradient);
     let is_out = value > 0.0 && squared > 0.0;
@@ -121,7 +118,7 @@ fn onto<const D: usize>(
 
 /// The point on the body that Newton steps lead to, up to a hundredth of the tolerance.
 fn project<const D: usize>(
-    body: &Body<'_, D>,
+    body: &DistanceBound<'_, D>,
     p: Point<D>,
     tolerance: f64,
     descent: &mut Descent<D>,

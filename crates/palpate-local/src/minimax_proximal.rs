@@ -4,12 +4,13 @@
 //! Steps that lower the larger of two fields, by both their gradients.
 
 use palpate_field::Point;
+use palpate_query::{DistanceBound, Placed, QueryError, minimax_step};
 
-use super::Descent;
-use crate::error::{QueryError, check_coordinates, check_length};
-use crate::pair::body::Body;
-use crate::pair::descent::{GROW, SHRINK, way};
-use crate::placed::Placed;
+use crate::{Descent, check_start};
+
+/// What steps are multiplied by after one that leads down, and after one that does not.
+const GROW: f64 = 1.5;
+const SHRINK: f64 = 0.25;
 
 /// Goes where the larger of both tangent planes, plus a parabola, is least: along the
 /// gradient of the farther body, and between both where they are equally far.
@@ -19,12 +20,12 @@ use crate::placed::Placed;
 /// bodies at their widest overlap, not at the first point in both.
 ///
 /// An upper bound, without a proof: it finds the overlap next to its start, or none. As
-/// [`AlternatingProjection`](super::AlternatingProjection)'s example, of two dents in
+/// [`AlternatingProjection`](crate::AlternatingProjection)'s example, of two dents in
 /// which balls lie it finds the one it starts in:
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::local::MinimaxProximal;
+/// use palpate_local::MinimaxProximal;
 /// use palpate_query::{Limits, PairWorkspace, separation};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -66,16 +67,15 @@ impl MinimaxProximal {
         start: Point<D>,
         tolerance: f64,
     ) -> Result<Descent<D>, QueryError> {
-        check_coordinates("a start", start)?;
-        check_length(tolerance)?;
-        let bodies = [Body::in_world(0, a.into())?, Body::in_world(1, b.into())?];
-        let slopes = |p: Point<D>| bodies.map(|body| body.slope(p));
+        check_start(start, tolerance)?;
+        let bodies = DistanceBound::of_both(a, b)?;
+        let slopes = |p: Point<D>| bodies.map(|body| body.distance_gradient(p));
         let mut here = slopes(start);
         let mut descent = Descent::from_start(start, here[0].0.max(here[1].0), 4);
         let mut size = descent.value.abs().max(tolerance);
         while descent.steps < self.steps && size >= tolerance && size > 0.0 {
             descent.steps += 1;
-            let next = descent.best - way(here, size);
+            let next = descent.best - minimax_step(here, size);
             let there = slopes(next);
             descent.evaluations += 4;
             let value = there[0].0.max(there[1].0);

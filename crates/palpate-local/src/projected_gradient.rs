@@ -4,11 +4,10 @@
 //! Projected gradient descent on barycentric coordinates: memoir 3.2, after Macklin et
 //! al. (2020).
 
-use palpate_field::{Point, Shape};
+use palpate_field::{Point, Shape, Vector};
+use palpate_query::Element;
 
-use super::Descent;
-use crate::element::Element;
-use crate::sampler::unit;
+use crate::Descent;
 
 /// The share of the promised descent that a step must keep.
 const KEPT: f64 = 0.5;
@@ -28,7 +27,7 @@ const KEPT: f64 = 0.5;
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::local::ProjectedGradient;
+/// use palpate_local::ProjectedGradient;
 /// use palpate_query::{Element, Limits, Workspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -79,9 +78,9 @@ impl ProjectedGradient {
         let mut gradient = shape.distance_gradient(p).1;
         descent.evaluations += 2;
         for _ in 0..self.steps {
-            let downwards = unit(gradient);
+            let downwards = gradient.normalized().unwrap_or(Vector::ZERO);
             let mut next = weights;
-            for (weight, vertex) in next.iter_mut().zip(&element.vertices) {
+            for (weight, vertex) in next.iter_mut().zip(element.vertices()) {
                 *weight -= step * downwards.dot(*vertex - p);
             }
             let next = onto_simplex(next);
@@ -113,7 +112,7 @@ fn start<const N: usize, const D: usize>(
     let mut weights = [1.0 / N as f64; N];
     let centroid: Point<D> = element.at(&weights);
     let mut best = (centroid, shape.distance(centroid));
-    for (i, vertex) in element.vertices.iter().enumerate() {
+    for (i, vertex) in element.vertices().iter().enumerate() {
         let value = shape.distance(*vertex);
         if value < best.1 {
             best = (*vertex, value);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Searches of the literature: they follow a gradient from where they start, and stop
-//! where it leads no further.
+//! Local searches of the literature: they follow a gradient from a start, and stop where it
+//! leads no farther.
 //!
-//! What they find is an upper bound of the minimum and nothing else: there may be a
-//! deeper point elsewhere, and they cannot know. They are here to be compared with
-//! [`minimum`](crate::minimum) and [`separation`](crate::separation), which prove their
+//! They find an upper bound of the minimum, and cannot tell whether another point is deeper.
+//! This crate is for comparison with
+//! [`minimum`](palpate_query::minimum) and [`separation`](palpate_query::separation), which prove their
 //! answers and do not depend on them.
 //!
 //! | method | of | source |
@@ -24,7 +24,7 @@
 //!
 //! ```
 //! use palpate_field::{Shape, Vector, kernel::Ball};
-//! use palpate_query::local::ElementMethod;
+//! use palpate_local::ElementMethod;
 //! use palpate_query::{Element, Limits, Workspace, minimum};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -52,10 +52,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use palpate_field::{Point, Shape};
-
-use crate::element::Element;
-use crate::error::QueryError;
-use crate::placed::Placed;
+use palpate_query::{Element, Placed, QueryError};
 
 pub use alternating_projection::AlternatingProjection;
 pub use frank_wolfe::FrankWolfe;
@@ -94,6 +91,23 @@ impl<const D: usize> Descent<D> {
     }
 }
 
+/// A name that no method has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no method {name:?}; there are {known}")]
+#[non_exhaustive]
+pub struct UnknownMethod {
+    /// The name.
+    pub name: String,
+    /// The names of the methods, separated by commas.
+    pub known: String,
+}
+
+/// Refuses a start or a tolerance that cannot be computed with.
+fn check_start<const D: usize>(start: Point<D>, tolerance: f64) -> Result<(), QueryError> {
+    QueryError::check_point("a start", start)?;
+    QueryError::check_length(tolerance)
+}
+
 /// Writes the names of methods, and reads them.
 macro_rules! named {
     ($method:ident: $($variant:ident = $name:literal),+) => {
@@ -115,13 +129,13 @@ macro_rules! named {
         }
 
         impl FromStr for $method {
-            type Err = QueryError;
+            type Err = UnknownMethod;
 
-            fn from_str(name: &str) -> Result<Self, QueryError> {
+            fn from_str(name: &str) -> Result<Self, UnknownMethod> {
                 let is_meant = |method: &&Self| method.name() == name;
                 Self::ALL.iter().find(is_meant).copied().ok_or_else(|| {
                     let known: Vec<_> = Self::ALL.iter().map(|method| method.name()).collect();
-                    QueryError::UnknownMethod { name: name.to_owned(), known: known.join(", ") }
+                    UnknownMethod { name: name.to_owned(), known: known.join(", ") }
                 })
             }
         }
@@ -164,7 +178,7 @@ impl ElementMethod {
 /// A local search for a point in two bodies, or between them.
 ///
 /// What is made small is `max(g_a, g_b)` with `g` as in
-/// [`separation`](crate::separation), which is twice its least value.
+/// [`separation`](palpate_query::separation), which is twice its least value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairMethod {
     /// [`AlternatingProjection`].
@@ -208,9 +222,9 @@ fn least_vertex<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
 ) -> (usize, Descent<D>) {
-    let values = element.vertices.map(|vertex| shape.distance(vertex));
+    let values = element.vertices().map(|vertex| shape.distance(vertex));
     let least = (1..N).fold(0, |k, i| if values[i] < values[k] { i } else { k });
-    (least, Descent::from_start(element.vertices[least], values[least], N as u32))
+    (least, Descent::from_start(element.vertices()[least], values[least], N as u32))
 }
 
 /// The number of the vertex that is farthest against a gradient, and by how much the
@@ -222,7 +236,7 @@ fn support<const N: usize, const D: usize>(
     p: Point<D>,
     gradient: Point<D>,
 ) -> (usize, f64) {
-    let drops = element.vertices.map(|vertex| gradient.dot(p - vertex));
+    let drops = element.vertices().map(|vertex| gradient.dot(p - vertex));
     let farthest = (1..N).fold(0, |k, i| if drops[i] > drops[k] { i } else { k });
     (farthest, drops[farthest].max(0.0))
 }

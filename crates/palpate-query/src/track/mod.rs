@@ -1,38 +1,41 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Two bodies that are asked again and again while they move.
+//! Two bodies that move: what was proven of them is kept from step to step.
+
+mod manifold;
+mod names;
 
 use palpate_field::{Aabb, BLOCK, Point, Pose, Shape, Vector};
 
-use super::Nearest;
-use super::body::Body;
-use super::body_pair::BodyPair;
-use super::cell::{BoxCell, reach};
-use super::search::{PairSearch, PairWorkspace, ROOM};
 use crate::certified::{Certified, Limits};
 use crate::engine::{Frontier, Heap, Queue};
 use crate::error::QueryError;
 use crate::goal::Goal;
-use crate::manifold::Names;
+use crate::pair::Nearest;
+use crate::pair::body_pair::BodyPair;
+use crate::pair::cell::{BoxCell, reach};
+use crate::pair::distance_bound::DistanceBound;
+use crate::pair::search::{PairSearch, PairWorkspace, ROOM};
 use crate::placed::Placed;
+use names::Names;
 
-/// Room for motion around what is searched, as a share of its size: a body that moves
-/// farther is searched anew.
+/// Margin around the searched box, as a share of its size: the search begins anew for a body
+/// that moves farther.
 const MARGIN: f64 = 0.05;
 
-/// A proof that has grown by this many times, and some, is begun anew.
+/// The search begins anew once the kept boxes are this many times as many as at first.
 const GROWTH: usize = 2;
 
-/// Bounds are made better by models where so many motions like the last would undo them.
+/// Models improve the bounds that this many motions like the last would undo.
 const RESERVE: f64 = 6.0;
 
-/// Two shapes and what the last search proved of them, from which the next one starts.
+/// A pair of shapes that moves: each search starts from what the last one proved.
 ///
-/// That is a cover of all places that matter by boxes, each with a lower bound. A motion
-/// that moves no point of them by more than δ lowers no bound by more than δ, since
-/// distances are never steeper than one. So after a small motion most boxes need no
-/// looking at; a pose that jumps costs what the first one did.
+/// The track keeps the boxes that cover all places that matter, each with a lower bound. A
+/// motion that moves no point of a box by more than δ lowers no bound by more than δ, since
+/// distances are nowhere steeper than one. After a small motion most bounds still suffice; a
+/// pose that jumps costs a search from the start.
 ///
 /// ```
 /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -55,23 +58,23 @@ const RESERVE: f64 = 6.0;
 pub struct Track<const D: usize> {
     shapes: [Shape<D>; 2],
     cover: Option<Cover<D>>,
-    pub(crate) names: Names<D>,
+    names: Names<D>,
 }
 
-/// Boxes in the frame of the first shape that hold all places at which the separation
-/// may be found, and what was known of them when the bodies were at a pose.
+/// Boxes in the frame of the first shape that hold all places where the separation may be
+/// found, with their bounds at the last pose.
 #[derive(Clone, Debug)]
 struct Cover<const D: usize> {
     cells: Heap<BoxCell<D>>,
     root: Aabb<D>,
     best: Point<D>,
     second_from_frame: Pose<D>,
-    /// How many boxes the search needed that began it.
+    /// How many boxes the first search needed.
     first: usize,
 }
 
 impl<const D: usize> Track<D> {
-    /// Two shapes of which nothing is known yet.
+    /// A track of these shapes that knows nothing yet.
     #[must_use]
     pub fn new(a: Shape<D>, b: Shape<D>) -> Self {
         Self { shapes: [a, b], cover: None, names: Names::new() }
@@ -83,7 +86,7 @@ impl<const D: usize> Track<D> {
         &self.shapes
     }
 
-    /// Forgets what was proven: the next search starts anew.
+    /// Forgets all bounds: the next search begins anew.
     pub fn forget(&mut self) {
         self.cover = None;
     }
@@ -93,7 +96,7 @@ impl<const D: usize> Track<D> {
     ///
     /// # Errors
     ///
-    /// If neither body is bounded, or a pose or the tolerance is no number or out of range.
+    /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
     pub fn separation(
         &mut self,
         poses: [Pose<D>; 2],
@@ -105,7 +108,7 @@ impl<const D: usize> Track<D> {
     }
 
     /// The answer, and where it is in the first shape's coordinates.
-    pub(crate) fn search(
+    fn search(
         &mut self,
         poses: [Pose<D>; 2],
         goal: Goal,
@@ -145,15 +148,15 @@ impl<const D: usize> Track<D> {
 }
 
 impl<const D: usize> Cover<D> {
-    /// Puts into `workspace` what is still known now that the bodies have moved; `false`
-    /// if they moved too far.
+    /// Moves the boxes into `workspace` with the bounds that hold at the new pose; `false` if
+    /// the bodies moved too far.
     fn resume(
         &mut self,
         search: &mut PairSearch<'_, D>,
         workspace: &mut PairWorkspace<D>,
     ) -> bool {
-        // What a body knows in a part of space alone moves with it.
-        let is_known = search.pair.bodies.iter().all(Body::is_known_everywhere);
+        // A region where a steepness holds moves with its body.
+        let is_known = search.pair.bodies.iter().all(DistanceBound::is_known_everywhere);
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
@@ -172,7 +175,7 @@ impl<const D: usize> Cover<D> {
         true
     }
 
-    /// No point of the root is farther from where it was in the second shape [m].
+    /// An upper bound of how far points of the root moved in the second shape [m].
     fn displacement(&self, now: &Pose<D>) -> f64 {
         let before = &self.second_from_frame;
         let (centre, radius) = (self.root.centre(), self.root.half_extents().norm());

@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Names of contacts that stay while a contact lasts.
+//! Lasting ids of contacts.
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::grid::distance;
 use crate::contact::Contact;
+use crate::manifold::grid::distance;
 
-/// A contact that moved farther than this many spacings on both bodies is another one.
+/// A contact that moved farther than this many spacings on both bodies is a new one.
 const SAME: f64 = 2.0;
 
 /// The cosine of how far its normal may turn, 45°.
 const TURNED: f64 = 0.7;
 
-/// The contacts of the last time, by where they were on both bodies.
+/// The contacts of the last step, and where they were on both bodies.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Names<const D: usize> {
+pub(super) struct Names<const D: usize> {
     known: Vec<Known<D>>,
     next: u64,
 }
@@ -29,12 +29,12 @@ struct Known<const D: usize> {
 }
 
 impl<const D: usize> Names<D> {
-    pub(crate) fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { known: Vec::new(), next: 0 }
     }
 
-    /// Names contacts: each as the nearest of the last ones, or anew. Near is near on
-    /// either body, since what slides along one may rest on the other.
+    /// Gives each contact the id of the nearest contact of the last step, or a new id. Near
+    /// means near on either body: a contact that slides along one may rest on the other.
     pub(super) fn name(
         &mut self,
         contacts: &mut [Contact<D>],

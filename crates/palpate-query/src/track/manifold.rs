@@ -5,21 +5,22 @@
 
 use palpate_field::Pose;
 
-use super::{Manifold, ManifoldSettings, spanning};
+use super::Track;
 use crate::certified::Limits;
 use crate::error::QueryError;
+use crate::manifold::{Manifold, ManifoldSettings, spanning};
+use crate::pair::PairWorkspace;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::{PairWorkspace, Track};
 use crate::placed::Placed;
 
 impl<const D: usize> Track<D> {
     /// The contacts of both shapes at these poses, `world_from_body`, as
-    /// [`manifold`](crate::manifold) finds them, with names that stay: a contact that is
-    /// near one of the last time, on either body, keeps its `id`.
+    /// [`manifold`](crate::manifold) finds them, with lasting ids: a contact near one of the
+    /// last step, on either body, keeps its `id`.
     ///
     /// # Errors
     ///
-    /// As [`manifold`](crate::manifold).
+    /// As of [`manifold`](crate::manifold).
     pub fn manifold(
         &mut self,
         poses: [Pose<D>; 2],

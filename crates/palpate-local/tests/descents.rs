@@ -8,7 +8,7 @@
 use arbitrary::Unstructured;
 use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{Point, Shape, Vector};
-use palpate_query::local::{Descent, ElementMethod, FrankWolfe, GoldenSection, PairMethod};
+use palpate_local::{Descent, ElementMethod, FrankWolfe, GoldenSection, PairMethod};
 use palpate_query::{
     Element, Limits, PairWorkspace, QueryError, Workspace, minimum, overlap, separation,
 };

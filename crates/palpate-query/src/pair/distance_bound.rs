@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A field as searches between bodies see it: never steeper than one, and never more
-//! than the distance.
+//! A field as searches between bodies see it: a lower bound of the distance, nowhere steeper
+//! than one.
 
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Rotation, Shape, Vector};
@@ -18,12 +18,29 @@ const GEOMETRY_ROUNDINGS: f64 = 16.0;
 /// A coordinate that a side of a box depends on less than this is not bounded by it.
 const LEAST_TURN: f64 = 1e-2;
 
-/// `g = max(f/L, distance to the box)`: a lower bound of the distance to the shape, with
-/// Lipschitz constant 1. It is at most u within u of the box alone, which is what bounds
-/// a search. Where a field's steepness is not known, `g` has the right sign, and says
-/// nothing of its surroundings.
+/// `g = max(f/L, distance to the shape's box)`, with `L` the steepness of the field, at least
+/// one: a lower bound of the distance to a shape, nowhere steeper than one, of which
+/// [`separation`](crate::separation) is made.
+///
+/// `g` is at most u only within u of the box, which is what bounds a search. Outside of the
+/// region in which a field keeps its steepness, `g` has the right sign and bounds nothing
+/// around it.
+///
+/// ```
+/// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
+/// use palpate_query::{DistanceBound, Placed};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let ball = Shape::from_kernel(Ball::new(1.0)?);
+/// let there = Placed::new(&ball, Pose::translation(Vector([4.0, 0.0])));
+/// let [here, there] = DistanceBound::of_both(&ball, there)?;
+/// assert_eq!(here.distance_gradient(Vector([3.0, 0.0])), (2.0, Vector([1.0, 0.0])));
+/// assert_eq!(there.distance_gradient(Vector([2.0, 0.0])), (1.0, Vector([-1.0, 0.0])));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body<'a, const D: usize> {
+pub struct DistanceBound<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
     /// `1/L`.
     scale: f64,
@@ -34,8 +51,8 @@ pub(crate) struct Body<'a, const D: usize> {
     body_from_frame: Option<Pose<D>>,
 }
 
-impl<'a, const D: usize> Body<'a, D> {
-    /// The shape where `body_from_frame` says.
+impl<'a, const D: usize> DistanceBound<'a, D> {
+    /// The bound of a shape at a pose.
     pub(crate) fn new(shape: &'a Shape<D>, body_from_frame: Pose<D>) -> Self {
         let promise = shape.promise();
         let is_moved = body_from_frame != Pose::identity();
@@ -53,10 +70,19 @@ impl<'a, const D: usize> Body<'a, D> {
         self.aabb
     }
 
-    /// The shape in the frame of the world; `index` names its pose in errors.
-    pub(crate) fn in_world(index: usize, placed: Placed<'a, D>) -> Result<Self, QueryError> {
-        check_pose(index, &placed.world_from_body)?;
-        Ok(Self::new(placed.shape, placed.world_from_body.inverse()))
+    /// Those of two bodies, in world coordinates.
+    ///
+    /// # Errors
+    ///
+    /// If a pose is not finite or beyond 1e15 m.
+    pub fn of_both(
+        a: impl Into<Placed<'a, D>>,
+        b: impl Into<Placed<'a, D>>,
+    ) -> Result<[Self; 2], QueryError> {
+        let (a, b) = (a.into(), b.into());
+        check_pose(0, &a.world_from_body)?;
+        check_pose(1, &b.world_from_body)?;
+        Ok([a, b].map(|body| Self::new(body.shape, body.world_from_body.inverse())))
     }
 
     /// A box of the frame that holds the shape.
@@ -175,9 +201,10 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
-    /// `g` and its gradient, at a point of the frame and in it.
+    /// `g` [m] and its gradient at a point [m].
+    #[must_use]
     #[inline]
-    pub(crate) fn slope(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
+    pub fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let local = self.local(p);
         let (f, gradient) = self.shape.distance_gradient(local);
         self.slope_of(local, f, gradient)
@@ -237,7 +264,7 @@ mod tests {
             let axis = Vector([1.0, turn - 0.3, 0.5 - turn]);
             let rotation = Rotation::from_axis_angle(axis, 7.0 * turn).unwrap();
             let pose = Pose::new(rotation, Vector([0.3 - turn, 0.2, turn * turn]));
-            let body = Body::new(&bar, pose);
+            let body = DistanceBound::new(&bar, pose);
             let grown = 0.02 * turn;
             let tight = body.tightened(&aabb, grown);
             let own = bar.promise().bounds.unwrap().aabb.grown(grown);

@@ -6,9 +6,9 @@
 //! al. (2025).
 
 use palpate_field::{Point, Shape, Vector};
+use palpate_query::Element;
 
-use super::{Descent, least_vertex, support};
-use crate::element::Element;
+use crate::{Descent, least_vertex, support};
 
 /// 1/φ: what is left of a bracket after a section, so that one of its two points is
 /// used again.
@@ -27,7 +27,7 @@ const LEFT: f64 = 0.618_033_988_749_894_9;
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::{Ball, HalfSpace}};
-/// use palpate_query::local::GoldenSection;
+/// use palpate_local::GoldenSection;
 /// use palpate_query::{Element, Limits, Workspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -69,7 +69,7 @@ impl GoldenSection {
         let (start, mut descent) = least_vertex(shape, element);
         for k in 0..self.steps {
             let p = descent.best;
-            let mut towards = element.vertices[(start + 1) % N];
+            let mut towards = element.vertices()[(start + 1) % N];
             if N > 2 || k > 0 {
                 let (_, gradient) = shape.distance_gradient(p);
                 descent.evaluations += 2;
@@ -77,7 +77,7 @@ impl GoldenSection {
                 if drop <= self.tolerance * element.farthest(p) {
                     break;
                 }
-                towards = element.vertices[vertex];
+                towards = element.vertices()[vertex];
             }
             descent.steps += 1;
             let (lowest, value) = self.line(shape, p, towards - p);

@@ -5,9 +5,9 @@
 //! a mesh in a signed distance field.
 
 use palpate_field::Shape;
+use palpate_query::Element;
 
-use super::{Descent, least_vertex, support};
-use crate::element::Element;
+use crate::{Descent, least_vertex, support};
 
 /// Goes from the lowest vertex `2/(k + 2)` of the way to the vertex that lies farthest
 /// against the gradient, in step k.
@@ -20,7 +20,7 @@ use crate::element::Element;
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::local::FrankWolfe;
+/// use palpate_local::FrankWolfe;
 /// use palpate_query::{Element, Limits, Workspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -72,7 +72,7 @@ impl FrankWolfe {
             }
             descent.steps += 1;
             let share = 2.0 / (f64::from(k) + 2.0);
-            p += (element.vertices[vertex] - p) * share;
+            p += (element.vertices()[vertex] - p) * share;
         }
         descent.visit(p, shape.distance(p));
         descent.evaluations += 1;
