@@ -157,11 +157,11 @@ impl<const D: usize> fmt::Display for Promise<D> {
     /// use palpate_field::Shape;
     ///
     /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let row = Shape::circle(0.5)? | Shape::circle(0.5)?.translated([1.5, 0.0])?;
+    /// let wheel = Shape::circle(0.5)? | Shape::rectangle([2.0, 0.5])?;
     /// assert_eq!(
-    ///     row.promise().to_string(),
+    ///     wheel.promise().to_string(),
     ///     "exact outside, a bound inside, Lipschitz constant 1, \
-    ///      within [-0.5, -0.5] to [2.0, 0.5] m",
+    ///      within [-1.0, -0.5] to [1.0, 0.5] m",
     /// );
     /// # Ok(())
     /// # }

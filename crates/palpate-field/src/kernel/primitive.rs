@@ -236,14 +236,28 @@ pub(crate) fn check_count(
     })
 }
 
+/// A vector of `$dimension` numbers. Written out, since documentation shows the tokens.
+macro_rules! vector_type {
+    (2) => { $crate::vector::Vector<f64, 2> };
+    (3) => { $crate::vector::Vector<f64, 3> };
+    ($dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
+}
+
+/// A shape of `$dimension` dimensions. Written out, since documentation shows the tokens.
+macro_rules! shape_type {
+    (2) => { $crate::shape::Shape<2> };
+    (3) => { $crate::shape::Shape<3> };
+    ($dimension:tt) => { $crate::shape::Shape<$dimension> };
+}
+
 /// The type of a parameter, as its accessor gives it: of its kind, in `$dimension`
 /// dimensions.
 macro_rules! parameter_type {
     (Count, $dimension:tt) => { u32 };
-    (Vector, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
-    (Direction, $dimension:tt) => { $crate::vector::Vector<f64, $dimension> };
-    (Points, $dimension:tt) => { &[$crate::vector::Point<$dimension>] };
-    (Rings, $dimension:tt) => { &[Vec<$crate::vector::Point<$dimension>>] };
+    (Vector, $dimension:tt) => { $crate::kernel::primitive::vector_type!($dimension) };
+    (Direction, $dimension:tt) => { $crate::kernel::primitive::vector_type!($dimension) };
+    (Points, $dimension:tt) => { &[$crate::kernel::primitive::vector_type!($dimension)] };
+    (Rings, $dimension:tt) => { &[Vec<$crate::kernel::primitive::vector_type!($dimension)>] };
     ($number:ident, $dimension:tt) => { f64 };
 }
 
@@ -283,13 +297,15 @@ macro_rules! parameter_value {
 /// The type that a constructor of shapes takes for a parameter.
 macro_rules! accepted_type {
     (Count, $dimension:tt) => { u32 };
-    (Vector, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
-    (Direction, $dimension:tt) => { impl Into<$crate::vector::Vector<f64, $dimension>> };
+    (Vector, $dimension:tt) => { impl Into<$crate::kernel::primitive::vector_type!($dimension)> };
+    (Direction, $dimension:tt) => { impl Into<$crate::kernel::primitive::vector_type!($dimension)> };
     (Points, $dimension:tt) => {
-        impl IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>
+        impl IntoIterator<Item: Into<$crate::kernel::primitive::vector_type!($dimension)>>
     };
     (Rings, $dimension:tt) => {
-        impl IntoIterator<Item: IntoIterator<Item: Into<$crate::vector::Point<$dimension>>>>
+        impl IntoIterator<
+            Item: IntoIterator<Item: Into<$crate::kernel::primitive::vector_type!($dimension)>>,
+        >
     };
     ($number:ident, $dimension:tt) => { f64 };
 }
@@ -353,7 +369,7 @@ macro_rules! primitive {
     ) => {
         primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
             { $($parameter: $kind = $what $(=> $given)?),* });
-        primitive!(@declare $dimension, $kernel $(<$argument>)?, $name, $about, $model,
+        primitive!(@declare $dimension, $kernel, $kernel $(<$argument>)?, $name, $about, $model,
             { $($parameter: $kind = $what),* }, ($($example),*));
     };
     (@accessors [D] any, $kernel:ty, $parameters:tt) => {
@@ -363,7 +379,7 @@ macro_rules! primitive {
         // Numbers alone: a kernel that is the same in any dimension has no vector.
         primitive!(@methods [], 0, $kernel, $parameters);
     };
-    (@accessors [$($argument:tt)?] $dimension:literal, $kernel:ty, $parameters:tt) => {
+    (@accessors [$($argument:tt)?] $dimension:tt, $kernel:ty, $parameters:tt) => {
         primitive!(@methods [], $dimension, $kernel, $parameters);
     };
     (
@@ -389,24 +405,24 @@ macro_rules! primitive {
             )*
         }
     };
-    (@declare any, $kernel:ty, $($rest:tt)*) => {
+    (@declare any, $type:ident, $kernel:ty, $($rest:tt)*) => {
         primitive!(@primitive [const D: usize], D, $kernel, $($rest)*);
-        primitive!(@constructor [const D: usize], D, $kernel, $($rest)*);
+        primitive!(@constructor [const D: usize], D, $type, $($rest)*);
     };
-    (@declare $dimension:literal, $kernel:ty, $($rest:tt)*) => {
+    (@declare $dimension:tt, $type:ident, $kernel:ty, $($rest:tt)*) => {
         primitive!(@primitive [], $dimension, $kernel, $($rest)*);
-        primitive!(@constructor [], $dimension, $kernel, $($rest)*);
+        primitive!(@constructor [], $dimension, $type, $($rest)*);
     };
     (
-        @constructor [$($generics:tt)*], $dimension:tt, $kernel:ty,
+        @constructor [$($generics:tt)*], $dimension:tt, $type:ident,
         $name:ident, $about:literal, $model:ident,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         $example:tt
     ) => {
-        impl<$($generics)*> $crate::shape::Shape<$dimension> {
+        impl<$($generics)*> $crate::kernel::primitive::shape_type!($dimension) {
             #[doc = concat!(
-                $about, "\n\nThe constructor of [`kernel::", stringify!($kernel),
-                "`](struct@", stringify!($kernel),
+                $about, "\n\nThe constructor of [`kernel::", stringify!($type),
+                "`](struct@", stringify!($type),
                 "), which has the formula and an example. Parameters:\n\n",
             )]
             $(
@@ -485,4 +501,5 @@ macro_rules! primitive {
 
 pub(crate) use {
     accepted, accepted_type, parameter_type, parameter_unit, parameter_value, primitive,
+    shape_type, vector_type,
 };

@@ -54,6 +54,9 @@ pub struct Shape<const D: usize> {
 
 impl<const D: usize> Shape<D> {
     /// A closed formula as a shape.
+    ///
+    /// Its node is a primitive with the arguments of the kernel, or opaque if the kernel is
+    /// not of this crate.
     pub fn from_kernel(kernel: impl Kernel<D>) -> Self {
         let primitive = Primitive::of_kernel(&kernel);
         let kind = std::any::type_name_of_val(&kernel);

@@ -32,11 +32,11 @@ impl<const D: usize> Shape<D> {
     /// use palpate_field::{Shape, Vector};
     ///
     /// # fn main() -> Result<(), palpate_field::ShapeError> {
-    /// let points = [[0.0, 2.0], [3.0, 4.0]].map(Vector);
+    /// let points = [[0.0, 2.0], [-5.0, 0.0]].map(Vector);
     /// let (mut distances, mut gradients) = ([0.0; 2], [Vector::ZERO; 2]);
     /// Shape::circle(1.0)?.distances_gradients(&points, &mut distances, &mut gradients);
     /// assert_eq!(distances, [1.0, 4.0]);
-    /// assert_eq!(gradients, [Vector([0.0, 1.0]), Vector([0.6, 0.8])]);
+    /// assert_eq!(gradients, [Vector([0.0, 1.0]), Vector([-1.0, 0.0])]);
     /// # Ok(())
     /// # }
     /// ```
