@@ -8,14 +8,16 @@
 
 mod bars;
 mod collide;
+mod compare;
 mod fields;
 mod haptics;
 mod peers;
 mod random;
+mod reference;
 mod rounds;
 mod scenes;
-mod yardstick;
 
+use std::error::Error;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -75,6 +77,8 @@ enum Suite {
         #[arg(long)]
         json: bool,
     },
+    /// A suite of this program beside that of another revision; status 1 if a key got slower.
+    Compare(compare::Comparison),
     /// Ticks of the servo.
     Haptics {
         #[command(flatten)]
@@ -87,8 +91,7 @@ enum Suite {
 
 #[derive(Clone, Copy, Debug, Args)]
 struct Runs {
-    /// How often the suite runs. Of each time the least counts: on a machine with busy
-    /// neighbours more runs find quieter minutes.
+    /// How often the suite runs; of each row the median counts.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     runs: u32,
 }
@@ -99,23 +102,27 @@ fn main() -> ExitCode {
         eprintln!("palpate-bench: {error}");
         return ExitCode::FAILURE;
     }
-    let (measured, bars, is_part, json) = match suite {
-        Suite::Fields { json } => (fields::measure(), bars::FIELDS, false, json),
-        Suite::Collide { json, only, runs: Runs { runs } } => {
-            (collide::measure(only.as_deref(), runs), bars::COLLIDE, only.is_some(), json)
-        }
-        Suite::Haptics { json, runs: Runs { runs } } => {
-            (haptics::measure(runs), bars::HAPTICS, false, json)
-        }
-    };
-    match measured {
-        Ok(rows) => {
-            bars::print(&rows, bars, is_part, json);
-            ExitCode::SUCCESS
-        }
+    match measure(suite) {
+        Ok(status) => status,
         Err(error) => {
             eprintln!("palpate-bench: {error}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Measures what is asked, and prints it.
+fn measure(suite: Suite) -> Result<ExitCode, Box<dyn Error>> {
+    let (rows, bars, is_part, json) = match suite {
+        Suite::Fields { json } => (fields::measure()?, bars::FIELDS, false, json),
+        Suite::Collide { json, only, runs: Runs { runs } } => {
+            (collide::measure(only.as_deref(), runs)?, bars::COLLIDE, only.is_some(), json)
+        }
+        Suite::Haptics { json, runs: Runs { runs } } => {
+            (haptics::measure(runs)?, bars::HAPTICS, false, json)
+        }
+        Suite::Compare(comparison) => return comparison.run(),
+    };
+    bars::print(&rows, bars, is_part, json);
+    Ok(ExitCode::SUCCESS)
 }

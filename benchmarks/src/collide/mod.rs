@@ -19,7 +19,8 @@ use palpate::field::{Rotation, ShapeError, Vector};
 
 use crate::fields::Rows;
 use crate::random::Random;
-use crate::yardstick::Yardstick;
+use crate::reference::Reference;
+use crate::rounds;
 
 /// What adds rows.
 type Part = fn(&mut TimedRows) -> Result<(), Box<dyn Error>>;
@@ -40,28 +41,30 @@ pub(crate) fn parts() -> impl Iterator<Item = &'static str> {
     PARTS.iter().map(|(name, _)| *name)
 }
 
-/// All rows of the suite, or those of one part. It runs several times; each question counts as
-/// fast as it was in its fastest run.
+/// All rows of the suite, or those of one part: medians of so many runs.
 pub(crate) fn measure(only: Option<&str>, runs: u32) -> Result<Rows, Box<dyn Error>> {
-    let mut rows = TimedRows::default();
-    let mut yardstick = Yardstick::new()?;
+    let reference = Reference::new()?;
+    let mut all = Vec::new();
     for _ in 0..runs {
-        for (name, part) in
-            PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name))
-        {
+        let parts = PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name));
+        for (name, part) in parts {
             eprintln!("measuring {name} …");
-            part(&mut rows)?;
-            yardstick.measure(&mut rows.rows);
+            all.push(reference.beside(|rows| {
+                let mut timed = TimedRows::default();
+                part(&mut timed)?;
+                rows.extend(timed.finished());
+                Ok(())
+            })?);
         }
     }
-    Ok(rows.finished())
+    Ok(rounds::medians(all))
 }
 
 /// Rows, and the times that some of them are made of.
 #[derive(Default)]
 pub(crate) struct TimedRows {
     rows: Rows,
-    /// Of each key, the time of each question in its fastest run [ns].
+    /// Of each key, the time of each question [ns].
     times: BTreeMap<String, Vec<f64>>,
 }
 
@@ -70,16 +73,9 @@ impl TimedRows {
         self.rows.insert(key, number);
     }
 
-    /// Adds a run of all questions of a key: the same work in the same order in every run.
+    /// Adds the times of all questions of a key [ns].
     fn add_times(&mut self, key: &str, times: Vec<f64>) {
-        match self.times.get_mut(key) {
-            None => drop(self.times.insert(key.into(), times)),
-            Some(fastest) => {
-                for (fastest, time) in fastest.iter_mut().zip(times) {
-                    *fastest = fastest.min(time);
-                }
-            }
-        }
+        self.times.insert(key.into(), times);
     }
 
     /// All rows: of times, the mean, the median and the extremes.

@@ -13,13 +13,13 @@ use std::collections::BTreeMap;
 use std::error::Error;
 
 use crate::peers::{Body, Tape, formula};
+use crate::reference::{self, Reference};
 use crate::rounds::{self, Subject};
 use crate::scenes::{self, Work};
 use fidget::jit::JitFunction;
 use fidget::vm::VmFunction;
 use ours::Ours;
-use points::Points;
-pub(crate) use theirs::NOTHING;
+pub(crate) use points::Points;
 
 /// Keys and numbers.
 pub(crate) type Rows = BTreeMap<String, f64>;
@@ -27,24 +27,30 @@ pub(crate) type Rows = BTreeMap<String, f64>;
 /// All rows of the suite.
 pub(crate) fn measure() -> Result<Rows, Box<dyn Error>> {
     let mut rows = Rows::new();
+    let reference = Reference::new()?;
     for work in scenes::spatial()? {
         eprintln!("measuring {} …", work.name);
-        measure_work(&work, &mut rows)?;
+        measure_work(&work, &reference, &mut rows)?;
         if ["S2", "S3"].contains(&work.name) {
-            operators::beside_child(&work, &mut rows)?;
+            operators::beside_child(&work, &reference, &mut rows)?;
         }
     }
     let wrench = scenes::wrench()?;
     eprintln!("measuring {} …", wrench.name);
-    measure_work(&wrench, &mut rows)?;
+    measure_work(&wrench, &reference, &mut rows)?;
     eprintln!("measuring a thousand …");
-    operators::thousand(&mut rows)?;
-    measure_build(&mut rows)?;
+    operators::thousand(&reference, &mut rows)?;
+    measure_build(&reference, &mut rows)?;
     derive_ratios(&mut rows);
+    rows.insert(reference::KEY.into(), reference.time());
     Ok(rows)
 }
 
-fn measure_work<const D: usize>(work: &Work<D>, rows: &mut Rows) -> Result<(), Box<dyn Error>>
+fn measure_work<const D: usize>(
+    work: &Work<D>,
+    reference: &Reference,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>>
 where
     Points<D>: Ours<D>,
 {
@@ -64,14 +70,12 @@ where
     if let Some(body) = &body {
         theirs::parry(work.name, &points, body, &mut subjects);
     }
-    for (key, time) in rounds::measure(&mut subjects) {
-        rows.insert(format!("{key}.ns"), time);
-    }
+    rounds::measure(&mut subjects, reference).iter().for_each(|row| row.insert(rows));
     Ok(())
 }
 
 /// Building S4 from its data.
-fn measure_build(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn measure_build(reference: &Reference, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     for work in scenes::spatial()? {
         if let Ok(members) = scenes::members(&work.scene) {
             scenes::build(&members)?;
@@ -79,9 +83,7 @@ fn measure_build(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
             let mut subjects = [Subject::new(key, 1, || {
                 scenes::build(&members).map_or(f64::NAN, |shape| shape.depth() as f64)
             })];
-            for (key, time) in rounds::measure(&mut subjects) {
-                rows.insert(format!("{key}.ns"), time);
-            }
+            rounds::measure(&mut subjects, reference).iter().for_each(|row| row.insert(rows));
         }
     }
     Ok(())

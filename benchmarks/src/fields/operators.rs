@@ -12,6 +12,7 @@ use palpate::field::{BLOCK, Shape, ShapeError};
 use super::Rows;
 use super::ours::{Ours, blocks};
 use super::points::{Points, SINGLE};
+use crate::reference::Reference;
 use crate::rounds::{self, Subject};
 use crate::scenes::{self, Work};
 
@@ -22,20 +23,22 @@ const RATE: f64 = 1.0;
 const HEIGHT: f64 = 0.02;
 
 /// Adds the rows of a thousand placed primitives, asked in every way.
-pub(super) fn thousand(rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn thousand(reference: &Reference, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let work = scenes::thousand()?;
     let points = Points::new(work.half);
     let mut subjects = Vec::new();
     points.ours(work.name, &work.shape, &mut subjects);
-    for (key, time) in rounds::measure(&mut subjects) {
-        rows.insert(format!("{key}.ns"), time);
-    }
+    rounds::measure(&mut subjects, reference).iter().for_each(|row| row.insert(rows));
     Ok(())
 }
 
 /// Adds the rows of a work twisted and displaced, and how they compare with the work
 /// itself.
-pub(super) fn beside_child(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+pub(super) fn beside_child(
+    work: &Work<3>,
+    reference: &Reference,
+    rows: &mut Rows,
+) -> Result<(), Box<dyn Error>> {
     let child = &work.shape;
     let shapes = [
         ("child", child.clone()),
@@ -50,12 +53,12 @@ pub(super) fn beside_child(work: &Work<3>, rows: &mut Rows) -> Result<(), Box<dy
         blocks::<f32, 3, BLOCK>(&name, ("", "1024"), (shape, scattered), &mut subjects);
         blocks::<f64, 3, BLOCK>(&name, ("_f64", "1024"), (shape, scattered), &mut subjects);
     }
-    let times = rounds::measure(&mut subjects);
+    let times = rounds::measure(&mut subjects, reference);
     let (of_child, of_others) = times.split_at(times.len() / shapes.len());
-    for (k, (key, time)) in of_others.iter().enumerate() {
-        let (_, child) = of_child[k % of_child.len()];
-        rows.insert(format!("{key}.ns"), *time);
-        rows.insert(format!("{key}.over_child"), time / child);
+    for (k, other) in of_others.iter().enumerate() {
+        other.insert(rows);
+        let child = &of_child[k % of_child.len()];
+        rows.insert(format!("{}.over_child", other.key), other.ns / child.ns);
     }
     Ok(())
 }

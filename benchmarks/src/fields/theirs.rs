@@ -22,7 +22,7 @@ pub(crate) const PEERS: &[&str] = &["fidget_jit", "fidget_vm", "parry"];
 const TOLERANCE: f32 = 1e-5;
 
 /// As in `ours`: too small to move a point.
-pub(crate) const NOTHING: f32 = 1e-30;
+const NOTHING: f32 = 1e-30;
 
 /// Checks that a peer computes the same distances.
 pub(crate) fn agree<F: MathFunction, const D: usize>(

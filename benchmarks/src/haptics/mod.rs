@@ -22,8 +22,8 @@ use palpate::haptics::{
 };
 
 use crate::fields::Rows;
-use crate::scenes;
-use crate::yardstick::Yardstick;
+use crate::reference::Reference;
+use crate::{rounds, scenes};
 use times::Times;
 
 /// Ticks of a path: 20 s at 1 kHz.
@@ -44,65 +44,67 @@ const PROBE: f64 = 0.002;
 /// How deep hands press [m].
 const DEPTH: f64 = 0.003;
 
-/// All rows of the suite, of the passes of so many runs.
+/// Work that is prepared, and measured again and again: it adds the rows of one run.
+type Case<'a> = Box<dyn FnMut(&mut Rows) -> Result<(), Box<dyn Error>> + 'a>;
+
+/// All rows of the suite: medians of so many runs.
 pub(crate) fn measure(runs: u32) -> Result<Rows, Box<dyn Error>> {
-    let mut rows = Rows::new();
-    let passes = runs.saturating_mul(PASSES);
+    let reference = Reference::new()?;
     let sphere = Shape::from_kernel(Ball::new(RADIUS)?);
     let s3 = scenes::s3()?.shape.scaled(RADIUS)?;
     let thousand = scenes::thousand()?.shape;
-    let mut yardstick = Yardstick::new()?;
-    for (key, shape, points) in [
-        ("tick.sphere", &sphere, 1),
-        ("tick.S3", &s3, 1),
-        ("tick.union_1000", &thousand, 1),
-        ("tick.ten_fingers_S3", &s3, 10),
-        ("tick.24_points_union_1000", &thousand, 24),
-    ] {
-        ticks(key, (shape, points), passes, &mut rows)?;
-        yardstick.measure(&mut rows);
+    let mut cases = vec![
+        ticks("tick.sphere", &sphere, 1),
+        ticks("tick.S3", &s3, 1),
+        ticks("tick.union_1000", &thousand, 1),
+        ticks("tick.ten_fingers_S3", &s3, 10),
+        ticks("tick.24_points_union_1000", &thousand, 24),
+        tool::ticks("tick.tool_1000_points_S3", &s3)?,
+    ];
+    let mut all = Vec::new();
+    for run in 1..=runs {
+        eprintln!("measuring run {run} of {runs} …");
+        for case in &mut cases {
+            all.push(reference.beside(&mut *case)?);
+        }
     }
-    tool::ticks("tick.tool_1000_points_S3", &s3, passes, &mut rows)?;
-    Ok(rows)
+    Ok(rounds::medians(all))
 }
 
-/// Adds what a tick costs with so many contact points.
-fn ticks(
-    key: &str,
-    (shape, points): (&Shape<3>, usize),
-    passes: u32,
-    rows: &mut Rows,
-) -> Result<(), Box<dyn Error>> {
+/// What a tick costs with so many contact points.
+fn ticks<'a>(key: &'a str, shape: &'a Shape<3>, points: usize) -> Case<'a> {
     let paths: Vec<Vec<Point<3>>> =
         (0..points).map(|hand| orbit::around(shape, hand)).collect();
     let states: Vec<Vec<PointState<3>>> = (0..LANDING + TICKS)
         .map(|tick| paths.iter().map(|path| state(path, tick)).collect())
         .collect();
-    let mut times = Times::new();
-    let (mut evaluations, mut contacts, mut most) = (0_u64, 0_u64, 0);
-    // Where a device that was just read leaves its states.
-    let mut read = vec![PointState::at_rest(Vector::ZERO); points];
-    for pass in 0..passes {
-        let mut servo = servo(shape, points)?;
-        for (tick, states) in states.iter().enumerate() {
-            read.copy_from_slice(states);
-            let tick = tick.checked_sub(LANDING);
-            let touches = times.time(tick, || black_box(servo.step(black_box(&read))));
-            if pass == 0 && tick.is_some() {
-                for touch in touches {
-                    evaluations += u64::from(touch.evaluations);
-                    contacts += u64::from(touch.contact);
-                    most = most.max(touch.evaluations);
+    Box::new(move |rows| {
+        let mut times = Times::new();
+        let (mut evaluations, mut contacts, mut most) = (0_u64, 0_u64, 0);
+        // Where a device that was just read leaves its states.
+        let mut read = vec![PointState::at_rest(Vector::ZERO); points];
+        for pass in 0..PASSES {
+            let mut servo = servo(shape, points)?;
+            for (tick, states) in states.iter().enumerate() {
+                read.copy_from_slice(states);
+                let tick = tick.checked_sub(LANDING);
+                let touches = times.time(tick, || black_box(servo.step(black_box(&read))));
+                if pass == 0 && tick.is_some() {
+                    for touch in touches {
+                        evaluations += u64::from(touch.evaluations);
+                        contacts += u64::from(touch.contact);
+                        most = most.max(touch.evaluations);
+                    }
                 }
             }
         }
-    }
-    let visits = (TICKS * points) as f64;
-    times.insert(key, rows);
-    rows.insert(format!("{key}.evaluations"), evaluations as f64 / visits);
-    rows.insert(format!("{key}.most_evaluations"), f64::from(most));
-    rows.insert(format!("{key}.contact"), contacts as f64 / visits);
-    Ok(())
+        let visits = (TICKS * points) as f64;
+        times.insert(key, rows);
+        rows.insert(format!("{key}.evaluations"), evaluations as f64 / visits);
+        rows.insert(format!("{key}.most_evaluations"), f64::from(most));
+        rows.insert(format!("{key}.contact"), contacts as f64 / visits);
+        Ok(())
+    })
 }
 
 /// Where a hand is in a tick, and how fast.

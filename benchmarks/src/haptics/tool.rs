@@ -13,8 +13,7 @@ use palpate::field::{Point, Pose, Rotation, Shape, Vector, kernel::RoundedCuboid
 use palpate::haptics::{Bodies, Body, Material, Shell, Surface, Tool, ToolOptions, ToolState};
 
 use super::times::Times;
-use super::{DEPTH, LANDING, TICKS, orbit};
-use crate::fields::Rows;
+use super::{Case, DEPTH, LANDING, PASSES, TICKS, orbit};
 
 /// Points of the tool.
 const POINTS: usize = 1000;
@@ -25,13 +24,8 @@ const BALLS: f64 = 5e-4;
 /// How fast the tool turns about each axis [rad a tick].
 const TURNS: [f64; 3] = [2.3e-4, 3.1e-4, 1.7e-4];
 
-/// Adds what a tick of a tool costs that touches `shape`.
-pub(super) fn ticks(
-    key: &str,
-    shape: &Shape<3>,
-    passes: u32,
-    rows: &mut Rows,
-) -> Result<(), Box<dyn Error>> {
+/// What a tick of a tool costs that touches `shape`.
+pub(super) fn ticks<'a>(key: &'a str, shape: &'a Shape<3>) -> Result<Case<'a>, Box<dyn Error>> {
     let block = RoundedCuboid::new(Vector([0.04, 0.024, 0.03]), 0.004)?;
     let shell = Shell::from_field(&Shape::from_kernel(block), POINTS, BALLS)?;
     let path = orbit::around(shape, 0);
@@ -39,30 +33,32 @@ pub(super) fn ticks(
     for (tick, place) in path.iter().enumerate() {
         states.push(state(&shell, shape, (tick, *place))?);
     }
-    let mut times = Times::new();
-    let (mut evaluations, mut contacts) = (0_u64, 0_u64);
-    let (mut touching, mut degraded) = (0_u64, 0_u64);
-    for pass in 0..passes {
-        let mut bodies = bodies(shape)?;
-        let mut tool = Tool::new(shell.clone(), options())?;
-        for (tick, state) in states.iter().enumerate() {
-            let tick = tick.checked_sub(LANDING);
-            let touch =
-                times.time(tick, || black_box(tool.step(&mut bodies, black_box(state))));
-            if pass == 0 && tick.is_some() {
-                evaluations += u64::from(touch.evaluations);
-                contacts += touch.contacts.len() as u64;
-                touching += u64::from(touch.contact);
-                degraded += u64::from(touch.is_degraded);
+    Ok(Box::new(move |rows| {
+        let mut times = Times::new();
+        let (mut evaluations, mut contacts) = (0_u64, 0_u64);
+        let (mut touching, mut degraded) = (0_u64, 0_u64);
+        for pass in 0..PASSES {
+            let mut bodies = bodies(shape)?;
+            let mut tool = Tool::new(shell.clone(), options())?;
+            for (tick, state) in states.iter().enumerate() {
+                let tick = tick.checked_sub(LANDING);
+                let touch =
+                    times.time(tick, || black_box(tool.step(&mut bodies, black_box(state))));
+                if pass == 0 && tick.is_some() {
+                    evaluations += u64::from(touch.evaluations);
+                    contacts += touch.contacts.len() as u64;
+                    touching += u64::from(touch.contact);
+                    degraded += u64::from(touch.is_degraded);
+                }
             }
         }
-    }
-    times.insert(key, rows);
-    rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
-    rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
-    rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);
-    rows.insert(format!("{key}.degraded"), degraded as f64 / TICKS as f64);
-    Ok(())
+        times.insert(key, rows);
+        rows.insert(format!("{key}.evaluations"), evaluations as f64 / TICKS as f64);
+        rows.insert(format!("{key}.contacts"), contacts as f64 / TICKS as f64);
+        rows.insert(format!("{key}.touching"), touching as f64 / TICKS as f64);
+        rows.insert(format!("{key}.degraded"), degraded as f64 / TICKS as f64);
+        Ok(())
+    }))
 }
 
 /// The hand in a tick: turned a little further, and so high above the path that the deepest

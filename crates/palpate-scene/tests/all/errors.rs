@@ -4,11 +4,9 @@
 //! Every error names its path, its line and what is wrong, and the schema
 //! agrees where it can.
 
-mod refusal;
-
+use crate::refusal::Schema::{Accepts, Refuses};
+use crate::refusal::check_all;
 use palpate_scene::{Dimension, Node, Scene, WrittenBody};
-use refusal::Schema::{Accepts, Refuses};
-use refusal::check_all;
 
 #[test]
 fn a_negative_radius_is_found_in_its_line() {

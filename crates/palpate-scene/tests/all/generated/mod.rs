@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Scenes of `scenes/` that are written by the modules here, and laws on them.
-#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 mod gears;
 mod sampler;

@@ -3,10 +3,8 @@
 
 //! The fuzz target's check, over its corpus and seeded mutations of it.
 
-mod common;
-
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
-#[path = "../../../fuzz/scene_text.rs"]
+#[path = "../../../../fuzz/scene_text.rs"]
 mod scene_text;
 
 use palpate_scene::schema;
@@ -99,8 +97,8 @@ fn mutated(text: &str, numbers: &mut Numbers) -> String {
 
 #[test]
 fn no_text_makes_reading_panic_or_lie() {
-    let mut corpus = common::files("fuzz/corpus/scene");
-    corpus.extend(common::files("scenes"));
+    let mut corpus = crate::common::files("fuzz/corpus/scene");
+    corpus.extend(crate::common::files("scenes"));
     let validator = jsonschema::validator_for(&schema()).unwrap();
     let mut read = 0;
     let mut check = |text: &str| {

@@ -4,10 +4,8 @@
 //! Errors in bodies, tools, motions and views name their path, their line and what
 //! is wrong.
 
-mod refusal;
-
-use refusal::Schema::{Accepts, Refuses};
-use refusal::check_all;
+use crate::refusal::Schema::{Accepts, Refuses};
+use crate::refusal::check_all;
 
 #[test]
 fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {

@@ -3,8 +3,6 @@
 
 //! The committed schema is the generated one, and takes every scene.
 
-mod common;
-
 use palpate_scene::{schema, schema_text};
 
 /// Set to write the schema instead of comparing it.
@@ -12,7 +10,8 @@ const UPDATE: &str = "PALPATE_UPDATE_SCHEMA";
 
 #[test]
 fn the_committed_schema_is_the_generated_one() {
-    let path = common::repository().join("crates/palpate-scene/schema/scene.schema.json");
+    let path =
+        crate::common::repository().join("crates/palpate-scene/schema/scene.schema.json");
     if std::env::var_os(UPDATE).is_some() {
         std::fs::write(&path, schema_text()).unwrap();
     }
@@ -27,7 +26,7 @@ fn the_committed_schema_is_the_generated_one() {
 fn the_schema_is_a_schema_and_takes_every_scene() {
     assert!(jsonschema::meta::is_valid(&schema()));
     let validator = jsonschema::validator_for(&schema()).unwrap();
-    for (name, text) in common::files("scenes") {
+    for (name, text) in crate::common::files("scenes") {
         if let Err(error) = validator.validate(&serde_json::from_str(&text).unwrap()) {
             panic!("{name}: {}: {error}", error.instance_path());
         }

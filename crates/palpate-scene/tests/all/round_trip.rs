@@ -3,26 +3,26 @@
 
 //! Writing and reading back is the identity.
 
-mod common;
-mod random;
-
+use crate::random::{Generator, Known, known};
 use arbtest::arbtest;
 use palpate_field::Shape;
 use palpate_field::kernel::Entry;
 use palpate_scene::{AnyScene, Dimension, Scene, WrittenBody, schema};
-use random::{Generator, Known, known};
 
 /// Set to write the scenes as they should be instead of comparing them.
 const UPDATE: &str = "PALPATE_UPDATE_SCENES";
 
 #[test]
 fn every_scene_of_the_repository_is_written_as_it_is() {
-    for (name, text) in common::files("scenes") {
+    for (name, text) in crate::common::files("scenes") {
         let scene = Scene::from_json(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(scene.description.is_some(), "{name} does not say what it shows");
         if std::env::var_os(UPDATE).is_some() {
-            std::fs::write(common::repository().join("scenes").join(name), scene.to_json())
-                .unwrap();
+            std::fs::write(
+                crate::common::repository().join("scenes").join(name),
+                scene.to_json(),
+            )
+            .unwrap();
             continue;
         }
         assert!(
@@ -121,7 +121,7 @@ fn the_scenes_are_finite_everywhere_on_a_grid() {
         }
         assert!(inside > 10, "{name} has {inside} points inside");
     }
-    for (name, text) in common::files("scenes") {
+    for (name, text) in crate::common::files("scenes") {
         match Scene::from_json(&text).unwrap().build().unwrap() {
             AnyScene::Planar(world) => grid(&name, &world.whole),
             AnyScene::Spatial(world) => grid(&name, &world.whole),

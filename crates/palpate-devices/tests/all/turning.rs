@@ -3,7 +3,6 @@
 
 //! Simulated devices that turn: their motion and energies, and tools on them, stable as theory
 //! says.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use palpate_devices::{
     Device, DeviceProfile, Hand, PointState, SimulatedDevice, TurnState, TurningProfile,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! A virtual wall through the real servo: stable as theory says, and no further.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use palpate_devices::{
     Device, DeviceProfile, Hand, PointState, SimulatedDevice, profile_named,

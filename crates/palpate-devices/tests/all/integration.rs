@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! The simulated motion against a thousand tiny steps, and against closed forms; its energies.
-#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
-#![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
 use palpate_devices::{Device, DeviceProfile, Energies, Hand, PointState, SimulatedDevice};
 use palpate_devices::{HandPath, Interpolation};

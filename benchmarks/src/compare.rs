@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A suite of this program beside that of another revision, in turns on the same machine.
+//!
+//! The revision is built in a work tree of its own under `target/`. In each round both programs
+//! run the suite; of each time the ratio of this one over the other is taken within the round,
+//! and its median over all rounds counts. Times over the reference are compared where both
+//! revisions print them: they do not depend on how busy the machine is. The reference itself is
+//! a row, so that it cannot get slower unseen.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+use clap::{Args, ValueEnum};
+
+use crate::fields::Rows;
+use crate::reference;
+use crate::rounds::median;
+
+/// What is compared with what.
+#[derive(Debug, Args)]
+pub(crate) struct Comparison {
+    /// The revision to compare with, as git names it.
+    revision: String,
+    /// The suite.
+    suite: SuiteName,
+    /// Keys, or how they begin; all times if left out, but for the largest and those of peers.
+    keys: Vec<String>,
+    /// By how much a median may exceed one.
+    #[arg(long, default_value_t = 1.05)]
+    at_most: f64,
+    /// How often both programs run.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+    /// One part of the suite `collide` alone.
+    #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(crate::collide::parts()))]
+    only: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SuiteName {
+    Fields,
+    Collide,
+    Haptics,
+}
+
+/// A key and how this program stands to the other.
+#[derive(Debug, PartialEq)]
+struct Compared {
+    key: String,
+    /// Of the ratios of all rounds.
+    median: f64,
+    least: f64,
+    largest: f64,
+}
+
+impl Comparison {
+    /// Runs both programs in turns, and prints how they stand; fails if a key got slower.
+    pub(crate) fn run(&self) -> Result<ExitCode, Box<dyn Error>> {
+        if self.only.is_some() && self.suite != SuiteName::Collide {
+            return Err("--only is for collide".into());
+        }
+        let other = build(&self.revision)?;
+        let this = std::env::current_exe()?;
+        let mut rounds = Vec::new();
+        for round in 1..=self.rounds {
+            eprintln!("round {round} of {} …", self.rounds);
+            // The first of a round is not always the same.
+            rounds.push(if round % 2 == 0 {
+                let this = self.measure(&this)?;
+                (this, self.measure(&other)?)
+            } else {
+                let other = self.measure(&other)?;
+                (self.measure(&this)?, other)
+            });
+        }
+        let compared = compare(&rounds, &self.keys);
+        if compared.is_empty() {
+            return Err("both revisions print none of these keys".into());
+        }
+        let mut is_slower = false;
+        for Compared { key, median, least, largest } in &compared {
+            let verdict = if *median > self.at_most { "slower" } else { "" };
+            is_slower |= *median > self.at_most;
+            println!("{key:<60} {median:>7.3}  [{least:.3}, {largest:.3}]  {verdict}");
+        }
+        println!("{} keys, at most {}", compared.len(), self.at_most);
+        Ok(if is_slower { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    }
+
+    /// The rows that a program prints.
+    fn measure(&self, program: &Path) -> Result<Rows, Box<dyn Error>> {
+        let mut command = Command::new(program);
+        command.stderr(Stdio::null());
+        match self.suite {
+            SuiteName::Fields => command.arg("fields"),
+            SuiteName::Collide => command.args(["collide", "--runs", "1"]),
+            SuiteName::Haptics => command.args(["haptics", "--runs", "1"]),
+        };
+        if let Some(part) = &self.only {
+            command.args(["--only", part]);
+        }
+        let rows: BTreeMap<String, Option<f64>> =
+            serde_json::from_str(&printed(command.arg("--json"))?)?;
+        // What is not finite is null in JSON.
+        Ok(rows.into_iter().filter_map(|(key, number)| Some((key, number?))).collect())
+    }
+}
+
+/// How the first program of each round stands to the second, for each key that both print.
+fn compare(rounds: &[(Rows, Rows)], asked: &[String]) -> Vec<Compared> {
+    let Some((this, other)) = rounds.first() else { return Vec::new() };
+    let both = |key: &str| this.contains_key(key) && other.contains_key(key);
+    let is_asked = |key: &&String| match asked {
+        [] => is_ours(key),
+        _ => asked.iter().any(|asked| key.starts_with(asked.as_str())),
+    };
+    // Of a time that both divide by the reference, the ratio.
+    let is_best = |key: &&String| match reference::over(key) {
+        Some(over) => !both(&over),
+        None => key.ends_with(reference::OVER),
+    };
+    let keys = this.keys().filter(|key| both(key)).filter(is_asked).filter(is_best);
+    keys.map(|key| {
+        let ratios =
+            rounds.iter().filter_map(|(this, other)| Some(this.get(key)? / other.get(key)?));
+        let ratios: Vec<f64> = ratios.collect();
+        Compared {
+            key: key.clone(),
+            least: ratios.iter().copied().fold(f64::INFINITY, f64::min),
+            largest: ratios.iter().copied().fold(0.0, f64::max),
+            median: median(ratios),
+        }
+    })
+    .collect()
+}
+
+/// `true` for times of ours that mean something from one run to the next.
+fn is_ours(key: &str) -> bool {
+    let is_of_peer = ["fidget", "parry"].iter().any(|peer| key.contains(peer));
+    let is_extreme = [".max", ".clock"].iter().any(|stat| key.contains(stat));
+    !is_of_peer && !is_extreme
+}
+
+/// The program of a revision, built in a work tree under `target/`.
+fn build(revision: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize()?;
+    let git = |arguments: &[&str]| {
+        let mut command = Command::new("git");
+        command.current_dir(&root).args(arguments);
+        printed(&mut command)
+    };
+    let commit = git(&["rev-parse", "--verify", &format!("{revision}^{{commit}}")])?;
+    let commit = commit.trim();
+    let tree = root.join("target/compare").join(commit);
+    if !tree.join("Cargo.toml").exists() {
+        // Those whose folders were removed are forgotten first.
+        git(&["worktree", "prune"])?;
+        let place = tree.to_str().ok_or("the repository's path is not Unicode")?;
+        git(&["worktree", "add", "--detach", place, commit])?;
+    }
+    eprintln!("building {commit} …");
+    let target = tree.join("target");
+    let status = Command::new("cargo")
+        .args(["build", "--release", "--locked", "--quiet", "-p", "palpate-bench"])
+        .current_dir(&tree)
+        .env("CARGO_TARGET_DIR", &target)
+        .status()?;
+    if !status.success() {
+        return Err(format!("{commit} does not build").into());
+    }
+    let name = format!("palpate-bench{}", std::env::consts::EXE_SUFFIX);
+    Ok(target.join("release").join(name))
+}
+
+/// What a program prints on standard output.
+fn printed(command: &mut Command) -> Result<String, Box<dyn Error>> {
+    let output = command.output()?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("{command:?} failed: {said}").into());
+    }
+    Ok(String::from_utf8(output.stdout)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(rows: &[(&str, f64)]) -> Rows {
+        rows.iter().map(|(key, number)| ((*key).to_owned(), *number)).collect()
+    }
+
+    #[test]
+    fn ratios_are_taken_within_rounds() {
+        // The machine is three times as slow in the second round, for both.
+        let rounds = [
+            (rows(&[("a.ns", 2.0)]), rows(&[("a.ns", 4.0)])),
+            (rows(&[("a.ns", 6.0)]), rows(&[("a.ns", 12.0)])),
+            (rows(&[("a.ns", 5.0)]), rows(&[("a.ns", 4.0)])),
+        ];
+        let compared = compare(&rounds, &[]);
+        let expected = Compared { key: "a.ns".into(), median: 0.5, least: 0.5, largest: 1.25 };
+        assert_eq!(compared, [expected]);
+    }
+
+    #[test]
+    fn ratios_to_the_reference_are_compared_where_both_print_them() {
+        let this =
+            rows(&[("a.ns", 2.0), ("a.over_S3", 1.0), ("b.ns", 3.0), ("b.over_S3", 1.5)]);
+        let other = rows(&[("a.ns", 4.0), ("a.over_S3", 0.5), ("b.ns", 2.0)]);
+        let keys = |compared: &[Compared]| -> Vec<(String, f64)> {
+            compared.iter().map(|row| (row.key.clone(), row.median)).collect()
+        };
+        let compared = compare(&[(this, other)], &[]);
+        let expected = [("a.over_S3".to_owned(), 2.0), ("b.ns".to_owned(), 1.5)];
+        assert_eq!(keys(&compared), expected);
+    }
+
+    #[test]
+    fn keys_are_chosen_by_how_they_begin() {
+        let row = rows(&[
+            ("tick.S3.p50_ns", 1.0),
+            ("tick.S3.max_ns", 1.0),
+            ("tick.S3.evaluations", 1.0),
+            ("S3.distance.point.fidget_jit.ns", 1.0),
+            (reference::KEY, 1.0),
+        ]);
+        let rounds = [(row.clone(), row)];
+        let keys = |asked: &[&str]| -> Vec<String> {
+            let asked: Vec<_> = asked.iter().map(|key| (*key).to_owned()).collect();
+            compare(&rounds, &asked).into_iter().map(|row| row.key).collect()
+        };
+        assert_eq!(keys(&[]), [reference::KEY, "tick.S3.p50_ns"]);
+        assert_eq!(keys(&["tick"]), ["tick.S3.max_ns", "tick.S3.p50_ns"]);
+        assert_eq!(keys(&["nothing"]), [""; 0]);
+    }
+}
