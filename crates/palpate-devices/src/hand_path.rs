@@ -142,6 +142,17 @@ impl<const D: usize> HandPath<D> {
             }
         }
     }
+
+    /// The same path with every position mapped, as from the world to a device; smooth between
+    /// its samples.
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::SampleNotFinite`] if the map leads beyond any scene.
+    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, HapticsError> {
+        let positions = self.positions().iter().map(|point| map(*point)).collect();
+        Self::new(self.times().to_vec(), positions, Interpolation::Smooth)
+    }
 }
 
 /// The cubic from `from` over `way` with the derivatives `start` and `end` by the part `u` of

@@ -62,3 +62,8 @@ pub use palpate_query as query;
 pub use palpate_scene as scene;
 #[cfg(feature = "vibration")]
 pub use palpate_vibration as vibration;
+
+/// The examples of README.md, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -3,8 +3,8 @@
 
 //! What the hand holds, and where its workspace lies.
 
+use palpate::devices::HandPath;
 use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
-use palpate::devices::{HandPath, Interpolation};
 use palpate::haptics::{HapticsError, WorkspaceMap};
 use palpate::scene::BuiltScene;
 
@@ -34,7 +34,8 @@ pub(super) fn device<const D: usize>(
     (paths, turns): (Vec<HandPath<D>>, Option<HandPath<3>>),
     map: &WorkspaceMap<D>,
 ) -> Result<Box<dyn Device<D> + Send>, HapticsError> {
-    let paths = paths.iter().map(|path| at_device(path, map)).collect::<Result<Vec<_>, _>>()?;
+    let paths = paths.iter().map(|path| path.mapped(|point| map.point_to_device(point)));
+    let paths = paths.collect::<Result<Vec<_>, _>>()?;
     Ok(match choice {
         DeviceChoice::Recorded => Box::new(RecordedDevice::new(paths)?),
         DeviceChoice::Glove => Box::new(Glove::new(paths)?),
@@ -47,13 +48,4 @@ pub(super) fn device<const D: usize>(
             Box::new(SimulatedDevice::new((**profile).clone(), hands)?)
         }
     })
-}
-
-/// A path of the world in the coordinates of the device.
-fn at_device<const D: usize>(
-    path: &HandPath<D>,
-    map: &WorkspaceMap<D>,
-) -> Result<HandPath<D>, HapticsError> {
-    let positions = path.positions().iter().map(|point| map.point_to_device(*point)).collect();
-    HandPath::new(path.times().to_vec(), positions, Interpolation::Smooth)
 }

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
+//!
+//! All that palpate asks of a device is where its points are, what to do with the forces, and
+//! what it can bear. Here the transport is two numbers; yours would be a port.
+
+use palpate::devices::{DeviceLost, DeviceProfile, PointState};
+use palpate::prelude::*;
+
+/// A carriage that a motor draws around a circle of 48 mm in two seconds.
+struct Carriage {
+    profile: DeviceProfile,
+    /// What the coils get [V]: 0.5 V for each newton.
+    volts: [f64; 2],
+}
+
+impl Device<2> for Carriage {
+    fn points(&self) -> usize {
+        1
+    }
+
+    fn profile(&self) -> &DeviceProfile {
+        &self.profile
+    }
+
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+        let (sin, cos) = (std::f64::consts::PI * time).sin_cos();
+        let speed = 0.048 * std::f64::consts::PI;
+        for point in points {
+            point.position = Vector([0.048 * cos, 0.048 * sin]);
+            point.velocity = Vector([-speed * sin, speed * cos]);
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+        for force in forces {
+            self.volts = [0.5 * force[0], 0.5 * force[1]];
+        }
+        Ok(())
+    }
+}
+
+fn main() -> Result<(), Error> {
+    let profile = DeviceProfile {
+        max_force: 1.5,
+        max_force_rate: 3000.0,
+        mass: 0.1,
+        least_damping: 0.5,
+        ..DeviceProfile::unlimited("carriage")
+    };
+    let mut device = Carriage { profile, volts: [0.0; 2] };
+    let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
+    // Protected by what the profile says: no force beyond it reaches the hand.
+    let mut servo = Servo::for_device(disc, &device)?;
+    let report = servo.run(&mut device, Seconds(2.0))?;
+    println!("{} ticks, at most {:.2} N", report.ticks, report.largest_force);
+    Ok(())
+}

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A scene file, felt by a simulated hand in a servo thread; every tick goes to a CSV file.
+
+use std::io::Write as _;
+
+use palpate::devices::{Hand, SimulatedDevice, Tour, profile_named};
+use palpate::prelude::*;
+use palpate::scene::AnyScene;
+use palpate::servo_loop::{ServoThread, ThreadOptions};
+
+const SECONDS: f64 = 2.0;
+
+fn main() -> Result<(), Error> {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cup.json");
+    let AnyScene::Spatial(scene) = Scene::from_file(file)?.build()? else {
+        return Err(std::io::Error::other("the cup is in space").into());
+    };
+    let profile = profile_named("omega")?;
+    let map = scene.workspace_of(&profile, None)?;
+    let bounds = scene.bounds().unwrap_or_else(|| unreachable!("the cup has bounds"));
+    let tour = Tour::new(bounds, SECONDS)?.over(&scene.whole)?;
+    let hand = Hand::new(tour.mapped(|point| map.point_to_device(point))?);
+    let device = SimulatedDevice::new(profile, vec![hand])?;
+
+    let servo = scene.servo(&device)?;
+    let rows = Some(2000);
+    let options = ThreadOptions { duration: Some(SECONDS), rows, ..ThreadOptions::default() };
+    let ended = ServoThread::start(servo, Box::new(device), options)?.join();
+
+    let path = std::env::temp_dir().join("palpate_touch.csv");
+    let mut csv = std::io::BufWriter::new(std::fs::File::create(&path)?);
+    writeln!(csv, "time_s,x_m,y_m,z_m,force_N")?;
+    for row in ended.recorder.iter().flat_map(|recorder| recorder.rows()) {
+        let [x, y, z] = row.device.0;
+        writeln!(csv, "{},{x},{y},{z},{}", row.time_s, row.force.norm())?;
+    }
+    println!(
+        "{} ticks, at most {:.2} N: {}",
+        ended.report.ticks,
+        ended.report.largest_force,
+        path.display()
+    );
+    Ok(())
+}
