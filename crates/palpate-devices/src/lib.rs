@@ -10,8 +10,7 @@
 //! form, so the energy that a servo puts into the hand is known to the last digits. A [`Glove`]
 //! has many fingers that follow hand paths.
 //!
-//! A device of one's own implements [`Device`]; `examples/device_of_your_own.rs` is one in 40
-//! lines.
+//! A device of one's own implements [`Device`]; `palpate/examples/custom_device.rs` is one.
 //!
 //! # Examples
 //!

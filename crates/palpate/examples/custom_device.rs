@@ -4,7 +4,7 @@
 //! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
 //!
 //! All that palpate asks of a device is where its points are, what to do with the forces, and
-//! what it can bear. Here the transport is two numbers; yours would be a port.
+//! what it can bear; no force beyond that reaches the hand. Here the transport is two numbers.
 
 use palpate::devices::{DeviceLost, DeviceProfile, PointState};
 use palpate::prelude::*;
@@ -53,7 +53,6 @@ fn main() -> Result<(), Error> {
     };
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
-    // Protected by what the profile says: no force beyond it reaches the hand.
     let mut servo = Servo::for_device(disc, &device)?;
     let report = servo.run(&mut device, Seconds(2.0))?;
     println!("{} ticks, at most {:.2} N", report.ticks, report.largest_force);
