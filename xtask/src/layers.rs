@@ -8,11 +8,12 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the top layer to the bottom.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 15] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-query",
     "palpate-local",
+    "palpate-safety",
     "palpate-haptics",
     "palpate-vibration",
     "palpate-loop",

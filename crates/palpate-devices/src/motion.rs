@@ -14,7 +14,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, not_negative, positive};
+use palpate_haptics::{HapticsError, NumberError, not_negative, positive};
 
 use crate::oscillator::{Drive, Nodes, Oscillator};
 
@@ -134,12 +134,12 @@ impl Body {
         };
         let fastest = oscillator.fastest();
         if fastest.is_nan() || fastest > FASTEST {
-            return Err(HapticsError::Number {
+            return Err(HapticsError::Number(NumberError {
                 parameter: "the rate of damping and spring per mass",
                 rule: "at most 1e4",
                 value: fastest,
                 unit: "1/s",
-            });
+            }));
         }
         Ok(Self {
             mass,

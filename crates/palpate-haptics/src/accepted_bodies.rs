@@ -6,8 +6,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::bodies::Bodies;
-use crate::safety::Accepted;
 use crate::tool::Coupling;
+use palpate_safety::Accepted;
 
 /// Bodies as a device can render them, and the coupling of a tool that touches them likewise.
 ///

@@ -8,17 +8,17 @@
 use palpate_field::{Point, Vector};
 
 use crate::bodies::Body;
-use crate::device::PointState;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
-use crate::limit::{limited, part_of};
 use crate::nearby::Nearby;
 use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
-use crate::safety::PortState;
 use crate::servo::ServoOptions;
 use crate::surface::Ringing;
-use crate::workspace::WorkspaceMap;
+use palpate_safety::PointState;
+use palpate_safety::PortState;
+use palpate_safety::WorkspaceMap;
+use palpate_safety::{limited, part_of};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

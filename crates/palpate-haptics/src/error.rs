@@ -5,52 +5,18 @@
 
 use std::convert::Infallible;
 
+use palpate_safety::{NumberError, SafetyError};
+
 /// Why something cannot be touched as asked. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HapticsError {
     /// A number breaks the rule of its parameter.
-    #[error("{parameter} must be {rule}, got {value} {unit}")]
-    Number {
-        /// The parameter's name, as in scene files.
-        parameter: &'static str,
-        /// What it must be: "positive".
-        rule: &'static str,
-        /// What it was, in `unit`.
-        value: f64,
-        /// The unit of the parameter: "N/m".
-        unit: &'static str,
-    },
-    /// A device does not render a material, and is not to render a softer one.
-    #[error(
-        "a stiffness of {stiffness} N/m and a damping of {damping} N·s/m at the device break \
-         {condition}; {factor} times both would not"
-    )]
-    MaterialRefused {
-        /// Stiffness at the device [N/m].
-        stiffness: f64,
-        /// Damping at the device [N·s/m].
-        damping: f64,
-        /// The rule that is broken: "K ≤ 2 (b − |B|) / T".
-        condition: &'static str,
-        /// What both would have to be multiplied by.
-        factor: f64,
-    },
-    /// A device does not turn a tool with its coupling, and is not to be given a softer one.
-    #[error(
-        "an angular stiffness of {stiffness} N·m/rad and an angular damping of {damping} \
-         N·m·s/rad at the device break {condition}; {factor} times both would not"
-    )]
-    TurningRefused {
-        /// Angular stiffness at the device [N·m/rad].
-        stiffness: f64,
-        /// Angular damping at the device [N·m·s/rad].
-        damping: f64,
-        /// The rule that is broken: "κ ≤ 2 (b − |β|) / T".
-        condition: &'static str,
-        /// What both would have to be multiplied by.
-        factor: f64,
-    },
+    #[error(transparent)]
+    Number(#[from] NumberError),
+    /// A device cannot be protected as asked.
+    #[error(transparent)]
+    Safety(SafetyError),
     /// A hand path needs a beginning and an end.
     #[error("a hand path needs at least 2 samples, got {count}")]
     TooFewSamples {
@@ -95,21 +61,6 @@ pub enum HapticsError {
         servo: usize,
         /// Contact points of the device.
         device: usize,
-    },
-    /// A device bears less than the one that the servo was made for.
-    #[error(
-        "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \
-         {device} {unit}: make the servo for this device"
-    )]
-    OtherDevice {
-        /// Which limit differs: "max_force".
-        limit: &'static str,
-        /// The limit that the servo was made for, in `unit`.
-        servo: f64,
-        /// The limit of the device, in `unit`.
-        device: f64,
-        /// The unit of the limit: "N".
-        unit: &'static str,
     },
     /// There is nothing to touch.
     #[error("there must be at least one body to touch")]
@@ -156,60 +107,17 @@ pub enum HapticsError {
     NothingToTouch,
 }
 
+impl From<SafetyError> for HapticsError {
+    fn from(error: SafetyError) -> Self {
+        match error {
+            SafetyError::Number(number) => Self::Number(number),
+            error => Self::Safety(error),
+        }
+    }
+}
+
 impl From<Infallible> for HapticsError {
     fn from(never: Infallible) -> Self {
         match never {}
-    }
-}
-
-/// Checks that `value` is positive and finite.
-///
-/// # Errors
-///
-/// [`HapticsError::Number`] with the name and the unit given, also for NaN.
-pub fn positive(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, HapticsError> {
-    // Written so that NaN fails.
-    if value > 0.0 && value <= f64::MAX {
-        Ok(value)
-    } else {
-        let rule = "positive and finite";
-        Err(HapticsError::Number { parameter, rule, value, unit })
-    }
-}
-
-/// Checks that `value` is not negative and finite.
-///
-/// # Errors
-///
-/// As [`positive`].
-pub fn not_negative(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, HapticsError> {
-    if (0.0..=f64::MAX).contains(&value) {
-        Ok(value)
-    } else {
-        let rule = "zero or more and finite";
-        Err(HapticsError::Number { parameter, rule, value, unit })
-    }
-}
-
-/// Checks that `value` is positive; it may be infinite.
-pub(crate) fn positive_or_infinite(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, HapticsError> {
-    // Written so that NaN fails.
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        let rule = "positive";
-        Err(HapticsError::Number { parameter, rule, value, unit })
     }
 }

@@ -38,7 +38,6 @@ mod bend;
 mod bodies;
 mod contact;
 mod contact_point;
-mod device;
 mod energy;
 mod error;
 mod event;
@@ -46,50 +45,41 @@ mod friction;
 mod guide;
 mod half_spaces;
 mod handoff;
-mod impedance;
-mod limit;
 mod live;
 mod material;
 mod nearby;
 mod planes;
 mod protection;
 mod proxy;
-mod rotation;
-mod safety;
 mod sampler;
 mod servo;
 mod surface;
 mod tool;
-mod velocity;
-mod workspace;
 
 pub use accepted_bodies::AcceptedBodies;
 pub use bodies::{Bodies, Body};
 pub use contact_point::Touch;
-pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
 pub use energy::Energy;
-pub use error::{HapticsError, not_negative, positive};
+pub use error::HapticsError;
 pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
 pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff};
-pub use impedance::Impedance;
-pub use limit::limited;
 pub use live::{Progress, Snapshot};
 pub use material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
 pub use nearby::Nearby;
+pub use palpate_safety::{
+    Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
+    Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,
+    SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport,
+    VelocityEstimator, WatchdogReport, WorkspaceMap, limited, not_negative, positive,
+    turn_between, turned,
+};
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
-pub use rotation::{turn_between, turned};
-pub use safety::{
-    Acceptance, Accepted, ContinuousReport, Effect, PassivityReport, PortState, Rule,
-    SafetyChain, SafetyOptions, SafetyReport, TurningReport, WatchdogReport,
-};
 pub use servo::{Renderer, Servo, ServoOptions, UnprotectedServo};
 pub use surface::Surface;
 pub use tool::{
     Coupling, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch,
 };
-pub use velocity::VelocityEstimator;
-pub use workspace::WorkspaceMap;

@@ -8,18 +8,18 @@ use palpate_field::{Rotation, Vector};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
-use crate::device::{DeviceProfile, PointState, TurnState, TurningProfile};
 use crate::energy::Energy;
 use crate::error::HapticsError;
-use crate::impedance::Impedance;
-use crate::rotation::turn_between;
-use crate::safety::{
+use crate::tool::Coupling;
+use palpate_safety::Impedance;
+use palpate_safety::VelocityEstimator;
+use palpate_safety::WorkspaceMap;
+use palpate_safety::turn_between;
+use palpate_safety::{
     Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
     SafetyReport, WrenchChain,
 };
-use crate::tool::Coupling;
-use crate::velocity::VelocityEstimator;
-use crate::workspace::WorkspaceMap;
+use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
 
 /// How a servo protects a device and the hand that holds it.
 ///
@@ -162,9 +162,9 @@ impl<const D: usize> Protection<D> {
         // Torques of the world are so many times those at the device.
         let scale = 1.0 / self.map.scale();
         let of =
-            |impedance, acceptance| Accepted::of((impedance, scale), &limits, acceptance, rate);
+            |impedance, acceptance| Accepted::of(impedance, scale, &limits, acceptance, rate);
         if self.acceptance == Acceptance::Strict {
-            return of(coupling.turning_on(part, damping)?, Acceptance::Strict);
+            return Ok(of(coupling.turning_on(part, damping)?, Acceptance::Strict)?);
         }
         let accepted = of(coupling.turning_on(part, 0.0)?, self.acceptance)?;
         *coupling = coupling.softened_about_axes(accepted.factor);
@@ -182,7 +182,7 @@ impl<const D: usize> Protection<D> {
     fn accepted(&self, impedance: Impedance, rate: f64) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = Limits::along(&self.profile);
-        Accepted::of((impedance, scale), &limits, self.acceptance, rate)
+        Ok(Accepted::of(impedance, scale, &limits, self.acceptance, rate)?)
     }
 
     /// The port of one contact point.
@@ -208,9 +208,9 @@ impl<const D: usize> Protection<D> {
     ) -> Result<Option<TurningPort<D>>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
         let chain = if let Some((along, about)) = bodies.wrench() {
-            let limits = (&Limits::along(&self.profile), &Limits::about(turning));
+            let limits = [&Limits::along(&self.profile), &Limits::about(turning)];
             let options = self.safety_options(along.impedance);
-            let accepted = (along.clone(), about.clone());
+            let accepted = [along.clone(), about.clone()];
             Some(WrenchChain::new(limits, accepted, &options, rate)?)
         } else {
             None

@@ -18,11 +18,12 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 use crate::bodies::Body;
 
 use crate::contact::{Ground, slide};
-use crate::error::{HapticsError, not_negative};
+use crate::error::HapticsError;
 use crate::friction::{Hold, drag};
 use crate::nearby::{Nearby, Pierced};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
+use palpate_safety::{NumberError, not_negative};
 
 /// The evaluations a tick may cost, unless asked otherwise. Sliding takes one to three, a corner
 /// up to eight, a strike about ten; the rest is for grazing flights, slots and fast hands.
@@ -78,7 +79,7 @@ impl Probe {
         if budget < LEAST_BUDGET {
             let value = f64::from(budget);
             let (parameter, rule, unit) = ("budget", "at least 4", "evaluations");
-            return Err(HapticsError::Number { parameter, rule, value, unit });
+            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
         }
         Ok(Self { budget, ..self })
     }

@@ -4,7 +4,7 @@
 //! What guides the hand in free space.
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
-use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError};
+use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError, NumberError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -377,11 +377,13 @@ fn vector<const D: usize>(
     parameter: &'static str,
     numbers: &[f64],
 ) -> Result<Vector<f64, D>, HapticsError> {
-    let components = numbers.try_into().map_err(|_| HapticsError::Number {
-        parameter,
-        rule: "one number for each dimension",
-        value: numbers.len() as f64,
-        unit: "numbers",
+    let components = numbers.try_into().map_err(|_| {
+        HapticsError::Number(NumberError {
+            parameter,
+            rule: "one number for each dimension",
+            value: numbers.len() as f64,
+            unit: "numbers",
+        })
     })?;
     Ok(Vector(components))
 }

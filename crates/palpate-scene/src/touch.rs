@@ -107,7 +107,7 @@ impl<const D: usize> BuiltScene<D> {
         let bounds = tool.map_or_else(|| self.bounds(), |tool| self.bounds_with(tool));
         match bounds {
             Some(bounds) if device.workspace_radius < f64::INFINITY => {
-                WorkspaceMap::fitting(bounds, device.workspace_radius)
+                Ok(WorkspaceMap::fitting(bounds, device.workspace_radius)?)
             }
             _ => Ok(WorkspaceMap::default()),
         }

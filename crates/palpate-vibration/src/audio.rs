@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::cue::{Mapping, Sensation, Tap, Tone};
 use super::ringing::Ringing;
-use palpate_haptics::{HapticsError, positive};
+use palpate_haptics::{HapticsError, NumberError, positive};
 
 /// How long an amplitude takes from nothing to all [s]: a change within a sample would click, a
 /// slower one would blur a texture.
@@ -108,7 +108,7 @@ impl Synthesiser {
         if sample_rate < 2.0 * highest_frequency {
             let (parameter, rule) = ("sample_rate", "at least twice the highest frequency");
             let (value, unit) = (sample_rate, "Hz");
-            return Err(HapticsError::Number { parameter, rule, value, unit });
+            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
         }
         let player = Player {
             hold: Oscillator::default(),

@@ -11,7 +11,7 @@ use palpate_field::Point;
 
 use super::cue::{Tone, level};
 use super::ringing::Tones;
-use palpate_haptics::{HapticsError, positive};
+use palpate_haptics::{HapticsError, NumberError, positive};
 
 /// One tone for an actuator that plays one at a time: the frequency of the strongest, the
 /// amplitude `√(Σ a²)` of them together, at most one.
@@ -141,7 +141,7 @@ impl<const D: usize> ActuatorArray<D> {
         for value in places.iter().flat_map(|place| place.0) {
             if !value.is_finite() {
                 let (parameter, rule, unit) = ("place", "finite", "m");
-                return Err(HapticsError::Number { parameter, rule, value, unit });
+                return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
             }
         }
         Ok(Self { places, reach: positive("reach", reach, "m")? })

@@ -10,8 +10,8 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use palpate_haptics::Touch;
 use palpate_haptics::{HapticsError, not_negative, positive};
+use palpate_haptics::{NumberError, Touch};
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -215,7 +215,7 @@ impl Mapping {
             positive(parameter, value, unit)?;
         }
         let refuse = |parameter, rule, value| {
-            Err(HapticsError::Number { parameter, rule, value, unit: "Hz" })
+            Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "Hz" }))
         };
         if o.highest_frequency < o.lowest_frequency {
             let rule = "at least the lowest frequency";
@@ -295,7 +295,7 @@ fn at_most(
     if value <= most {
         return Ok(());
     }
-    Err(HapticsError::Number { parameter, rule, value, unit: "" })
+    Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "" }))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Tone, level};
-use palpate_haptics::{HapticsError, positive};
+use palpate_haptics::{HapticsError, NumberError, positive};
 
 /// What a device is told to play on a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,7 +72,7 @@ impl Publisher {
         if publish_rate > servo_rate {
             let (parameter, rule) = ("publish_rate", "at most the servo's rate");
             let (value, unit) = (publish_rate, "Hz");
-            return Err(HapticsError::Number { parameter, rule, value, unit });
+            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
         }
         let (held, commands) =
             (vec![Tone::default(); channels], vec![Command::default(); channels]);

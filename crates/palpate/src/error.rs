@@ -5,7 +5,7 @@
 
 use palpate_devices::{DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
-use palpate_haptics::{HapticsError, UnknownMaterial};
+use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
 use palpate_mesh::MeshError;
 use palpate_query::QueryError;
 
@@ -108,8 +108,12 @@ impl Error {
                 ShapeError::Number { parameter, .. } | ShapeError::Count { parameter, .. },
             ) => Some(parameter),
             _ => match self {
-                Self::Haptics(HapticsError::Number { parameter, .. }) => Some(parameter),
-                Self::Haptics(HapticsError::OtherDevice { limit, .. }) => Some(limit),
+                Self::Haptics(HapticsError::Number(NumberError { parameter, .. })) => {
+                    Some(parameter)
+                }
+                Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
+                    limit, ..
+                })) => Some(limit),
                 Self::Query(
                     QueryError::Coordinate { what, .. } | QueryError::Setting { what, .. },
                 ) => Some(what),
@@ -125,8 +129,11 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.0),
             Some(ShapeError::Count { count, .. }) => Some(*count as f64),
             _ => match self {
-                Self::Haptics(HapticsError::Number { value, .. }) => Some(*value),
-                Self::Haptics(HapticsError::OtherDevice { device, .. }) => Some(*device),
+                Self::Haptics(HapticsError::Number(NumberError { value, .. })) => Some(*value),
+                Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
+                    device,
+                    ..
+                })) => Some(*device),
                 Self::Query(
                     QueryError::Coordinate { value, .. }
                     | QueryError::Setting { value, .. }
@@ -145,7 +152,8 @@ impl Error {
             Some(ShapeError::Count { .. }) => Some(""),
             _ => match self {
                 Self::Haptics(
-                    HapticsError::Number { unit, .. } | HapticsError::OtherDevice { unit, .. },
+                    HapticsError::Number(NumberError { unit, .. })
+                    | HapticsError::Safety(SafetyError::OtherDevice { unit, .. }),
                 ) => Some(unit),
                 Self::Query(
                     QueryError::Coordinate { .. }

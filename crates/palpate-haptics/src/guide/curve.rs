@@ -6,6 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
+use palpate_safety::NumberError;
 
 use super::finite;
 use super::target::Closest;
@@ -165,7 +166,12 @@ impl<const D: usize> Curve<D> {
 }
 
 fn too_many(count: usize, rule: &'static str) -> HapticsError {
-    HapticsError::Number { parameter: "points", rule, value: count as f64, unit: "points" }
+    HapticsError::Number(NumberError {
+        parameter: "points",
+        rule,
+        value: count as f64,
+        unit: "points",
+    })
 }
 
 /// A ball around segments that follow one another.

@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use crate::limit::limited;
+use palpate_safety::limited;
 
 /// The two parts of a force [N].
 #[derive(Clone, Copy, Debug)]

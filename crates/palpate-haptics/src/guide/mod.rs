@@ -16,9 +16,10 @@ mod well;
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{HapticsError, not_negative, positive, positive_or_infinite};
+use crate::error::HapticsError;
 pub use curve::Curve;
 use limit::{Motion, damped};
+use palpate_safety::{NumberError, not_negative, positive, positive_or_infinite};
 pub use slope::Slope;
 use target::Target;
 
@@ -63,7 +64,12 @@ impl GuideOptions {
             return Ok(self);
         }
         let (parameter, rule) = ("release_distance", "at least the snap distance");
-        Err(HapticsError::Number { parameter, rule, value: self.release(), unit: "m" })
+        Err(HapticsError::Number(NumberError {
+            parameter,
+            rule,
+            value: self.release(),
+            unit: "m",
+        }))
     }
 
     fn release(&self) -> f64 {
@@ -80,7 +86,7 @@ fn finite<const D: usize>(
         None => Ok(point),
         Some(value) => {
             let (rule, unit) = ("finite", "m");
-            Err(HapticsError::Number { parameter, rule, value: *value, unit })
+            Err(HapticsError::Number(NumberError { parameter, rule, value: *value, unit }))
         }
     }
 }
@@ -90,12 +96,12 @@ fn unit<const D: usize>(
     parameter: &'static str,
     direction: Vector<f64, D>,
 ) -> Result<Vector<f64, D>, HapticsError> {
-    direction.normalized().ok_or(HapticsError::Number {
+    direction.normalized().ok_or(HapticsError::Number(NumberError {
         parameter,
         rule: "a finite direction",
         value: direction.norm(),
         unit: "long",
-    })
+    }))
 }
 
 /// A force that guides a hand: towards a point, line, plane or curve, into a well, or down a

@@ -8,7 +8,8 @@
 use palpate_field::{Point, Shape, Vector};
 
 use super::limit::Motion;
-use crate::error::{HapticsError, positive};
+use crate::error::HapticsError;
+use palpate_safety::{NumberError, positive};
 
 /// A force down the gradient of a field, within a band of its values.
 ///
@@ -59,7 +60,12 @@ impl<const D: usize> Slope<D> {
     pub fn new(shape: Shape<D>, gain: f64, band: [f64; 2]) -> Result<Self, HapticsError> {
         if !gain.is_finite() {
             let (parameter, rule, unit) = ("gain", "finite", "N");
-            return Err(HapticsError::Number { parameter, rule, value: gain, unit });
+            return Err(HapticsError::Number(NumberError {
+                parameter,
+                rule,
+                value: gain,
+                unit,
+            }));
         }
         let [near, far] = band;
         let width = positive("band", far - near, "m wide")?;
@@ -78,7 +84,7 @@ impl<const D: usize> Slope<D> {
             return Ok(Self { edge, ..self });
         }
         let (parameter, rule) = ("edge", "at most half of the band");
-        Err(HapticsError::Number { parameter, rule, value: edge, unit: "m" })
+        Err(HapticsError::Number(NumberError { parameter, rule, value: edge, unit: "m" }))
     }
 
     /// Force and damper along the gradient; none outside the band.

@@ -8,7 +8,8 @@
 use palpate_field::{Point, Vector};
 
 use super::{GuideOptions, finite};
-use crate::error::{HapticsError, positive};
+use crate::error::HapticsError;
+use palpate_safety::{NumberError, positive};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Well<const D: usize> {
@@ -34,7 +35,7 @@ impl<const D: usize> Well<D> {
             return Ok(Self { centre: finite("centre", centre)?, inner, reach, max_force });
         }
         let (parameter, rule) = ("reach", "more than max_force / stiffness");
-        Err(HapticsError::Number { parameter, rule, value: reach, unit: "m" })
+        Err(HapticsError::Number(NumberError { parameter, rule, value: reach, unit: "m" }))
     }
 
     /// The pull at `position` [N], and the part of the damper that acts there; none beyond the

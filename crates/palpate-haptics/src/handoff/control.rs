@@ -12,12 +12,13 @@ use super::exchange::{Flag, Reader, Sender};
 use super::{Edits, Flags};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::{Bodies, is_usable};
-use crate::error::{HapticsError, not_negative};
+use crate::error::HapticsError;
 use crate::event::Event;
 use crate::live::Snapshot;
 use crate::protection::Protection;
-use crate::safety::Accepted;
 use crate::tool::Coupling;
+use palpate_safety::Accepted;
+use palpate_safety::not_negative;
 
 /// Changes what a running servo renders, and sees what it does. From [`handoff`](crate::handoff)
 /// or a [`ServoThread`](crate::ServoThread).

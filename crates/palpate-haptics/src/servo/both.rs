@@ -9,8 +9,8 @@ use palpate_field::Pose;
 
 use super::{Servo, UnprotectedServo};
 use crate::contact_point::Touch;
-use crate::device::{PointState, TurnState};
 use crate::guide::Guide;
+use palpate_safety::{PointState, TurnState};
 
 macro_rules! methods_of_both {
     ($servo:ident) => {

@@ -22,11 +22,11 @@ pub use unprotected::UnprotectedServo;
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
-use crate::device::{Device, PointState};
 use crate::error::HapticsError;
 use crate::protection::Protection;
-use crate::safety::Accepted;
 use crate::tool::Tool;
+use palpate_safety::Accepted;
+use palpate_safety::{Device, PointState};
 
 /// Renders bodies to the contact points of a device, or to a tool that its hand holds, and
 /// keeps every force within what the device and the hand can bear.

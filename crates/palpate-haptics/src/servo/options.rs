@@ -3,8 +3,8 @@
 
 //! What a servo renders with, and how fast.
 
-use crate::device::DeviceProfile;
 use crate::proxy::Probe;
+use palpate_safety::DeviceProfile;
 
 /// What a servo renders with, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,17 +14,18 @@ use super::ServoOptions;
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
-use crate::device::{PointState, TurnState};
 use crate::energy::Energy;
-use crate::error::{HapticsError, positive, positive_or_infinite};
+use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
-use crate::safety::SafetyReport;
 use crate::tool::{CoupledTool, Coupling, HeldTool, Tool};
-use crate::workspace::WorkspaceMap;
+use palpate_safety::SafetyReport;
+use palpate_safety::WorkspaceMap;
+use palpate_safety::{PointState, TurnState};
+use palpate_safety::{positive, positive_or_infinite};
 
 /// Bodies fewer than this are all near.
 const FEW: usize = 5;

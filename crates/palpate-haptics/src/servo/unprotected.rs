@@ -7,10 +7,10 @@ use std::ops::Deref;
 
 use super::{Renderer, Servo, ServoOptions};
 use crate::bodies::Bodies;
-use crate::device::DeviceProfile;
 use crate::error::HapticsError;
 use crate::protection::Protection;
 use crate::tool::Tool;
+use palpate_safety::DeviceProfile;
 
 /// Renders bodies to contact points or to a tool, **without any protection of a device or a
 /// hand** but a largest force.

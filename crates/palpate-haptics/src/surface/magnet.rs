@@ -7,7 +7,8 @@
 
 use crate::material::Magnet;
 
-use crate::error::{HapticsError, positive};
+use crate::error::HapticsError;
+use palpate_safety::positive;
 
 /// The height of the greatest pull, as a part of the reach.
 const PEAK: f64 = 0.25;

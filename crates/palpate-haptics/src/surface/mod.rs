@@ -14,9 +14,10 @@ use crate::material::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
 
 use crate::bend::way_over;
-use crate::error::{HapticsError, not_negative, positive};
-use crate::impedance::Impedance;
-use crate::limit::limited;
+use crate::error::HapticsError;
+use palpate_safety::Impedance;
+use palpate_safety::limited;
+use palpate_safety::{not_negative, positive};
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};

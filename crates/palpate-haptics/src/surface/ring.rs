@@ -7,7 +7,8 @@
 
 use crate::material::Impact;
 
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::HapticsError;
+use palpate_safety::{not_negative, positive};
 
 /// A ring below this part of its first amplitude is over.
 const SILENCE: f64 = 1e-4;

@@ -9,7 +9,8 @@ use crate::material::Texture;
 use palpate_field::scalar::Scalar;
 use palpate_field::{Kernel, Point, Promise, Vector};
 
-use crate::error::{HapticsError, positive};
+use crate::error::HapticsError;
+use palpate_safety::{NumberError, positive};
 
 /// Roundings of a wave's phase: of the products, their sum and the sine.
 const ROUNDINGS: f64 = 16.0;
@@ -42,12 +43,12 @@ impl<const D: usize> Ripples<D> {
         };
         let components: Result<[f64; D], _> = direction.as_slice().try_into();
         let unit = components.ok().and_then(|components| Vector(components).normalized());
-        let unit = unit.ok_or(HapticsError::Number {
+        let unit = unit.ok_or(HapticsError::Number(NumberError {
             parameter: "texture.direction",
             rule: "a direction of the scene's dimension",
             value: direction.len() as f64,
             unit: "numbers",
-        })?;
+        }))?;
         Ok(Self { amplitude, wavelength, waves: Waves::Plane((unit * number).0) })
     }
 

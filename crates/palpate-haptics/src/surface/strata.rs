@@ -7,8 +7,9 @@
 
 use crate::material::Material;
 
-use crate::error::{HapticsError, not_negative, positive};
-use crate::impedance::Impedance;
+use crate::error::HapticsError;
+use palpate_safety::Impedance;
+use palpate_safety::{not_negative, positive};
 
 /// What a layer without a spring counts as [N/m]: no hand feels it.
 const LEAST_STIFFNESS: f64 = 1e-9;
@@ -115,8 +116,10 @@ impl Strata {
         &self,
     ) -> impl Iterator<Item = Result<Impedance, HapticsError>> + '_ {
         // A layer without a spring still has a damper to be accepted.
-        self.all()
-            .map(|layer| Impedance::new(layer.stiffness.max(LEAST_STIFFNESS), layer.damping))
+        self.all().map(|layer| {
+            let stiffness = layer.stiffness.max(LEAST_STIFFNESS);
+            Ok(Impedance::new(stiffness, layer.damping)?)
+        })
     }
 
     pub(crate) fn stiffness(&self) -> f64 {

@@ -13,11 +13,11 @@ use super::{Coupling, Tool, ToolState};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, Setting, Touch};
-use crate::device::{PointState, TurnState};
-use crate::limit::limited;
 use crate::protection::TurningPort;
-use crate::safety::{Both, WrenchChain, WrenchState};
 use crate::servo::ServoOptions;
+use palpate_safety::limited;
+use palpate_safety::{Both, WrenchChain, WrenchState};
+use palpate_safety::{PointState, TurnState};
 
 /// A tool after a tick, as rows of a trace and snapshots have it. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

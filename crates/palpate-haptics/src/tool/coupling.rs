@@ -4,8 +4,9 @@
 //! What hangs a tool on the hand.
 
 use super::state::ToolOptions;
-use crate::error::{HapticsError, positive};
-use crate::impedance::Impedance;
+use crate::error::HapticsError;
+use palpate_safety::Impedance;
+use palpate_safety::positive;
 
 /// The spring and damper between hand and tool as they are rendered: those of the
 /// [options](ToolOptions), or softer ones, where the device of a [`Servo`](crate::Servo)
@@ -57,7 +58,8 @@ impl Coupling {
 
     /// What the hand feels along axes of a body like that.
     pub(crate) fn on(&self, body: Impedance) -> Result<Impedance, HapticsError> {
-        Impedance::new(self.stiffness.min(body.stiffness()), self.damping + body.damping())
+        let stiffness = self.stiffness.min(body.stiffness());
+        Ok(Impedance::new(stiffness, self.damping + body.damping())?)
     }
 
     /// What it feels about axes, where bodies bear a `part` of the coupling, and have a
@@ -68,7 +70,7 @@ impl Coupling {
         damping: f64,
     ) -> Result<Impedance, HapticsError> {
         let damping = self.angular_damping + self.damping_on_arms(damping);
-        Impedance::new(self.angular_stiffness * part, damping)
+        Ok(Impedance::new(self.angular_stiffness * part, damping)?)
     }
 
     /// What a `damping` [N·s/m] is about axes, on the longest arm [N·m·s/rad].

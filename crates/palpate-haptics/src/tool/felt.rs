@@ -14,9 +14,9 @@ use super::twist::Twist;
 use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
-use crate::limit::part_of;
 use crate::nearby::Nearby;
-use crate::rotation::{cross, in_place, in_space};
+use palpate_safety::part_of;
+use palpate_safety::{cross, in_place, in_space};
 
 /// What the bodies that push make of the coupling.
 struct Yielding<const D: usize> {

@@ -24,8 +24,8 @@ use super::scan::Scan;
 use super::settle::{Lengths, Push, Settler, stacked_along};
 use super::twist::Twist;
 use crate::nearby::Nearby;
-use crate::rotation::{cross, in_place, in_space};
 use crate::surface::Friction;
+use palpate_safety::{cross, in_place, in_space};
 
 /// Directions along a surface, as parts of two that are square to one another.
 const AROUND: [(f64, f64); MOST_AROUND] = [

@@ -24,7 +24,7 @@ use super::scan::Scan;
 use super::shell::Shell;
 use super::twist::Twist;
 use crate::nearby::Nearby;
-use crate::rotation::{cross, in_space};
+use palpate_safety::{cross, in_space};
 
 /// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
 const MOST_TURNS: usize = 6;

@@ -14,7 +14,8 @@ use palpate_field::{LARGEST_LENGTH, Point, Shape, Vector};
 use palpate_mesh::Mesh;
 
 use super::spread::{Samples, farthest_first, of_field, of_mesh};
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::HapticsError;
+use palpate_safety::{NumberError, not_negative, positive};
 
 /// The most points of a shell.
 pub const MOST_POINTS: usize = 8192;
@@ -192,7 +193,7 @@ impl<const D: usize> Shell<D> {
             let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
             if let Some(&value) = point.centre.0.iter().find(|x| !is_usable(x)) {
                 let (parameter, rule, unit) = ("a point of a tool", "at most 1e15", "m");
-                return Err(HapticsError::Number { parameter, rule, value, unit });
+                return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
             }
             reach = reach.max(point.centre.norm() + point.radius);
         }
@@ -241,7 +242,7 @@ fn check_count(count: usize, least: usize) -> Result<(), HapticsError> {
     }
     let rule = if least == 1 { "from 1 to 8192" } else { "from 2 to 8192" };
     let (parameter, unit) = ("number of points", "points");
-    Err(HapticsError::Number { parameter, rule, value: count as f64, unit })
+    Err(HapticsError::Number(NumberError { parameter, rule, value: count as f64, unit }))
 }
 
 /// The farthest points first, and how far the surface is from them and those before [m].

@@ -10,7 +10,8 @@ use palpate_query::Contact;
 
 use super::closest::FREEDOMS;
 use super::shell::FIRST_LEVEL;
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::HapticsError;
+use palpate_safety::{NumberError, not_negative, positive};
 
 /// How a tool hangs on the hand, and what a tick may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,13 +69,18 @@ impl ToolOptions {
             [("max_force", self.max_force, "N"), ("max_torque", self.max_torque, "N·m")]
         {
             if value.is_nan() || value <= 0.0 {
-                return Err(HapticsError::Number { parameter, rule: "positive", value, unit });
+                return Err(HapticsError::Number(NumberError {
+                    parameter,
+                    rule: "positive",
+                    value,
+                    unit,
+                }));
             }
         }
         if (self.budget as usize) < 2 * FIRST_LEVEL {
             let (parameter, rule, unit) = ("budget", "at least 32", "evaluations");
             let value = f64::from(self.budget);
-            return Err(HapticsError::Number { parameter, rule, value, unit });
+            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
         }
         Ok(())
     }

@@ -9,7 +9,7 @@
 
 use palpate_field::{Pose, Vector};
 
-use crate::rotation::{cross, in_place, in_space, turn_between, turned};
+use palpate_safety::{cross, in_place, in_space, turn_between, turned};
 
 /// How a pose changes: its origin moves, then it turns about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]

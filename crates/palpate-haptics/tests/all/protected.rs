@@ -10,7 +10,7 @@ use std::time::Duration;
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
     Bodies, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, PointState,
-    Protection, Servo, ServoOptions, Surface, UnprotectedServo, handoff,
+    Protection, SafetyError, Servo, ServoOptions, Surface, UnprotectedServo, handoff,
 };
 use palpate_loop::{Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
@@ -169,7 +169,7 @@ fn a_servo_does_not_run_with_a_device_that_bears_less_than_its_own() {
     assert_eq!(run_with(own.clone()), Ok(10));
     assert_eq!(run_with(DeviceProfile { max_force: 5.0, ..own.clone() }), Ok(10));
     let refused = |profile: DeviceProfile| match run_with(profile) {
-        Err(HapticsError::OtherDevice { limit, .. }) => limit,
+        Err(HapticsError::Safety(SafetyError::OtherDevice { limit, .. })) => limit,
         other => panic!("{other:?}"),
     };
     assert_eq!(refused(DeviceProfile { max_force: 3.9, ..own.clone() }), "max_force");

@@ -13,8 +13,8 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HapticsError, Material,
-    PointState, Protection, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState,
-    UnprotectedServo, WorkspaceMap,
+    PointState, Protection, SafetyError, ServoOptions, Shell, Surface, Tool, ToolOptions,
+    ToolState, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
@@ -122,7 +122,10 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     let servo =
         UnprotectedServo::with_tool(ground(damped), rod(), ServoOptions::default()).unwrap();
     let refused = servo.protected(&strict).unwrap_err();
-    assert!(matches!(refused, HapticsError::MaterialRefused { damping: 0.3, .. }));
+    assert!(matches!(
+        refused,
+        HapticsError::Safety(SafetyError::MaterialRefused { damping: 0.3, .. })
+    ));
 }
 
 #[test]

@@ -13,8 +13,8 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState,
-    Protection, Rule, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, TurnState,
-    TurningProfile, UnprotectedServo, WorkspaceMap, turn_between, turned,
+    Protection, Rule, SafetyError, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions,
+    TurnState, TurningProfile, UnprotectedServo, WorkspaceMap, turn_between, turned,
 };
 use palpate_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
@@ -197,7 +197,10 @@ fn what_turns_is_accepted_by_the_same_law() {
     let (_, about) = scaled(thin, damped);
     assert_eq!((about.factor, about.rule), (0.5, Some(Rule::MaxAngularDamping)));
     let refused = accept(passive, damped, Acceptance::Strict).unwrap_err();
-    assert!(matches!(refused, HapticsError::TurningRefused { factor: 0.25, .. }));
+    assert!(matches!(
+        refused,
+        HapticsError::Safety(SafetyError::TurningRefused { factor: 0.25, .. })
+    ));
 }
 
 #[test]

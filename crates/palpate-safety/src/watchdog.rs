@@ -7,7 +7,7 @@
 
 use std::num::NonZeroU32;
 
-use super::ramp::Ramp;
+use crate::ramp::Ramp;
 
 /// Lowers the force to zero while ticks are late.
 ///

@@ -14,7 +14,7 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
-use super::effect::Effect;
+use crate::effect::Effect;
 
 /// What a tick's leak still weighs a tick later, in the verdict on whether damping covers it: a
 /// memory of 100 ticks of contact, several strikes.

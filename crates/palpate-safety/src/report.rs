@@ -3,10 +3,10 @@
 
 //! What every stage of a safety chain did.
 
-use super::Accepted;
-use super::channel::Channel;
-use super::effect::Effect;
-use super::passivity::PassivityReport;
+use crate::Accepted;
+use crate::channel::Channel;
+use crate::effect::Effect;
+use crate::passivity::PassivityReport;
 
 /// What every stage of a safety chain did, since it was made.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::{SafetyError, not_negative, positive};
 
 /// The longest window, in periods. A longer one is quieter at constant speed, and no faster
 /// anywhere.
@@ -40,9 +40,9 @@ const SLACK: f64 = 1e-6;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::VelocityEstimator;
+/// use palpate_safety::VelocityEstimator;
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let mut estimator = VelocityEstimator::new(1000.0, 0.0)?;
 /// assert_eq!(estimator.update(Vector([0.5, 0.25])), Vector([0.0, 0.0]));
 /// assert_eq!(estimator.update(Vector([0.75, 0.25])), Vector([250.0, 0.0]));
@@ -66,9 +66,9 @@ impl<const D: usize> VelocityEstimator<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the rate is not positive, the step negative, or either not
+    /// [`SafetyError::Number`] if the rate is not positive, the step negative, or either not
     /// finite.
-    pub fn new(rate: f64, encoder_step: f64) -> Result<Self, HapticsError> {
+    pub fn new(rate: f64, encoder_step: f64) -> Result<Self, SafetyError> {
         Ok(Self {
             rate: positive("rate", rate, "Hz")?,
             step: not_negative("encoder_step", encoder_step, "m")? * (1.0 + SLACK),

@@ -7,7 +7,7 @@
 
 use palpate_field::Vector;
 
-use super::PortState;
+use crate::PortState;
 
 /// `true` if forces, position and velocity are numbers.
 ///

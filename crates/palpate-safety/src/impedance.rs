@@ -3,12 +3,12 @@
 
 //! Stiffness and damping: what decides whether a device stays passive.
 
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::{SafetyError, not_negative, positive};
 
 /// A stiffness and a damping.
 ///
 /// ```
-/// let error = palpate_haptics::Impedance::new(-3.0, 0.0).unwrap_err();
+/// let error = palpate_safety::Impedance::new(-3.0, 0.0).unwrap_err();
 /// assert_eq!(error.to_string(), "stiffness must be positive and finite, got -3 N/m");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,9 +23,9 @@ impl Impedance {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the stiffness is not positive, the damping negative, or
+    /// [`SafetyError::Number`] if the stiffness is not positive, the damping negative, or
     /// either not finite.
-    pub fn new(stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
+    pub fn new(stiffness: f64, damping: f64) -> Result<Self, SafetyError> {
         Ok(Self {
             stiffness: positive("stiffness", stiffness, "N/m")?,
             damping: not_negative("damping", damping, "N·s/m")?,

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::passivity::Directed;
+use crate::passivity::Directed;
 
 /// What a stage of the safety chain did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

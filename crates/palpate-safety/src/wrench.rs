@@ -13,18 +13,20 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
-use super::channel::{Channel, Moment};
-use super::limits::Limits;
-use super::passivity::{Directed, Passivity, PassivityOptions, Seen};
-use super::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
-use crate::error::{HapticsError, not_negative};
+use crate::channel::{Channel, Moment};
+use crate::error::{SafetyError, not_negative};
+use crate::limits::Limits;
+use crate::passivity::{Directed, Passivity, PassivityOptions, Seen};
+use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
 
 /// What goes along axes, and what turns about them: a force [N] and a torque [N·m], a place [m]
 /// and an angle [rad], or their velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Both<const D: usize> {
-    pub(crate) along: Vector<f64, D>,
-    pub(crate) about: Vector<f64, 3>,
+pub struct Both<const D: usize> {
+    /// Along axes.
+    pub along: Vector<f64, D>,
+    /// About axes; in the plane about z alone.
+    pub about: Vector<f64, 3>,
 }
 
 impl<const D: usize> Both<D> {
@@ -76,16 +78,18 @@ impl<const D: usize> Directed for Both<D> {
 
 /// A device that turns in a tick, as its chain sees it. Device coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WrenchState<const D: usize> {
+pub struct WrenchState<const D: usize> {
     /// Where it is [m], and the sum of all its turns so far [rad].
-    pub(crate) position: Both<D>,
-    pub(crate) velocity: Both<D>,
-    /// As [`PortState::free_force`](super::PortState::free_force).
-    pub(crate) free_force: Vector<f64, D>,
-    pub(crate) is_late: bool,
+    pub position: Both<D>,
+    /// How fast it moves [m/s] and turns [rad/s].
+    pub velocity: Both<D>,
+    /// As [`PortState::free_force`](crate::PortState::free_force).
+    pub free_force: Vector<f64, D>,
+    /// The tick began too late.
+    pub is_late: bool,
 }
 
-/// The safety chain of a device that turns: [`SafetyChain`](super::SafetyChain) for a force and a
+/// The safety chain of a device that turns: [`SafetyChain`](crate::SafetyChain) for a force and a
 /// torque.
 ///
 /// With a radian as long as `u = √(κ/K)`, a stretch of the coupling in any direction, turning or
@@ -93,7 +97,7 @@ pub(crate) struct WrenchState<const D: usize> {
 /// sees one spring in all directions, on the least damping `min(b, b_θ / u²)`, the least mass and
 /// the slowest change of both: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, nothing is ever changed.
 #[derive(Clone, Debug)]
-pub(crate) struct WrenchChain<const D: usize> {
+pub struct WrenchChain<const D: usize> {
     /// Along axes, and about them.
     accepted: (Accepted, Accepted),
     /// What the device is sure of, along axes and about them.
@@ -119,7 +123,7 @@ struct Side {
 }
 
 impl Side {
-    fn new(limits: &Limits) -> Result<Self, HapticsError> {
+    fn new(limits: &Limits) -> Result<Self, SafetyError> {
         Ok(Self {
             damping: limits.least_damping.positive()?,
             mass: limits.mass.not_negative()?,
@@ -149,13 +153,15 @@ impl<const D: usize> WrenchChain<D> {
     ///
     /// # Errors
     ///
-    /// As [`SafetyChain::new`](super::SafetyChain::new).
-    pub(crate) fn new(
-        (along, about): (&Limits, &Limits),
-        accepted: (Accepted, Accepted),
+    /// As [`SafetyChain::new`](crate::SafetyChain::new).
+    pub fn new(
+        limits: [&Limits; 2],
+        accepted: [Accepted; 2],
         options: &SafetyOptions,
         rate: f64,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, SafetyError> {
+        let [along, about] = limits;
+        let accepted: (Accepted, Accepted) = accepted.into();
         let sides = (Side::new(along)?, Side::new(about)?);
         let unit = unit(&accepted.0, &accepted.1);
         let stiffness = accepted.0.device_stiffness;
@@ -183,7 +189,7 @@ impl<const D: usize> WrenchChain<D> {
     /// Renders what was accepted anew, along axes and about them, for the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn renew(&mut self, (along, about): (&Accepted, &Accepted)) {
+    pub fn renew(&mut self, (along, about): (&Accepted, &Accepted)) {
         self.accepted.0.renew(along);
         self.accepted.1.renew(about);
         let unit = unit(along, about);
@@ -200,7 +206,7 @@ impl<const D: usize> WrenchChain<D> {
     /// What to write where `wanted` is wanted, at the device, in one tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn step(&mut self, wanted: Both<D>, state: &WrenchState<D>) -> Both<D> {
+    pub fn step(&mut self, wanted: Both<D>, state: &WrenchState<D>) -> Both<D> {
         let WrenchState { position, velocity, free_force, is_late } = *state;
         // What is not a number reaches no stage that remembers; the guards answer for it.
         let is_sound =
@@ -224,21 +230,21 @@ impl<const D: usize> WrenchChain<D> {
     /// Lowers the largest force [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit_force(&mut self, max_force: f64) {
+    pub fn limit_force(&mut self, max_force: f64) {
         self.force.lower_limit(max_force);
     }
 
     /// Lowers the largest torque [N·m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn limit_torque(&mut self, max_torque: f64) {
+    pub fn limit_torque(&mut self, max_torque: f64) {
         self.torque.lower_limit(max_torque);
     }
 
     /// Stops force and torque.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn stop(&mut self) {
+    pub fn stop(&mut self) {
         self.force.stop();
         self.torque.stop();
     }
@@ -246,17 +252,19 @@ impl<const D: usize> WrenchChain<D> {
     /// Lets force and torque rise again.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn release(&mut self) {
+    pub fn release(&mut self) {
         self.force.release();
         self.torque.release();
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn passivity(&self) -> PassivityReport {
+    pub fn passivity(&self) -> PassivityReport {
         self.passivity.report()
     }
 
-    pub(crate) fn report(&self) -> SafetyReport {
+    /// What every stage did so far, along axes and about them.
+    #[must_use]
+    pub fn report(&self) -> SafetyReport {
         let (along, about) = &self.accepted;
         let turning = TurningReport::of(about, self.largest_torque, &self.torque);
         SafetyReport {

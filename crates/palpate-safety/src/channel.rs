@@ -7,16 +7,16 @@
 
 use palpate_field::Vector;
 
-use super::SafetyOptions;
-use super::continuous::ContinuousLimit;
-use super::finite;
-use super::force_limit::ForceLimit;
-use super::limits::Limits;
-use super::ramp::Ramp;
-use super::report::{ContinuousReport, Effects, WatchdogReport};
-use super::slew::SlewLimit;
-use super::watchdog::Watchdog;
-use crate::error::{HapticsError, not_negative, positive};
+use crate::SafetyOptions;
+use crate::continuous::ContinuousLimit;
+use crate::error::{SafetyError, not_negative, positive};
+use crate::finite;
+use crate::force_limit::ForceLimit;
+use crate::limits::Limits;
+use crate::ramp::Ramp;
+use crate::report::{ContinuousReport, Effects, WatchdogReport};
+use crate::slew::SlewLimit;
+use crate::watchdog::Watchdog;
 
 /// What a tick is like for every stage.
 #[derive(Clone, Copy, Debug)]
@@ -47,13 +47,13 @@ pub(crate) struct Channel<const D: usize> {
 impl<const D: usize> Channel<D> {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if a limit is not positive, or a time of the options negative or
+    /// [`SafetyError::Number`] if a limit is not positive, or a time of the options negative or
     /// not finite.
     pub(crate) fn new(
         limits: &Limits,
         options: &SafetyOptions,
         rate: f64,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, SafetyError> {
         let slew = SlewLimit::new(limits.max_force_rate.positive()?, rate);
         let continuous_force = limits.continuous_force.positive()?;
         let cooling_time = positive("cooling_time", options.cooling_time, "s")?;

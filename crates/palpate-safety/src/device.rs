@@ -7,10 +7,10 @@ use std::borrow::Cow;
 
 use palpate_field::{Point, Rotation, Vector};
 
-use crate::error::HapticsError;
+use crate::error::SafetyError;
 
 /// One contact point of a device, as read in a tick. Coordinates of the device, which are those
-/// of the world unless a servo [protects](crate::Protection) it with a map.
+/// of the world unless a [`WorkspaceMap`](crate::WorkspaceMap) places the device elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointState<const D: usize> {
     /// Where the hand holds the device [m].
@@ -94,7 +94,7 @@ impl DeviceProfile {
     /// A device that does all it is told to, without mass, friction or steps.
     ///
     /// ```
-    /// let ideal = palpate_haptics::DeviceProfile::unlimited("ideal");
+    /// let ideal = palpate_safety::DeviceProfile::unlimited("ideal");
     /// assert_eq!((ideal.max_force, ideal.mass), (f64::INFINITY, 0.0));
     /// ```
     #[must_use]
@@ -121,7 +121,7 @@ impl DeviceProfile {
 impl DeviceProfile {
     /// Refuses a `device` that bears less than this one: what is rendered for this one might
     /// harm it, or be unstable on it.
-    pub(crate) fn check_bears(&self, device: &Self) -> Result<(), HapticsError> {
+    pub fn check_bears(&self, device: &Self) -> Result<(), SafetyError> {
         at_most("max_force", self.max_force, device.max_force, "N")?;
         at_most("continuous_force", self.continuous_force, device.continuous_force, "N")?;
         at_most("max_force_rate", self.max_force_rate, device.max_force_rate, "N/s")?;
@@ -144,12 +144,12 @@ fn at_most(
     servo: f64,
     device: f64,
     unit: &'static str,
-) -> Result<(), HapticsError> {
+) -> Result<(), SafetyError> {
     // Written so that NaN is refused.
     if servo <= device {
         Ok(())
     } else {
-        Err(HapticsError::OtherDevice { limit, servo, device, unit })
+        Err(SafetyError::OtherDevice { limit, servo, device, unit })
     }
 }
 
@@ -159,11 +159,11 @@ fn at_least(
     servo: f64,
     device: f64,
     unit: &'static str,
-) -> Result<(), HapticsError> {
+) -> Result<(), SafetyError> {
     if servo >= device {
         Ok(())
     } else {
-        Err(HapticsError::OtherDevice { limit, servo, device, unit })
+        Err(SafetyError::OtherDevice { limit, servo, device, unit })
     }
 }
 
@@ -200,7 +200,7 @@ impl TurningProfile {
     /// A device that gives any torque, without inertia, friction or steps.
     ///
     /// ```
-    /// use palpate_haptics::{DeviceProfile, TurningProfile};
+    /// use palpate_safety::{DeviceProfile, TurningProfile};
     ///
     /// let turning = Some(TurningProfile { max_torque: 0.2, ..TurningProfile::unlimited() });
     /// let device = DeviceProfile { turning, ..DeviceProfile::unlimited("six degrees of freedom") };
@@ -226,7 +226,7 @@ impl TurningProfile {
 
 impl TurningProfile {
     /// As [`DeviceProfile::check_bears`], about the axes.
-    fn check_bears(&self, device: &Self) -> Result<(), HapticsError> {
+    fn check_bears(&self, device: &Self) -> Result<(), SafetyError> {
         at_most("max_torque", self.max_torque, device.max_torque, "N·m")?;
         let (torque, of_device) = (self.continuous_torque, device.continuous_torque);
         at_most("continuous_torque", torque, of_device, "N·m")?;
@@ -254,7 +254,7 @@ pub struct DeviceLost {
 ///
 /// A device that turns, with six degrees of freedom in space or three in the plane, also
 /// [says how it is turned](Self::read_turn) and [takes a torque](Self::write_torque); a
-/// [`Tool`](crate::Tool) with a shape turns with its one point. Other devices leave both as they
+/// tool with a shape turns with its one point. Other devices leave both as they
 /// are.
 pub trait Device<const D: usize> {
     /// How many contact points it has; the same for life.

@@ -10,10 +10,10 @@
 
 use std::borrow::Cow;
 
-use super::limits::Limits;
 use crate::device::DeviceProfile;
-use crate::error::{HapticsError, positive};
+use crate::error::{SafetyError, positive};
 use crate::impedance::Impedance;
+use crate::limits::Limits;
 
 /// What is done with a material that a device cannot render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,9 +96,9 @@ impl Rule {
 /// # Examples
 ///
 /// ```
-/// use palpate_haptics::{Accepted, DeviceProfile, Impedance, Rule};
+/// use palpate_safety::{Accepted, DeviceProfile, Impedance, Rule};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
 /// // b / (K T / 2 + B) = 0.5 / (1.5 + 0.5)
 /// let accepted = Accepted::new(Impedance::new(3000.0, 0.5)?, 1.0, &device, 1000.0)?;
@@ -131,7 +131,7 @@ impl Accepted {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if rate or scale is not positive and finite, if a number of the
+    /// [`SafetyError::Number`] if rate or scale is not positive and finite, if a number of the
     /// device's profile that a rule needs is not positive, as nothing can be rendered then, or
     /// if nothing is left of the stiffness.
     pub fn new(
@@ -139,20 +139,20 @@ impl Accepted {
         scale: f64,
         device: &DeviceProfile,
         rate: f64,
-    ) -> Result<Self, HapticsError> {
-        Self::of((impedance, scale), &Limits::along(device), Acceptance::Scaled, rate)
+    ) -> Result<Self, SafetyError> {
+        Self::of(impedance, scale, &Limits::along(device), Acceptance::Scaled, rate)
     }
 
     /// As [`new`](Self::new), but refuses what would have to be scaled.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), or [`HapticsError::MaterialRefused`].
+    /// As [`new`](Self::new), or [`SafetyError::MaterialRefused`].
     ///
     /// ```
-    /// use palpate_haptics::{Accepted, DeviceProfile, Impedance};
+    /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
     ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
     /// let refused = Accepted::strict(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0);
     /// assert_eq!(
@@ -168,8 +168,8 @@ impl Accepted {
         scale: f64,
         device: &DeviceProfile,
         rate: f64,
-    ) -> Result<Self, HapticsError> {
-        Self::of((impedance, scale), &Limits::along(device), Acceptance::Strict, rate)
+    ) -> Result<Self, SafetyError> {
+        Self::of(impedance, scale, &Limits::along(device), Acceptance::Strict, rate)
     }
 
     /// What becomes of `impedance`, if lengths in the world, or torques, are `scale` times those
@@ -178,12 +178,13 @@ impl Accepted {
     /// # Errors
     ///
     /// As [`new`](Self::new) or, where refused, [`strict`](Self::strict).
-    pub(crate) fn of(
-        (impedance, scale): (Impedance, f64),
+    pub fn of(
+        impedance: Impedance,
+        scale: f64,
         limits: &Limits,
         acceptance: Acceptance,
         rate: f64,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, SafetyError> {
         let (stiffness, damping) = at_device(impedance, scale)?;
         let (mut factor, mut rule) = (1.0, None);
         if acceptance != Acceptance::AsItIs {
@@ -196,9 +197,9 @@ impl Accepted {
         if let (Acceptance::Strict, Some(rule)) = (acceptance, rule) {
             let condition = rule.condition();
             return Err(if limits.is_turning {
-                HapticsError::TurningRefused { stiffness, damping, condition, factor }
+                SafetyError::TurningRefused { stiffness, damping, condition, factor }
             } else {
-                HapticsError::MaterialRefused { stiffness, damping, condition, factor }
+                SafetyError::MaterialRefused { stiffness, damping, condition, factor }
             });
         }
         let impedance =
@@ -211,7 +212,7 @@ impl Accepted {
     /// Becomes `other`, of the same device: what is assumed is so of both.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn renew(&mut self, other: &Self) {
+    pub fn renew(&mut self, other: &Self) {
         let Self { impedance, device_stiffness, device_damping, factor, rule, .. } = *other;
         (self.impedance, self.factor, self.rule) = (impedance, factor, rule);
         (self.device_stiffness, self.device_damping) = (device_stiffness, device_damping);
@@ -220,12 +221,12 @@ impl Accepted {
 
 /// Stiffness [N/m] and damping [N·s/m] at the device: forces are those of the world, ways and
 /// velocities `scale` times as small.
-fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), HapticsError> {
+fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), SafetyError> {
     let scale = positive("scale", scale, "(world per device)")?;
     Ok((scale * impedance.stiffness(), scale * impedance.damping()))
 }
 
-fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, HapticsError> {
+fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, SafetyError> {
     Impedance::new(factor * impedance.stiffness(), factor * impedance.damping())
 }
 
@@ -235,7 +236,7 @@ fn factors(
     damping: f64,
     limits: &Limits,
     rate: f64,
-) -> Result<[(f64, Rule); 4], HapticsError> {
+) -> Result<[(f64, Rule); 4], SafetyError> {
     let period = 1.0 / positive("rate", rate, "Hz")?;
     let least = limits.least_damping.positive()?;
     let max_stiffness = limits.max_stiffness.positive()?;

@@ -13,7 +13,7 @@ use palpate_field::Vector;
 /// ```
 /// use palpate_field::Vector;
 ///
-/// let force = palpate_haptics::limited(Vector([3.0, -4.0]), 2.5);
+/// let force = palpate_safety::limited(Vector([3.0, -4.0]), 2.5);
 /// assert_eq!(force, Vector([1.5, -2.0]));
 /// ```
 ///
@@ -47,7 +47,7 @@ fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, 
 /// The part of a force that is as large as the one `before`; all of one that is no larger.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub(crate) fn part_of(before: f64, now: f64) -> f64 {
+pub fn part_of(before: f64, now: f64) -> f64 {
     if now > before { before / now } else { 1.0 }
 }
 

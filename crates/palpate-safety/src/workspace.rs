@@ -8,7 +8,7 @@
 use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::device::PointState;
-use crate::error::{HapticsError, positive};
+use crate::error::{NumberError, SafetyError, positive};
 use crate::rotation::{in_place, in_space};
 
 /// From device to world coordinates and back: `world = s R device + t`.
@@ -27,9 +27,9 @@ use crate::rotation::{in_place, in_space};
 ///
 /// ```
 /// use palpate_field::{Pose, Vector};
-/// use palpate_haptics::WorkspaceMap;
+/// use palpate_safety::WorkspaceMap;
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let map = WorkspaceMap::new(Pose::translation(Vector([1.0, 0.0])), 4.0)?;
 /// assert_eq!(map.point_to_world(Vector([0.5, 0.25])), Vector([3.0, 1.0]));
 /// assert_eq!(map.force_to_device(Vector([0.0, 2.0])), Vector([0.0, 2.0]));
@@ -64,18 +64,18 @@ impl<const D: usize> WorkspaceMap<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the scale is not positive and finite, or the translation not
+    /// [`SafetyError::Number`] if the scale is not positive and finite, or the translation not
     /// finite.
-    pub fn new(world_from_device: Pose<D>, scale: f64) -> Result<Self, HapticsError> {
+    pub fn new(world_from_device: Pose<D>, scale: f64) -> Result<Self, SafetyError> {
         let scale = positive("scale", scale, "(world per device)")?;
         let wrong = world_from_device.translation.0.into_iter().find(|x| !x.is_finite());
         match wrong {
-            Some(value) => Err(HapticsError::Number {
+            Some(value) => Err(SafetyError::Number(NumberError {
                 parameter: "translation",
                 rule: "finite",
                 value,
                 unit: "m",
-            }),
+            })),
             None => Ok(Self {
                 world_from_device,
                 device_from_world: world_from_device.inverse(),
@@ -90,19 +90,19 @@ impl<const D: usize> WorkspaceMap<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the radius or the scene's size is not positive and finite.
+    /// [`SafetyError::Number`] if the radius or the scene's size is not positive and finite.
     ///
     /// ```
     /// use palpate_field::{Aabb, Vector};
-    /// use palpate_haptics::WorkspaceMap;
+    /// use palpate_safety::WorkspaceMap;
     ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let scene = Aabb::centred(Vector([3.0, 4.0]));
     /// assert_eq!(WorkspaceMap::fitting(scene, 0.125)?.scale(), 40.0);
     /// # Ok(())
     /// # }
     /// ```
-    pub fn fitting(scene: Aabb<D>, workspace_radius: f64) -> Result<Self, HapticsError> {
+    pub fn fitting(scene: Aabb<D>, workspace_radius: f64) -> Result<Self, SafetyError> {
         let workspace_radius = positive("workspace_radius", workspace_radius, "m")?;
         let half_diagonal =
             positive("half diagonal of the scene", scene.half_extents().norm(), "m")?;
@@ -185,9 +185,9 @@ impl<const D: usize> WorkspaceMap<D> {
     ///
     /// ```
     /// use palpate_field::{Pose, Vector};
-    /// use palpate_haptics::WorkspaceMap;
+    /// use palpate_safety::WorkspaceMap;
     ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let map = WorkspaceMap::<3>::new(Pose::identity(), 4.0)?;
     /// assert_eq!(map.torque_to_device(Vector([0.0, 2.0, 0.0])), Vector([0.0, 0.5, 0.0]));
     /// # Ok(())

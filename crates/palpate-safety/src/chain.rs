@@ -1,41 +1,23 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What stands between a wanted force and a hand.
+//! The safety chain of one contact point, from the wanted force to the one that is written.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod acceptance;
-mod channel;
-mod continuous;
-mod effect;
-mod finite;
-mod force_limit;
-mod limits;
-mod passivity;
-mod ramp;
-mod report;
-mod slew;
-mod watchdog;
-mod wrench;
 
 use std::num::NonZeroU32;
 
 use palpate_field::{Point, Vector};
 
-pub use acceptance::{Acceptance, Accepted, Rule};
-pub use effect::Effect;
-pub use passivity::PassivityReport;
-pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
-
-use channel::{Channel, Moment};
-pub(crate) use limits::Limits;
-use passivity::{Passivity, PassivityOptions, Seen};
-pub(crate) use wrench::{Both, WrenchChain, WrenchState};
-
+use crate::acceptance::{Acceptance, Accepted};
+use crate::channel::{Channel, Moment};
 use crate::device::DeviceProfile;
-use crate::error::{HapticsError, not_negative, positive};
+use crate::error::{SafetyError, not_negative, positive};
+use crate::finite;
 use crate::impedance::Impedance;
+use crate::limits::Limits;
+use crate::passivity::{Passivity, PassivityOptions, PassivityReport, Seen};
+use crate::report::SafetyReport;
 
 /// One contact point in a tick, as its safety chain sees it. Device coordinates, as it is the
 /// device that has limits: [`WorkspaceMap`](crate::WorkspaceMap) gives them.
@@ -142,9 +124,9 @@ impl SafetyOptions {
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_haptics::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
+/// use palpate_safety::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile { max_force: 2.5, ..DeviceProfile::unlimited("example") };
 /// let options = SafetyOptions { rise_time: 0.0, ..SafetyOptions::new(Impedance::default()) };
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
@@ -173,17 +155,17 @@ impl<const D: usize> SafetyChain<D> {
     /// # Errors
     ///
     /// As [`Accepted::new`] or, where the options say so, [`Accepted::strict`];
-    /// [`HapticsError::Number`] if a limit of the device is not positive, its mass negative, or
+    /// [`SafetyError::Number`] if a limit of the device is not positive, its mass negative, or
     /// an energy or a time of the options negative or not finite.
     pub fn new(
         device: &DeviceProfile,
         rate: f64,
         options: SafetyOptions,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, SafetyError> {
         let rate = positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
         let limits = Limits::along(device);
-        let accepted = Accepted::of((impedance, scale), &limits, options.acceptance, rate)?;
+        let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
         let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {
             // A device that loses any energy at once is passive whatever it renders.
@@ -211,7 +193,7 @@ impl<const D: usize> SafetyChain<D> {
     /// Renders another material from now on, accepted for the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn renew(&mut self, accepted: &Accepted) {
+    pub fn renew(&mut self, accepted: &Accepted) {
         self.accepted.renew(accepted);
         let stiffness = accepted.device_stiffness;
         let options = PassivityOptions { stiffness, ..*self.passivity.options() };

@@ -19,7 +19,7 @@ const TINY: f64 = 1e-9;
 ///
 /// ```
 /// use palpate_field::{Rotation, Vector};
-/// use palpate_haptics::turned;
+/// use palpate_safety::turned;
 ///
 /// let quarter = turned(&Rotation::<2>::identity(), Vector([0.0, 0.0, 0.5]));
 /// assert!((turned(&quarter, Vector([0.0, 0.0, 0.25])).angle() - 0.75).abs() < 1e-15);
@@ -36,7 +36,7 @@ pub fn turned<const D: usize>(rotation: &Rotation<D>, by: Vector<f64, 3>) -> Rot
 ///
 /// ```
 /// use palpate_field::{Rotation, Vector};
-/// use palpate_haptics::{turn_between, turned};
+/// use palpate_safety::{turn_between, turned};
 ///
 /// let (from, by) = (Rotation::<3>::identity(), Vector([0.25, -0.5, 1.0]));
 /// assert!((turn_between(&from, &turned(&from, by)) - by).norm() < 1e-15);
@@ -47,17 +47,17 @@ pub fn turn_between<const D: usize>(from: &Rotation<D>, to: &Rotation<D>) -> Vec
 }
 
 /// A vector of the plane or of space, in space.
-pub(crate) fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
+pub fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
     Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
 }
 
 /// The first coordinates of a vector of space.
-pub(crate) fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
+pub fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
     Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
 }
 
 /// a × b.
-pub(crate) fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
+pub fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
     let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
     Vector([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 }

@@ -6,9 +6,9 @@
 
 use std::borrow::Cow;
 
-use super::Rule;
+use crate::Rule;
 use crate::device::{DeviceProfile, TurningProfile};
-use crate::error::{HapticsError, not_negative, positive_or_infinite};
+use crate::error::{SafetyError, not_negative, positive_or_infinite};
 
 /// A limit with its name and its unit.
 #[derive(Clone, Copy, Debug)]
@@ -24,19 +24,20 @@ impl Limit {
     }
 
     /// The limit, which must be positive.
-    pub(crate) fn positive(&self) -> Result<f64, HapticsError> {
-        positive_or_infinite(self.name, self.value, self.unit)
+    pub(crate) fn positive(&self) -> Result<f64, SafetyError> {
+        Ok(positive_or_infinite(self.name, self.value, self.unit)?)
     }
 
     /// The limit, which must be zero or more and finite.
-    pub(crate) fn not_negative(&self) -> Result<f64, HapticsError> {
-        not_negative(self.name, self.value, self.unit)
+    pub(crate) fn not_negative(&self) -> Result<f64, SafetyError> {
+        Ok(not_negative(self.name, self.value, self.unit)?)
     }
 }
 
-/// The numbers of a profile, along axes or about them. Named as those along.
+/// The limits of a device along its axes, or about them: then angles stand for lengths and torques
+/// for forces.
 #[derive(Clone, Debug)]
-pub(crate) struct Limits {
+pub struct Limits {
     pub(crate) max_force: Limit,
     pub(crate) continuous_force: Limit,
     pub(crate) max_force_rate: Limit,
@@ -54,7 +55,8 @@ pub(crate) struct Limits {
 
 impl Limits {
     /// Along the axes of a device.
-    pub(crate) fn along(device: &DeviceProfile) -> Self {
+    #[must_use]
+    pub fn along(device: &DeviceProfile) -> Self {
         Self {
             max_force: Limit::new(device.max_force, "max_force", "N"),
             continuous_force: Limit::new(device.continuous_force, "continuous_force", "N"),
@@ -72,7 +74,8 @@ impl Limits {
     }
 
     /// About the axes of a device.
-    pub(crate) fn about(device: &TurningProfile) -> Self {
+    #[must_use]
+    pub fn about(device: &TurningProfile) -> Self {
         let limit = |value, name, unit| Limit::new(value, name, unit);
         Self {
             max_force: limit(device.max_torque, "max_torque", "N·m"),

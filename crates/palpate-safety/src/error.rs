@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What can be wrong with a number, a material for a device, or a device.
+
+/// A number that breaks the rule of its parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{parameter} must be {rule}, got {value} {unit}")]
+pub struct NumberError {
+    /// The parameter's name, as in scene files.
+    pub parameter: &'static str,
+    /// What it must be: "positive".
+    pub rule: &'static str,
+    /// What it was, in `unit`.
+    pub value: f64,
+    /// The unit of the parameter: "N/m".
+    pub unit: &'static str,
+}
+
+/// Why a device cannot be protected as asked. Every variant carries the offending numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SafetyError {
+    /// A number breaks the rule of its parameter.
+    #[error(transparent)]
+    Number(#[from] NumberError),
+    /// A device does not render a material, and is not to render a softer one.
+    #[error(
+        "a stiffness of {stiffness} N/m and a damping of {damping} N·s/m at the device break \
+         {condition}; {factor} times both would not"
+    )]
+    MaterialRefused {
+        /// Stiffness at the device [N/m].
+        stiffness: f64,
+        /// Damping at the device [N·s/m].
+        damping: f64,
+        /// The rule that is broken: "K ≤ 2 (b − |B|) / T".
+        condition: &'static str,
+        /// What both would have to be multiplied by.
+        factor: f64,
+    },
+    /// A device does not turn a tool with its coupling, and is not to be given a softer one.
+    #[error(
+        "an angular stiffness of {stiffness} N·m/rad and an angular damping of {damping} \
+         N·m·s/rad at the device break {condition}; {factor} times both would not"
+    )]
+    TurningRefused {
+        /// Angular stiffness at the device [N·m/rad].
+        stiffness: f64,
+        /// Angular damping at the device [N·m·s/rad].
+        damping: f64,
+        /// The rule that is broken: "κ ≤ 2 (b − |β|) / T".
+        condition: &'static str,
+        /// What both would have to be multiplied by.
+        factor: f64,
+    },
+    /// A device bears less than the one that the servo was made for.
+    #[error(
+        "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \
+         {device} {unit}: make the servo for this device"
+    )]
+    OtherDevice {
+        /// Which limit differs: "max_force".
+        limit: &'static str,
+        /// The limit that the servo was made for, in `unit`.
+        servo: f64,
+        /// The limit of the device, in `unit`.
+        device: f64,
+        /// The unit of the limit: "N".
+        unit: &'static str,
+    },
+}
+
+/// Checks that `value` is positive and finite.
+///
+/// # Errors
+///
+/// [`NumberError`] with the name and the unit given, also for NaN.
+pub fn positive(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, NumberError> {
+    // Written so that NaN fails.
+    if value > 0.0 && value <= f64::MAX {
+        Ok(value)
+    } else {
+        let rule = "positive and finite";
+        Err(NumberError { parameter, rule, value, unit })
+    }
+}
+
+/// Checks that `value` is not negative and finite.
+///
+/// # Errors
+///
+/// As [`positive`].
+pub fn not_negative(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, NumberError> {
+    if (0.0..=f64::MAX).contains(&value) {
+        Ok(value)
+    } else {
+        let rule = "zero or more and finite";
+        Err(NumberError { parameter, rule, value, unit })
+    }
+}
+
+/// Checks that `value` is positive; it may be infinite.
+///
+/// # Errors
+///
+/// As [`positive`].
+pub fn positive_or_infinite(
+    parameter: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> Result<f64, NumberError> {
+    // Written so that NaN fails.
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        let rule = "positive";
+        Err(NumberError { parameter, rule, value, unit })
+    }
+}

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What stands between a wanted force and a hand: profiles of devices, and the safety chain.
+//!
+//! A [`DeviceProfile`] says what a device can do, a [`Device`] is its transport, a
+//! [`WorkspaceMap`] places it in the world. [`Accepted`] says how stiff a material may be on it,
+//! a [`VelocityEstimator`] how fast the hand moves, and a [`SafetyChain`] gives the force to
+//! write in each tick: no larger, no faster and no longer than the device bears, and giving out
+//! no more energy than it took in. A [`WrenchChain`] does the same for force and torque together.
+//!
+//! This crate knows nothing of what is touched, so that it can be reviewed alone.
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
+
+mod acceptance;
+mod chain;
+mod channel;
+mod continuous;
+mod device;
+mod effect;
+mod error;
+mod finite;
+mod force_limit;
+mod impedance;
+mod limit;
+mod limits;
+mod passivity;
+mod ramp;
+mod report;
+mod rotation;
+mod slew;
+mod velocity;
+mod watchdog;
+mod workspace;
+mod wrench;
+
+pub use acceptance::{Acceptance, Accepted, Rule};
+pub use chain::{PortState, SafetyChain, SafetyOptions};
+pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
+pub use effect::Effect;
+pub use error::{NumberError, SafetyError, not_negative, positive, positive_or_infinite};
+pub use impedance::Impedance;
+pub use limit::{limited, part_of};
+pub use limits::Limits;
+pub use passivity::PassivityReport;
+pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
+pub use rotation::{cross, in_place, in_space, turn_between, turned};
+pub use velocity::VelocityEstimator;
+pub use workspace::WorkspaceMap;
+pub use wrench::{Both, WrenchChain, WrenchState};
