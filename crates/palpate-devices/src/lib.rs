@@ -10,6 +10,9 @@
 //! form, so the energy that a servo puts into the hand is known to the last digits. A [`Glove`]
 //! has many fingers that follow hand paths.
 //!
+//! Another thread leads the hand of a [`SteeredDevice`]; a [`MailboxDevice`] takes its positions
+//! from a driver in another thread, and leaves its forces there.
+//!
 //! A device of one's own implements [`Device`]; `palpate/examples/custom_device.rs` is one.
 //!
 //! # Examples
@@ -43,11 +46,13 @@
 mod glove;
 mod hand;
 mod hand_path;
+mod mailbox;
 mod motion;
 mod oscillator;
 mod profiles;
 mod recorded;
 mod simulated;
+mod steered;
 mod tour;
 mod turning;
 mod wrists;
@@ -55,6 +60,7 @@ mod wrists;
 pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};
+pub use mailbox::{Mailbox, MailboxDevice};
 pub use motion::Energies;
 pub use palpate_haptics::{
     Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile,
@@ -62,4 +68,5 @@ pub use palpate_haptics::{
 pub use profiles::{PROFILES, UnknownDevice, profile_named};
 pub use recorded::RecordedDevice;
 pub use simulated::SimulatedDevice;
+pub use steered::{SteeredDevice, Steering};
 pub use tour::Tour;

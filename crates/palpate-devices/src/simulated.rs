@@ -89,6 +89,8 @@ struct SimulatedPoint<const D: usize> {
     reading: PointState<D>,
     /// Where the hand wanted to be then [m].
     target: Point<D>,
+    /// Where the hand wants to be instead of on its path [m].
+    aim: Option<Point<D>>,
     energies: Energies,
 }
 
@@ -129,11 +131,26 @@ impl<const D: usize> SimulatedDevice<D> {
                 force: Vector::ZERO,
                 reading: PointState::at_rest(Vector::ZERO),
                 target: Vector::ZERO,
+                aim: None,
                 energies: Energies::default(),
             })
         });
         let points = points.collect::<Result<_, HapticsError>>()?;
         Ok(Self { profile, points, turning, time: None })
+    }
+
+    /// Where the hands want to be at first [m].
+    pub(crate) fn start_places(&self) -> Vec<Point<D>> {
+        self.points.iter().map(|point| point.wanted(0.0)).collect()
+    }
+
+    /// Lets a hand want to be at `place` [m] from now on, whatever its path.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn aim(&mut self, hand: usize, place: Point<D>) {
+        if let Some(point) = self.points.get_mut(hand) {
+            point.aim = Some(place);
+        }
     }
 
     /// Where each contact point is and how fast, as no encoder sees it.
@@ -214,9 +231,14 @@ impl<const D: usize> SimulatedPoint<D> {
         }
     }
 
+    /// Where the hand wants to be at a time [s].
+    fn wanted(&self, time: f64) -> Point<D> {
+        self.aim.unwrap_or_else(|| self.hand.path().state_at(time).position)
+    }
+
     /// Lays the device where the hand wants to be.
     fn start(&mut self, time: f64, encoder_step: f64) {
-        self.target = self.hand.path().state_at(time).position;
+        self.target = self.wanted(time);
         self.axes = self.target.0.map(|position| Axis { position, velocity: 0.0 });
         self.reading = PointState::at_rest(self.encoded(encoder_step));
     }
@@ -224,7 +246,7 @@ impl<const D: usize> SimulatedPoint<D> {
     /// Moves from the time `last` to `time` [s].
     fn advance(&mut self, last: f64, time: f64, encoder_step: f64) {
         let duration = time - last;
-        let target = self.hand.path().state_at(time).position;
+        let target = self.wanted(time);
         let target_velocity = (target - self.target) * (1.0 / duration);
         let push = self.hand.push();
         let loads = self.force.0.iter().zip(push.0).zip(self.target.0).zip(target_velocity.0);

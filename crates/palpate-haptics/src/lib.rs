@@ -63,7 +63,10 @@ pub use energy::Energy;
 pub use error::HapticsError;
 pub use event::{Event, EventCounts, EventKind, Reaction};
 pub use guide::{Curve, Guide, GuideOptions, Slope};
-pub use handoff::{Control, HandoffOptions, ServoEnd, StopSwitch, handoff};
+pub use handoff::{
+    Control, HandoffOptions, LatestReader, LatestWriter, ServoEnd, StopSwitch, handoff,
+    latest_value,
+};
 pub use live::{Progress, Snapshot};
 pub use material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,

@@ -5,6 +5,7 @@
 
 mod control;
 mod exchange;
+mod latest;
 #[cfg(test)]
 mod model;
 mod servo_end;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 use palpate_field::Pose;
 
 pub use control::{Control, StopSwitch};
+pub use latest::{LatestReader, LatestWriter, latest_value};
 pub use servo_end::ServoEnd;
 
 use exchange::{Medium, Native, counter, latest};
