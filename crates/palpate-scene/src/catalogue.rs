@@ -24,9 +24,10 @@ impl Signature {
         Self { dimension, name, about, parameters }
     }
 
-    /// The parameter whose key in files is `key`.
+    /// The parameter whose key in files is `key`: for an angle that with `_degrees`, or the
+    /// name alone for radians.
     pub(crate) fn parameter(&self, key: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|parameter| file_key(parameter) == key)
+        self.parameters.iter().find(|p| file_key(p) == key || p.name == key)
     }
 }
 
@@ -41,7 +42,7 @@ pub(crate) fn named(name: &str) -> Vec<Signature> {
     signatures().filter(|signature| signature.name == name).collect()
 }
 
-/// A parameter's key in files: angles say that they are in degrees.
+/// A parameter's key in files: angles in degrees say so; in radians they have the name alone.
 pub(crate) fn file_key(parameter: &Parameter) -> Cow<'static, str> {
     match parameter.kind {
         ParameterKind::Angle => format!("{}_degrees", parameter.name).into(),

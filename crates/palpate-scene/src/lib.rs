@@ -38,6 +38,8 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod angle;
+mod attitude;
 mod build;
 mod catalogue;
 mod check;
@@ -54,8 +56,10 @@ mod schema;
 mod tool;
 mod touch;
 mod view;
+mod write;
 mod written_material;
 
+pub use angle::Angle;
 pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
 pub use error::SceneError;
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
@@ -67,4 +71,5 @@ pub use schema::{schema, schema_text};
 pub use tool::{WrittenCoupling, WrittenTool, WrittenWorkspace};
 pub use touch::ServoSettings;
 pub use view::{FreePlane, View, ViewPlane};
+pub use write::SceneBody;
 pub use written_material::WrittenMaterial;

@@ -5,7 +5,8 @@
 
 use super::operators::{self as keys, OF};
 use super::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Rows};
-use crate::pose::{self, Turn};
+use crate::angle::Angle;
+use crate::pose::{self, Attitude, Turn};
 
 /// The values of a node's keys.
 #[derive(Default)]
@@ -19,7 +20,7 @@ pub(super) struct Parts {
     pub(super) progress: Option<f64>,
     pub(super) translate: Option<Vec<f64>>,
     pub(super) rotate_degrees: Option<Turn>,
-    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) rotation: Option<Attitude>,
     pub(super) scale: Option<Factor>,
     pub(super) offset: Option<f64>,
     pub(super) shell: Option<f64>,
@@ -27,7 +28,9 @@ pub(super) struct Parts {
     pub(super) mirror: Option<Axis>,
     pub(super) repeat: Option<Rows>,
     pub(super) bend_degrees: Option<f64>,
+    pub(super) bend: Option<f64>,
     pub(super) twist_degrees: Option<f64>,
+    pub(super) twist: Option<f64>,
     pub(super) extrude: Option<f64>,
     pub(super) revolve: Option<About>,
     pub(super) lists: Vec<(&'static str, Vec<Node>)>,
@@ -104,7 +107,9 @@ impl Parts {
             (self.mirror.is_some(), keys::MIRROR),
             (self.repeat.is_some(), keys::REPEAT),
             (self.bend_degrees.is_some(), keys::BEND_DEGREES),
+            (self.bend.is_some(), keys::BEND),
             (self.twist_degrees.is_some(), keys::TWIST_DEGREES),
+            (self.twist.is_some(), keys::TWIST),
             (self.extrude.is_some(), keys::EXTRUDE),
             (self.revolve.is_some(), keys::REVOLVE),
         ];
@@ -153,10 +158,10 @@ impl Parts {
             Ok(Form::Mirrored { axis, of })
         } else if let Some(rows) = self.repeat {
             Ok(Form::Repeated { rows, of })
-        } else if let Some(degrees_per_metre) = self.bend_degrees {
-            Ok(Form::Bent { degrees_per_metre, of })
-        } else if let Some(degrees_per_metre) = self.twist_degrees {
-            Ok(Form::Twisted { degrees_per_metre, of })
+        } else if let Some(rate) = angle(self.bend_degrees, self.bend) {
+            Ok(Form::Bent { rate, of })
+        } else if let Some(rate) = angle(self.twist_degrees, self.twist) {
+            Ok(Form::Twisted { rate, of })
         } else if let Some(height) = self.extrude {
             Ok(Form::Extruded { height, of })
         } else if let Some(About::Y) = self.revolve {
@@ -167,4 +172,9 @@ impl Parts {
             Ok(Form::Placed { translate: self.translate, rotation, of })
         }
     }
+}
+
+/// The angle of two keys, of which at most one is there.
+fn angle(degrees: Option<f64>, radians: Option<f64>) -> Option<Angle> {
+    degrees.map(Angle::Degrees).or(radians.map(Angle::Radians))
 }

@@ -47,6 +47,8 @@ impl<'de> Visitor<'de> for NodeVisitor {
                 operators::PROGRESS => parts.progress = Some(map.next_value()?),
                 operators::REPEAT => parts.repeat = Some(map.next_value()?),
                 operators::BEND_DEGREES => parts.bend_degrees = Some(map.next_value()?),
+                operators::BEND => parts.bend = Some(map.next_value()?),
+                operators::TWIST => parts.twist = Some(map.next_value()?),
                 operators::TWIST_DEGREES => parts.twist_degrees = Some(map.next_value()?),
                 operators::TRANSLATE => parts.translate = Some(map.next_value()?),
                 operators::ROTATE_DEGREES => parts.rotate_degrees = Some(map.next_value()?),

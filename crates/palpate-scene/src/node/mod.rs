@@ -14,6 +14,7 @@ use palpate_field::operator::Smooth;
 
 pub use primitive::Primitive;
 
+use crate::angle::Angle;
 use crate::pose::WrittenRotation;
 
 /// A shape as it is written, without a place of its own.
@@ -134,15 +135,15 @@ pub enum Form {
     },
     /// The shape turned in the plane of x and y, more and more along x.
     Bent {
-        /// By how much for each metre [°/m].
-        degrees_per_metre: f64,
+        /// By how much for each metre.
+        rate: Angle,
         /// The shape.
         of: Box<Node>,
     },
     /// The shape turned about y, more and more along y; in space alone.
     Twisted {
-        /// By how much for each metre [°/m].
-        degrees_per_metre: f64,
+        /// By how much for each metre.
+        rate: Angle,
         /// The shape.
         of: Box<Node>,
     },
@@ -216,14 +217,16 @@ pub struct Rows {
     pub z: Option<Row>,
 }
 
-/// A row of copies: between two numbers, or without end.
+/// A row of copies: between two numbers, or without end. A row from 0 to 0 without a spacing is
+/// the shape alone, as along an axis without a row.
 #[derive(
     Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// From one copy to the next [m].
-    pub spacing: f64,
+    /// From one copy to the next [m]; needed if there is more than the shape itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
     /// The lowest number of a copy, the shape itself being number 0; goes with `last`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first: Option<i32>,
@@ -265,6 +268,20 @@ impl Profile {
     ];
 }
 
+impl From<Smooth> for Profile {
+    fn from(profile: Smooth) -> Self {
+        match profile {
+            Smooth::Quadratic => Self::Quadratic,
+            Smooth::Cubic => Self::Cubic,
+            Smooth::Quartic => Self::Quartic,
+            Smooth::Circular => Self::Circular,
+            Smooth::Root => Self::Root,
+            Smooth::Exponential => Self::Exponential,
+            Smooth::CircularGeometrical => Self::CircularGeometrical,
+        }
+    }
+}
+
 impl From<Profile> for Smooth {
     fn from(profile: Profile) -> Self {
         match profile {
@@ -291,8 +308,8 @@ impl Node {
         Self::new(Form::Reference(name.into()))
     }
 
-    /// A primitive; the names of its arguments are those of files, angles in
-    /// degrees.
+    /// A primitive; the names of its arguments are the keys of files: `angle_degrees` for an
+    /// angle in degrees, `angle` for one in radians.
     pub fn primitive(
         name: impl Into<String>,
         arguments: impl IntoIterator<Item = (String, Argument)>,
@@ -306,9 +323,19 @@ impl Node {
     }
 }
 
+impl From<palpate_field::operator::Boolean> for Boolean {
+    fn from(boolean: palpate_field::operator::Boolean) -> Self {
+        match boolean {
+            palpate_field::operator::Boolean::Union => Self::Union,
+            palpate_field::operator::Boolean::Intersection => Self::Intersection,
+            palpate_field::operator::Boolean::Difference => Self::Difference,
+        }
+    }
+}
+
 impl Boolean {
     /// The key of the smooth boolean.
-    fn key(self) -> &'static str {
+    pub(crate) fn key(self) -> &'static str {
         match self {
             Self::Union => operators::SMOOTH_UNION,
             Self::Intersection => operators::SMOOTH_INTERSECTION,

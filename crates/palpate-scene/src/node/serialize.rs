@@ -29,8 +29,8 @@ impl Serialize for Node {
                 if let Some(turn) = rotate_degrees {
                     map.serialize_entry(keys::ROTATE_DEGREES, &turn)?;
                 }
-                if let Some(quaternion) = rotation {
-                    map.serialize_entry(keys::ROTATION, &quaternion)?;
+                if let Some(attitude) = rotation {
+                    map.serialize_entry(keys::ROTATION, &attitude)?;
                 }
             }
             Form::Scaled { factor: Factor::Uniform(factor), .. } => {
@@ -46,11 +46,12 @@ impl Serialize for Node {
             Form::Extruded { height, .. } => map.serialize_entry(keys::EXTRUDE, height)?,
             Form::Revolved { .. } => map.serialize_entry(keys::REVOLVE, "y")?,
             Form::Repeated { rows, .. } => map.serialize_entry(keys::REPEAT, rows)?,
-            Form::Bent { degrees_per_metre, .. } => {
-                map.serialize_entry(keys::BEND_DEGREES, degrees_per_metre)?;
+            Form::Bent { rate, .. } => {
+                map.serialize_entry(rate.key(keys::BEND_DEGREES, keys::BEND), &rate.number())?;
             }
-            Form::Twisted { degrees_per_metre, .. } => {
-                map.serialize_entry(keys::TWIST_DEGREES, degrees_per_metre)?;
+            Form::Twisted { rate, .. } => {
+                let key = rate.key(keys::TWIST_DEGREES, keys::TWIST);
+                map.serialize_entry(key, &rate.number())?;
             }
             Form::Displaced { height, .. } => map.serialize_entry(keys::HEIGHT, height)?,
             Form::Morphed { progress, .. } => map.serialize_entry(keys::PROGRESS, progress)?,

@@ -107,6 +107,19 @@ fn definitions_of(dimension: Dimension) -> Value {
             Dimension::Three => json!({ "$ref": "#/$defs/AxisAngle" }),
         },
     );
+    let rows = json!({
+        "type": "array",
+        "items": numbers(size),
+        "minItems": size,
+        "maxItems": size,
+    });
+    definitions.insert(
+        "Rotation".to_owned(),
+        match dimension {
+            Dimension::Two => rows,
+            Dimension::Three => json!({ "anyOf": [numbers(4), rows] }),
+        },
+    );
     if dimension == Dimension::Two {
         forbid_in_the_plane(&mut definitions);
     }
@@ -119,17 +132,14 @@ fn definitions_of(dimension: Dimension) -> Value {
 
 /// Takes away the keys that mean something in space alone.
 fn forbid_in_the_plane(definitions: &mut Map<String, Value>) {
-    for (definition, key) in [("Pose", "rotation"), ("View", "plane"), ("View", "at")] {
+    for key in ["plane", "at"] {
         let properties = definitions
-            .get_mut(definition)
+            .get_mut("View")
             .and_then(|definition| definition.get_mut("properties"))
             .and_then(Value::as_object_mut);
         if let Some(properties) = properties {
             properties.shift_remove(key);
         }
-    }
-    if let Some(Value::Object(pose)) = definitions.get_mut("Pose") {
-        pose.shift_remove("not");
     }
 }
 
