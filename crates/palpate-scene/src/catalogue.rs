@@ -5,7 +5,8 @@
 
 use std::borrow::Cow;
 
-use palpate_field::kernel::{Entry, Parameter, ParameterKind};
+use palpate_field::catalogue::{ALIASES, Entry};
+use palpate_field::kernel::{Parameter, ParameterKind};
 
 use crate::scene::Dimension;
 
@@ -31,13 +32,21 @@ impl Signature {
     }
 }
 
-/// All primitives, those of the plane first.
+/// All primitives, those of the plane first, then under their other names.
 pub(crate) fn signatures() -> impl Iterator<Item = Signature> {
+    primitives().chain(ALIASES.iter().filter_map(|alias| {
+        let is_meant =
+            |s: &Signature| (s.name, s.dimension.count()) == (alias.of, alias.dimension);
+        primitives().find(is_meant).map(|primitive| Signature { name: alias.name, ..primitive })
+    }))
+}
+
+fn primitives() -> impl Iterator<Item = Signature> {
     let planar = Entry::<2>::ALL.iter().map(|e| Signature::of(Dimension::Two, e));
     planar.chain(Entry::<3>::ALL.iter().map(|e| Signature::of(Dimension::Three, e)))
 }
 
-/// The primitives of that name: at most one in each dimension.
+/// The primitives of that name or other name: at most one in each dimension.
 pub(crate) fn named(name: &str) -> Vec<Signature> {
     signatures().filter(|signature| signature.name == name).collect()
 }

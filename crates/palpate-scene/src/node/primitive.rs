@@ -18,7 +18,7 @@ use crate::problem::unknown;
 /// A primitive of the catalogue with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
-    /// Its name in the catalogue.
+    /// Its name in the catalogue, or another name for it there.
     pub name: String,
     /// What its parameters are for.
     pub description: Option<String>,

@@ -343,6 +343,75 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
 }
 
 #[test]
+fn aliases_are_read_as_their_primitives() {
+    let read = |dimension: usize, shape: &str| {
+        let text = format!(
+            r#"{{ "palpate": 1, "dimension": {dimension},
+                 "bodies": [{{ "name": "it", "shape": {shape} }}] }}"#
+        );
+        let validator = jsonschema::validator_for(&palpate_scene::schema()).unwrap();
+        let scene = Scene::from_json(&text);
+        assert_eq!(
+            scene.is_ok(),
+            validator.is_valid(&serde_json::from_str(&text).unwrap()),
+            "{text}"
+        );
+        scene
+    };
+    let flat = |shape: &str| -> Shape<2> {
+        Space::built(read(2, shape).unwrap().build().unwrap()).bodies.swap_remove(0).shape
+    };
+    let solid = |shape: &str| -> Shape<3> {
+        Space::built(read(3, shape).unwrap().build().unwrap()).bodies.swap_remove(0).shape
+    };
+    let circle = flat(r#"{ "circle": { "radius": 2 } }"#);
+    assert_eq!(circle, Shape::circle(2.0).unwrap());
+    assert_eq!(text(&circle), r#"{"ball":{"radius":2.0}}"#);
+    let rectangle = flat(r#"{ "rectangle": { "size": [1, 2] } }"#);
+    assert_eq!(rectangle, Shape::rectangle([1.0, 2.0]).unwrap());
+    assert_eq!(text(&rectangle), r#"{"cuboid":{"size":[1.0,2.0]}}"#);
+    assert_eq!(solid(r#"{ "sphere": { "radius": 2 } }"#), Shape::sphere(2.0).unwrap());
+    let cuboid = Shape::cuboid([1.0, 2.0, 3.0]).unwrap();
+    assert_eq!(solid(r#"{ "box": { "size": [1, 2, 3] } }"#), cuboid);
+    let extruded = solid(r#"{ "extrude": 1, "of": { "circle": { "radius": 2 } } }"#);
+    assert_eq!(extruded, circle.extruded(1.0).unwrap());
+    for (dimension, shape, problem) in [
+        (
+            2,
+            r#"{ "sphere": { "radius": 2 } }"#,
+            "bodies[0].shape.sphere, line 2: `sphere` is a 3D shape, this place is 2D",
+        ),
+        (
+            3,
+            r#"{ "sphere": { "radius": -2 } }"#,
+            "bodies[0].shape.sphere.radius, line 2: radius must be positive, got -2 m",
+        ),
+        (
+            3,
+            r#"{ "spere": { "radius": 2 } }"#,
+            "bodies[0].shape.spere, line 2: unknown key `spere`, did you mean `sphere`?",
+        ),
+    ] {
+        assert_eq!(read(dimension, shape).unwrap_err().to_string(), problem);
+    }
+    // What a person wrote stays.
+    let scene = read(3, r#"{ "sphere": { "radius": 2 } }"#).unwrap();
+    assert!(scene.to_json().contains(r#"{ "sphere": { "radius": 2 } }"#));
+    assert_eq!(Scene::from_json(&scene.to_json()), Ok(scene));
+}
+
+#[test]
+fn every_alias_of_the_catalogue_is_a_key_of_the_schema() {
+    let schema = palpate_scene::schema();
+    for alias in palpate_field::catalogue::ALIASES {
+        let place = if alias.dimension == 2 { "plane" } else { "space" };
+        let keys = &schema["$defs"][place]["Node"]["properties"];
+        assert_eq!(keys[alias.name]["properties"], keys[alias.of]["properties"]);
+        assert!(keys[alias.name].is_object(), "{alias:?}");
+    }
+}
+
+#[test]
 fn bodies_of_another_dimension_are_refused() {
     let circle = Shape::circle(1.0).unwrap();
     let error = Scene::new(Dimension::Three).with_bodies([SceneBody::new("flat", circle)]);
