@@ -30,7 +30,7 @@ use crate::schema::{TurnSchema, VectorSchema};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PoseFile", into = "PoseFile")]
 pub struct WrittenPose {
-    /// Why it is there.
+    /// A note for readers of the file.
     pub description: Option<String>,
     /// The translation, applied second [m]; none if left out.
     pub translation: Option<Vec<f64>>,
@@ -56,7 +56,7 @@ pub enum WrittenRotation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct AxisAngle {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The direction of the axis, of any length but zero.
@@ -79,7 +79,7 @@ impl AxisAngle {
 #[schemars(rename = "Pose")]
 #[schemars(extend("not" = { "required": ["rotate_degrees", "rotation"] }))]
 struct PoseFile {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     description: Option<String>,
     /// The translation, applied second [m].

@@ -23,7 +23,7 @@ pub(super) struct Built<const D: usize> {
     pub(super) size: Size,
 }
 
-/// The shapes of one dimension that are built already.
+/// The named shapes of one dimension that are built already.
 type Memory<'a, const D: usize> = HashMap<&'a str, Built<D>>;
 
 /// Builds the shapes of a scene.
@@ -32,7 +32,7 @@ pub(super) struct Builder<'a> {
     scene: &'a Scene,
     planar: Memory<'a, 2>,
     spatial: Memory<'a, 3>,
-    /// The names that are being built, outermost first.
+    /// The names of shapes under construction, outermost first, to find cycles.
     open: Vec<&'a str>,
     pub(super) allowance: Allowance,
 }
@@ -68,7 +68,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Builds a shape that is no part of another.
+    /// Builds the shape of a body or a tool.
     pub(super) fn shape<const D: usize>(&mut self, node: &'a Node) -> Result<Shape<D>, Problem>
     where
         Self: Space<'a, D>,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From the keys of an object to the one shape that they describe.
+//! From the keys of an object to its node.
 
 use super::operators::{self as keys, OF};
 use super::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Rows};
@@ -86,8 +86,7 @@ impl Parts {
         Ok(Node { description, form })
     }
 
-    /// The keys that each make a shape; translation and rotation together are
-    /// one.
+    /// The keys that make a shape; translation and rotation together count as one.
     fn heads(&self) -> Vec<String> {
         let mut heads: Vec<&str> = Vec::new();
         heads.extend(self.primitives.iter().map(|primitive| primitive.name.as_str()));
@@ -117,7 +116,7 @@ impl Parts {
         heads.into_iter().map(str::to_owned).collect()
     }
 
-    /// The form whose one head is there.
+    /// The form that the key `head` makes.
     fn form(self, head: &str) -> Result<Form, String> {
         if let Some(name) = self.shape {
             return Ok(Form::Reference(name));

@@ -17,9 +17,9 @@ pub use primitive::Primitive;
 use crate::angle::Angle;
 use crate::pose::WrittenRotation;
 
-/// A shape as it is written, without a place of its own.
+/// A shape as a file gives it: an operator, a primitive or a reference, with a description.
 ///
-/// A node has no dimension: what it is made of decides in which it can be built.
+/// A node has no dimension. Its primitives and operators decide in which it can be built.
 ///
 /// ```
 /// use palpate_scene::{Form, Node};
@@ -34,18 +34,18 @@ use crate::pose::WrittenRotation;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// What it is for.
+    /// A note for readers of the file.
     pub description: Option<String>,
-    /// What it is.
+    /// The operator, primitive or reference.
     pub form: Form,
 }
 
-/// What a node is.
+/// The operator, primitive or reference of a node.
 ///
 /// Lengths are in metres; vectors have one number for each dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
-    /// The shape of that name in the scene.
+    /// A reference to the named shape of the scene.
     Reference(String),
     /// A primitive with its parameters.
     Primitive(Primitive),
@@ -59,7 +59,7 @@ pub enum Form {
     SymmetricDifference(Vec<Node>),
     /// A boolean with its creases filled, or its edges rounded off.
     Smooth {
-        /// Which.
+        /// Which boolean.
         boolean: Boolean,
         /// The shapes, blended in their order.
         of: Vec<Node>,
@@ -75,11 +75,11 @@ pub enum Form {
         /// How far the surface moves at most [m].
         height: f64,
     },
-    /// A shape on the way from the first to the second.
+    /// A shape between the first and the second.
     Morphed {
-        /// Both.
+        /// The two shapes.
         of: Vec<Node>,
-        /// How far on the way, from 0 to 1.
+        /// How far from the first to the second, from 0 to 1.
         progress: f64,
     },
     /// The shape turned, then moved.
@@ -93,7 +93,7 @@ pub enum Form {
     },
     /// The shape scaled about the origin.
     Scaled {
-        /// How much.
+        /// The factor.
         factor: Factor,
         /// The shape.
         of: Box<Node>,
@@ -121,7 +121,7 @@ pub enum Form {
     },
     /// The positive side of the shape and its mirror image.
     Mirrored {
-        /// The axis whose sign is ignored.
+        /// The axis along which it is mirrored.
         axis: Axis,
         /// The shape.
         of: Box<Node>,
@@ -135,14 +135,14 @@ pub enum Form {
     },
     /// The shape turned in the plane of x and y, more and more along x.
     Bent {
-        /// By how much for each metre.
+        /// The angle for each metre.
         rate: Angle,
         /// The shape.
         of: Box<Node>,
     },
     /// The shape turned about y, more and more along y; in space alone.
     Twisted {
-        /// By how much for each metre.
+        /// The angle for each metre.
         rate: Angle,
         /// The shape.
         of: Box<Node>,

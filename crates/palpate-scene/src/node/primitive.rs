@@ -20,7 +20,7 @@ use crate::problem::unknown;
 pub struct Primitive {
     /// Its name in the catalogue, or another name for it there.
     pub name: String,
-    /// What its parameters are for.
+    /// A note for readers of the file.
     pub description: Option<String>,
     /// Its parameters by their keys in files: `angle_degrees`, or `angle` in radians.
     pub arguments: IndexMap<String, Argument>,

@@ -22,9 +22,9 @@ use crate::scene::{Dimension, Scene};
 /// The JSON Schema of scene files, in draft 2020-12: for editors, and for
 /// programs that write scenes.
 ///
-/// A file that the schema refuses is refused by [`Scene::from_json`] too. What a
-/// schema cannot say is left to it: cycles of references, names that must be
-/// known or unique, and rules that compare two numbers.
+/// A file that the schema refuses is refused by [`Scene::from_json`] too. Rules
+/// that a schema cannot express are checked there alone: cycles of references, names that must
+/// be known or unique, and rules that compare two numbers.
 ///
 /// ```
 /// let schema = palpate_scene::schema();
@@ -130,7 +130,7 @@ fn definitions_of(dimension: Dimension) -> Value {
     definitions
 }
 
-/// Takes away the keys that mean something in space alone.
+/// Removes the keys that only space has.
 fn forbid_in_the_plane(definitions: &mut Map<String, Value>) {
     for key in ["plane", "at"] {
         let properties = definitions
