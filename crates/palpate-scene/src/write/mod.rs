@@ -82,7 +82,8 @@ impl Scene {
     /// more than 1e-9. The error has the path to the place, and the name of the Rust type.
     ///
     /// Names, poses and materials are checked by [`build`](Self::build), which also refuses a
-    /// scene of more than a million nodes with references followed.
+    /// scene of more than a million nodes, or of more than 128 nested operators, with references
+    /// followed.
     ///
     /// ```
     /// use palpate_field::{Promise, Shape};

@@ -283,6 +283,24 @@ fn a_shape_that_is_shared_is_written_once() {
 }
 
 #[test]
+fn a_shape_as_deep_as_shapes_may_be_comes_back() {
+    let ball = Shape::sphere(0.1).unwrap();
+    let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, 3.0]), 0.3).unwrap();
+    let pose = Pose::new(turn, Vector([0.1, 0.2, 0.3]));
+    let deeper = |shape: &Shape<3>| {
+        let placed = shape.clone().placed(&pose)?;
+        Shape::smooth_union([placed, ball.clone()], Profile::Cubic, 0.01)
+    };
+    let mut shape = ball.clone();
+    while let Ok(next) = deeper(&shape) {
+        shape = next;
+    }
+    assert!(shape.depth() + 2 > palpate_field::MAX_DEPTH, "{}", shape.depth());
+    let again = read_back(&shape);
+    points().take(5).for_each(|p| assert_same_bits(&shape, &again, p));
+}
+
+#[test]
 fn bodies_share_shapes_and_keep_the_names_of_a_scene() {
     let profile = Shape::rectangle([0.1, 0.2]).unwrap();
     let peg = profile.clone().extruded(1.0).unwrap();
