@@ -64,7 +64,7 @@ pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
 pub use error::SceneError;
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
-pub use node::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Row, Rows};
+pub use node::{Axis, Factor, Form, Node, Primitive, Row, Rows};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};

@@ -6,14 +6,14 @@
 use palpate_field::Shape;
 use palpate_field::catalogue::Entry;
 use palpate_field::kernel::Argument;
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Boolean, Copies, Profile};
 
 use super::builder::{Builder, Built, Space};
 use super::shape_error;
 use super::size::Size;
 use crate::catalogue::{self, file_key};
 use crate::node::operators as keys;
-use crate::node::{Axis, Boolean, Factor, Form, Primitive, Profile, Row, Rows};
+use crate::node::{Axis, Factor, Form, Primitive, Row, Rows};
 use crate::pose::{self, Turning, Turns};
 use crate::problem::{Problem, unknown};
 
@@ -119,7 +119,7 @@ impl<'a> Builder<'a> {
             Form::Intersection(_) => Shape::intersection(shapes),
             Form::SymmetricDifference(_) => Shape::symmetric_difference(shapes),
             Form::Smooth { boolean, width, profile, .. } => {
-                let profile = Smooth::from(profile.unwrap_or(Profile::Quadratic));
+                let profile = profile.unwrap_or(Profile::Quadratic);
                 match boolean {
                     Boolean::Union => Shape::smooth_union(shapes, profile, *width),
                     Boolean::Intersection => {

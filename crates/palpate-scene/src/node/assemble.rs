@@ -3,8 +3,10 @@
 
 //! From the keys of an object to its node.
 
+use palpate_field::operator::{Boolean, Profile};
+
 use super::operators::{self as keys, OF};
-use super::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Rows};
+use super::{Axis, Factor, Form, Node, Primitive, Rows};
 use crate::angle::Angle;
 use crate::pose::{self, Attitude, Turn};
 

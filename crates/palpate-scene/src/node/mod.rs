@@ -7,10 +7,11 @@ mod assemble;
 mod deserialize;
 pub(crate) mod operators;
 mod primitive;
+pub(crate) mod profile;
 mod serialize;
 
 use palpate_field::kernel::Argument;
-use palpate_field::operator::Smooth;
+use palpate_field::operator::{Boolean, Profile};
 
 pub use primitive::Primitive;
 
@@ -182,17 +183,6 @@ pub enum Axis {
     Z,
 }
 
-/// A boolean that can be smooth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Boolean {
-    /// What is in any of the shapes.
-    Union,
-    /// What is in all of the shapes.
-    Intersection,
-    /// What is in the first shape and none of the others.
-    Difference,
-}
-
 /// Rows of copies, along the axes that have one.
 #[derive(
     Clone,
@@ -235,67 +225,6 @@ pub struct Row {
     pub last: Option<i32>,
 }
 
-/// The profile of the crease of a smooth boolean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Profile {
-    /// Reaches 4 times its width.
-    Quadratic,
-    /// Reaches 6 times its width, rounder at its ends.
-    Cubic,
-    /// Reaches 16/3 times its width, round at its ends and in the middle.
-    Quartic,
-    /// Reaches 3.41 times its width, a quarter circle.
-    Circular,
-    /// A hyperbola, without end.
-    Root,
-    /// Without end; the order of the shapes makes no difference.
-    Exponential,
-    /// A fillet where two shapes meet at right angles; √2 times as steep.
-    CircularGeometrical,
-}
-
-impl Profile {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Quadratic,
-        Self::Cubic,
-        Self::Quartic,
-        Self::Circular,
-        Self::Root,
-        Self::Exponential,
-        Self::CircularGeometrical,
-    ];
-}
-
-impl From<Smooth> for Profile {
-    fn from(profile: Smooth) -> Self {
-        match profile {
-            Smooth::Quadratic => Self::Quadratic,
-            Smooth::Cubic => Self::Cubic,
-            Smooth::Quartic => Self::Quartic,
-            Smooth::Circular => Self::Circular,
-            Smooth::Root => Self::Root,
-            Smooth::Exponential => Self::Exponential,
-            Smooth::CircularGeometrical => Self::CircularGeometrical,
-        }
-    }
-}
-
-impl From<Profile> for Smooth {
-    fn from(profile: Profile) -> Self {
-        match profile {
-            Profile::Quadratic => Self::Quadratic,
-            Profile::Cubic => Self::Cubic,
-            Profile::Quartic => Self::Quartic,
-            Profile::Circular => Self::Circular,
-            Profile::Root => Self::Root,
-            Profile::Exponential => Self::Exponential,
-            Profile::CircularGeometrical => Self::CircularGeometrical,
-        }
-    }
-}
-
 impl Node {
     /// A node without a description.
     #[must_use]
@@ -323,24 +252,12 @@ impl Node {
     }
 }
 
-impl From<palpate_field::operator::Boolean> for Boolean {
-    fn from(boolean: palpate_field::operator::Boolean) -> Self {
-        match boolean {
-            palpate_field::operator::Boolean::Union => Self::Union,
-            palpate_field::operator::Boolean::Intersection => Self::Intersection,
-            palpate_field::operator::Boolean::Difference => Self::Difference,
-        }
-    }
-}
-
-impl Boolean {
-    /// The key of the smooth boolean.
-    pub(crate) fn key(self) -> &'static str {
-        match self {
-            Self::Union => operators::SMOOTH_UNION,
-            Self::Intersection => operators::SMOOTH_INTERSECTION,
-            Self::Difference => operators::SMOOTH_DIFFERENCE,
-        }
+/// The key of a smooth boolean.
+pub(crate) fn smooth_key(boolean: Boolean) -> &'static str {
+    match boolean {
+        Boolean::Union => operators::SMOOTH_UNION,
+        Boolean::Intersection => operators::SMOOTH_INTERSECTION,
+        Boolean::Difference => operators::SMOOTH_DIFFERENCE,
     }
 }
 
@@ -353,7 +270,7 @@ impl Form {
             Self::Intersection(nodes) => (operators::INTERSECTION, nodes),
             Self::Difference(nodes) => (operators::DIFFERENCE, nodes),
             Self::SymmetricDifference(nodes) => (operators::SYMMETRIC_DIFFERENCE, nodes),
-            Self::Smooth { boolean, of, .. } => (boolean.key(), of),
+            Self::Smooth { boolean, of, .. } => (smooth_key(*boolean), of),
             Self::Displaced { of, .. } => (operators::DISPLACE, of),
             Self::Morphed { of, .. } => (operators::MORPH, of),
             Self::Placed { of, .. }

@@ -6,7 +6,7 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::{Factor, Form, Node, operators as keys};
+use super::{Factor, Form, Node, operators as keys, profile};
 use crate::pose;
 
 impl Serialize for Node {
@@ -57,8 +57,8 @@ impl Serialize for Node {
             Form::Morphed { progress, .. } => map.serialize_entry(keys::PROGRESS, progress)?,
             Form::Smooth { width, profile, .. } => {
                 map.serialize_entry(keys::WIDTH, width)?;
-                if let Some(profile) = profile {
-                    map.serialize_entry(keys::PROFILE, profile)?;
+                if let Some(named) = profile {
+                    map.serialize_entry(keys::PROFILE, profile::name(*named))?;
                 }
             }
             Form::Union(_)

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::{place, reference};
 use crate::catalogue::{self, Signature, file_key};
 use crate::node::operators::{self as keys, DESCRIPTION, LISTS, OF, UNARY};
-use crate::node::{Axis, Profile};
+use crate::node::{Axis, profile};
 use crate::scene::Dimension;
 
 /// A node: the name of a shape, or an object.
@@ -55,7 +55,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
 
     let rest = [
         (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
-        (keys::PROFILE, json!({ "enum": Profile::ALL })),
+        (keys::PROFILE, json!({ "enum": profile::NAMES })),
         (keys::HEIGHT, json!({ "type": "number", "exclusiveMinimum": 0 })),
         (keys::PROGRESS, json!({ "type": "number", "minimum": 0, "maximum": 1 })),
         (OF, operand(dimension)),

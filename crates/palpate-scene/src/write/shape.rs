@@ -14,7 +14,7 @@ use super::{rotation, translation};
 use crate::angle::Angle;
 use crate::catalogue::file_key;
 use crate::node::operators as keys;
-use crate::node::{Axis, Boolean, Factor, Form, Node, Profile, Row, Rows};
+use crate::node::{Axis, Factor, Form, Node, Row, Rows, smooth_key};
 use crate::problem::Problem;
 
 /// Where a shape lies in memory: equal for clones alone, as long as one of them is kept.
@@ -117,10 +117,8 @@ impl Writer {
                 Form::SymmetricDifference(self.list(keys::SYMMETRIC_DIFFERENCE, of)?)
             }
             ShapeNode::Smooth { boolean, profile, width, of } => {
-                let boolean = Boolean::from(*boolean);
-                let profile = Some(Profile::from(*profile));
-                let of = self.list(boolean.key(), of)?;
-                Form::Smooth { boolean, of, width: *width, profile }
+                let of = self.list(smooth_key(*boolean), of)?;
+                Form::Smooth { boolean: *boolean, of, width: *width, profile: Some(*profile) }
             }
             ShapeNode::Displaced { of, by, height } => {
                 Form::Displaced { of: self.pair(keys::DISPLACE, of, by)?, height: *height }
