@@ -6,8 +6,8 @@
 use std::error::Error;
 
 use palpate::field::kernel::{Argument, Entry};
-use palpate::field::{Pose, Rotation, Shape, Vector};
-use palpate::scene::{AnyScene, Form, Node, Scene, WrittenRotation};
+use palpate::field::{Node, Pose, Shape};
+use palpate::scene::{AnyScene, Scene};
 
 const P1: &str = include_str!("../../scenes/p1.json");
 const P2: &str = include_str!("../../scenes/p2.json");
@@ -22,7 +22,6 @@ const WRENCH: &str = include_str!("../../scenes/wrench.json");
 /// A scene of `D` dimensions, and the cube that points are drawn from.
 pub(crate) struct Work<const D: usize> {
     pub(crate) name: &'static str,
-    pub(crate) scene: Scene,
     pub(crate) shape: Shape<D>,
     /// Half the side of the cube about the origin [m].
     pub(crate) half: f64,
@@ -51,7 +50,7 @@ pub(crate) fn thousand() -> Result<Work<3>, Box<dyn Error>> {
 fn in_space(name: &'static str, text: &str, half: f64) -> Result<Work<3>, Box<dyn Error>> {
     let scene = Scene::from_json(text)?;
     match scene.build()? {
-        AnyScene::Spatial(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        AnyScene::Spatial(world) => Ok(Work { name, shape: world.whole, half }),
         AnyScene::Planar(_) => Err(format!("{name} is not spatial").into()),
     }
 }
@@ -70,54 +69,35 @@ pub(crate) fn planar() -> Result<Vec<Work<2>>, Box<dyn Error>> {
 fn in_the_plane(name: &'static str, text: &str, half: f64) -> Result<Work<2>, Box<dyn Error>> {
     let scene = Scene::from_json(text)?;
     match scene.build()? {
-        AnyScene::Planar(world) => Ok(Work { name, scene, shape: world.whole, half }),
+        AnyScene::Planar(world) => Ok(Work { name, shape: world.whole, half }),
         AnyScene::Spatial(_) => Err(format!("{name} is not planar").into()),
     }
 }
 
 /// A placed primitive, as data.
 pub(crate) struct Placed {
-    entry: &'static Entry<3>,
+    entry: Entry<3>,
     arguments: Vec<Argument>,
     pose: Pose<3>,
 }
 
-/// The members of the one union of a scene, as data: what building starts from.
-pub(crate) fn members(scene: &Scene) -> Result<Vec<Placed>, Box<dyn Error>> {
-    let Form::Union(nodes) = &scene.bodies[0].shape.form else {
+/// The members of a union, as data: what building starts from.
+pub(crate) fn members(shape: &Shape<3>) -> Result<Vec<Placed>, Box<dyn Error>> {
+    let Node::Union(of) = shape.node() else {
         return Err("the scene is not a union".into());
     };
-    nodes.iter().map(placed).collect()
+    of.iter().map(placed).collect()
 }
 
-fn placed(node: &Node) -> Result<Placed, Box<dyn Error>> {
-    let Form::Placed { translate, rotation, of } = &node.form else {
+fn placed(shape: &Shape<3>) -> Result<Placed, Box<dyn Error>> {
+    let Node::Placed { pose, of } = shape.node() else {
         return Err("a member is not placed".into());
     };
-    let Form::Primitive(primitive) = &of.form else {
+    let Node::Primitive(primitive) = of.node() else {
         return Err("a member is not a primitive".into());
     };
-    let entry = Entry::<3>::ALL.iter().find(|entry| entry.name == primitive.name);
-    let entry = entry.ok_or_else(|| format!("no primitive {}", primitive.name))?;
-    let arguments = primitive.arguments.values().cloned().collect();
-    Ok(Placed { entry, arguments, pose: pose(translate.as_deref(), rotation.as_ref())? })
-}
-
-/// The pose of a node in space.
-pub(crate) fn pose(
-    translate: Option<&[f64]>,
-    rotation: Option<&WrittenRotation>,
-) -> Result<Pose<3>, Box<dyn Error>> {
-    let translation = match translate {
-        None => Vector::ZERO,
-        Some(offset) => Vector(offset.try_into()?),
-    };
-    let rotation = match rotation {
-        None => Rotation::identity(),
-        Some(WrittenRotation::Quaternion(q)) => Rotation::from_quaternion(*q)?,
-        Some(_) => return Err("benchmark scenes in space give quaternions".into()),
-    };
-    Ok(Pose::new(rotation, translation))
+    let arguments = primitive.arguments().to_vec();
+    Ok(Placed { entry: *primitive.entry(), arguments, pose: *pose })
 }
 
 /// Builds the union of `members`.

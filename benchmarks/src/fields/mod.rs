@@ -12,7 +12,7 @@ mod theirs;
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use crate::peers::{Body, Tape, formula};
+use crate::peers::{Body, Dimensions, Space, Tape, formula};
 use crate::reference::{self, Reference};
 use crate::rounds::{self, Subject};
 use crate::scenes::{self, Work};
@@ -53,13 +53,14 @@ fn measure_work<const D: usize>(
 ) -> Result<(), Box<dyn Error>>
 where
     Points<D>: Ours<D>,
+    Dimensions: Space<D>,
 {
     let points = Points::new(work.half);
-    let formula = formula(&work.scene)?;
+    let formula = formula(&work.shape)?;
     let mut jit = Tape::<JitFunction>::new(&formula);
     let vm = Tape::<VmFunction>::new(&formula);
     theirs::agree(&work.shape, &points, &mut jit)?;
-    let body = Body::of(&work.scene);
+    let body = Body::of(&work.shape);
 
     let jit = std::cell::RefCell::new(jit);
     let vm = std::cell::RefCell::new(vm);
@@ -77,7 +78,7 @@ where
 /// Building S4 from its data.
 fn measure_build(reference: &Reference, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     for work in scenes::spatial()? {
-        if let Ok(members) = scenes::members(&work.scene) {
+        if let Ok(members) = scenes::members(&work.shape) {
             scenes::build(&members)?;
             let key = format!("{}.build.scene", work.name);
             let mut subjects = [Subject::new(key, 1, || {

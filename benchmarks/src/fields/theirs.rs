@@ -132,3 +132,40 @@ pub(crate) fn parry<'a, const D: usize>(
         })
     }));
 }
+
+#[cfg(test)]
+mod tests {
+    use fidget::vm::VmFunction;
+
+    use super::*;
+    use crate::peers::{Dimensions, Space, formula};
+    use crate::scenes::{self, Work};
+
+    fn check<const D: usize>(work: &Work<D>)
+    where
+        Dimensions: Space<D>,
+    {
+        let formula = formula(&work.shape).unwrap_or_else(|error| panic!("{error}"));
+        let mut tape = Tape::<VmFunction>::new(&formula);
+        agree(&work.shape, &Points::new(work.half), &mut tape)
+            .unwrap_or_else(|error| panic!("{}: {error}", work.name));
+    }
+
+    #[test]
+    fn fidget_computes_the_distances_of_every_scene() {
+        let spatial = scenes::spatial().unwrap_or_else(|error| panic!("{error}"));
+        spatial.iter().for_each(check);
+        let wrench = scenes::wrench().unwrap_or_else(|error| panic!("{error}"));
+        check(&wrench);
+        assert!(Body::of(&wrench.shape).is_none());
+    }
+
+    #[test]
+    fn a_union_is_built_again_from_its_members() {
+        let spatial = scenes::spatial().unwrap_or_else(|error| panic!("{error}"));
+        let Some(s4) = spatial.last() else { panic!("no scenes") };
+        let members = scenes::members(&s4.shape).unwrap_or_else(|error| panic!("{error}"));
+        let built = scenes::build(&members).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(built, s4.shape);
+    }
+}

@@ -8,6 +8,6 @@ mod formula;
 mod parry;
 mod tape;
 
-pub(crate) use formula::formula;
+pub(crate) use formula::{Dimensions, Space, formula};
 pub(crate) use parry::Body;
 pub(crate) use tape::Tape;

@@ -3,13 +3,12 @@
 
 //! parry's shapes, where it has the same.
 
-use palpate::field::Pose;
+use std::any::Any;
+
 use palpate::field::kernel::Argument;
-use palpate::scene::{Form, Node, Scene};
+use palpate::field::{Node, Pose, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::shape::{Ball, Cuboid, SharedShape};
-
-use crate::scenes::pose;
 
 /// A placed shape of parry.
 pub(crate) struct Body {
@@ -18,20 +17,19 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// The first body of a scene, if parry has it: a ball or a box, perhaps placed.
-    pub(crate) fn of(scene: &Scene) -> Option<Self> {
-        let node = &scene.bodies[0].shape;
-        let (pose, node) = match &node.form {
-            Form::Placed { translate, rotation, of } => {
-                (pose(translate.as_deref(), rotation.as_ref()).ok()?, &**of)
-            }
-            _ => (Pose::identity(), node),
+    /// A shape of space, if parry has it: a ball or a box, perhaps placed.
+    pub(crate) fn of<const D: usize>(of: &Shape<D>) -> Option<Self> {
+        let of: &dyn Any = of;
+        let of = of.downcast_ref::<Shape<3>>()?;
+        let (pose, of) = match of.node() {
+            Node::Placed { pose, of } => (*pose, of),
+            _ => (Pose::identity(), of),
         };
         let [x, y, z, w] = pose.rotation.quaternion();
         let rotation = Rotation::from_xyzw(x, y, z, w);
         let [x, y, z] = pose.translation.0;
         let pose = ParryPose::from_parts(Vector::new(x, y, z), rotation);
-        Some(Self { shape: shape(node)?, pose })
+        Some(Self { shape: shape(of)?, pose })
     }
 
     /// The signed distance of a point.
@@ -40,10 +38,9 @@ impl Body {
     }
 }
 
-fn shape(node: &Node) -> Option<SharedShape> {
-    let Form::Primitive(primitive) = &node.form else { return None };
-    let argument = primitive.arguments.values().next()?;
-    match (primitive.name.as_str(), argument) {
+fn shape(of: &Shape<3>) -> Option<SharedShape> {
+    let Node::Primitive(primitive) = of.node() else { return None };
+    match (primitive.name(), primitive.arguments().first()?) {
         ("ball", Argument::Number(radius)) => Some(SharedShape::new(Ball::new(*radius))),
         ("cuboid", Argument::Vector(size)) => {
             let [x, y, z] = size.as_slice().try_into().ok()?;

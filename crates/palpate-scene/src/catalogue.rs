@@ -5,7 +5,8 @@
 
 use std::borrow::Cow;
 
-use palpate_field::kernel::{Entry, Parameter, ParameterKind};
+use palpate_field::catalogue::{ALIASES, Entry};
+use palpate_field::kernel::{Parameter, ParameterKind};
 
 use crate::scene::Dimension;
 
@@ -24,24 +25,33 @@ impl Signature {
         Self { dimension, name, about, parameters }
     }
 
-    /// The parameter whose key in files is `key`.
+    /// The parameter whose key in files is `key`: for an angle that with `_degrees`, or the
+    /// name alone for radians.
     pub(crate) fn parameter(&self, key: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|parameter| file_key(parameter) == key)
+        self.parameters.iter().find(|p| file_key(p) == key || p.name == key)
     }
 }
 
-/// All primitives, those of the plane first.
+/// All primitives, those of the plane first, then under their other names.
 pub(crate) fn signatures() -> impl Iterator<Item = Signature> {
+    primitives().chain(ALIASES.iter().filter_map(|alias| {
+        let is_meant =
+            |s: &Signature| (s.name, s.dimension.count()) == (alias.of, alias.dimension);
+        primitives().find(is_meant).map(|primitive| Signature { name: alias.name, ..primitive })
+    }))
+}
+
+fn primitives() -> impl Iterator<Item = Signature> {
     let planar = Entry::<2>::ALL.iter().map(|e| Signature::of(Dimension::Two, e));
     planar.chain(Entry::<3>::ALL.iter().map(|e| Signature::of(Dimension::Three, e)))
 }
 
-/// The primitives of that name: at most one in each dimension.
+/// The primitives of that name or other name: at most one in each dimension.
 pub(crate) fn named(name: &str) -> Vec<Signature> {
     signatures().filter(|signature| signature.name == name).collect()
 }
 
-/// A parameter's key in files: angles say that they are in degrees.
+/// A parameter's key in files: angles in degrees say so; in radians they have the name alone.
 pub(crate) fn file_key(parameter: &Parameter) -> Cow<'static, str> {
     match parameter.kind {
         ParameterKind::Angle => format!("{}_degrees", parameter.name).into(),

@@ -33,8 +33,7 @@ fn refused(key: &str, rule: &str, value: f64, unit: &str) -> Result<(), Problem>
     Err(Problem::about(format!("must be {rule}, got {value}{space}{unit}")).under(key))
 }
 
-/// `true` if `value` is what a missing key means, so that it need not be
-/// written.
+/// `true` if `value` is the default of its key, which is then left out.
 pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What guides the hand in free space.
+//! Guides of the hand in free space, as files give them.
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 use palpate_haptics::{Curve, Guide, GuideOptions, HapticsError, NumberError};
@@ -15,7 +15,7 @@ use crate::schema::VectorSchema;
 
 /// A force that guides the hand: towards a point, a line, a plane or a curve, or into a well.
 ///
-/// It has one of `point`, `line`, `segment`, `plane`, `curve` and `well`; all in the world.
+/// It has one of `point`, `line`, `segment`, `plane`, `curve` and `well`, in world coordinates.
 ///
 /// ```
 /// use palpate_scene::WrittenGuide;
@@ -36,26 +36,26 @@ use crate::schema::VectorSchema;
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
 ]))]
 pub struct WrittenGuide {
-    /// What it is for.
+    /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Towards this point [m].
+    /// The point that attracts the hand [m].
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<VectorSchema>")]
     pub point: Option<Vec<f64>>,
-    /// Towards a line without ends.
+    /// The endless line that attracts the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<GuideLine>,
-    /// Towards the straight way between two points.
+    /// The segment that attracts the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment: Option<GuideSegment>,
-    /// Towards a plane; in 2D a line.
+    /// The plane that attracts the hand; in 2D a line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plane: Option<GuidePlane>,
-    /// Towards a curve.
+    /// The curve that attracts the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<GuideCurve>,
-    /// Towards a centre, from near it.
+    /// The well that attracts a hand near its centre.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub well: Option<GuideWell>,
     /// Force for each metre off the guide [N/m]; 300 if left out.
@@ -97,14 +97,14 @@ impl Default for WrittenGuide {
     }
 }
 
-/// A line without ends.
+/// An endless line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideLine {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// A point of it [m].
+    /// A point on it [m].
     #[schemars(with = "VectorSchema")]
     pub through: Vec<f64>,
     /// Its direction, of any length but zero.
@@ -112,11 +112,11 @@ pub struct GuideLine {
     pub direction: Vec<f64>,
 }
 
-/// The straight way between two points.
+/// A segment between two points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideSegment {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Where it begins [m].
@@ -131,10 +131,10 @@ pub struct GuideSegment {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuidePlane {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// A point of it [m].
+    /// A point on it [m].
     #[schemars(with = "VectorSchema")]
     pub through: Vec<f64>,
     /// Its normal, of any length but zero.
@@ -146,7 +146,7 @@ pub struct GuidePlane {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideCurve {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The points, in order [m]; each unlike the one before, at most 1025, or 65 if smooth.
@@ -161,7 +161,7 @@ pub struct GuideCurve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct GuideWell {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Its centre [m].
@@ -173,7 +173,7 @@ pub struct GuideWell {
 }
 
 impl WrittenGuide {
-    /// What is wrong with the numbers, in a scene of `dimension`.
+    /// Checks the numbers, in a scene of `dimension`.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
         positive("stiffness", self.stiffness, "N/m")?;
         at_least("damping", self.damping, 0.0, "N·s/m")?;
@@ -297,13 +297,13 @@ impl GuideCurve {
     }
 }
 
-/// `true` if there is a way from `a` to `b`.
+/// `true` if `a` and `b` are different points.
 fn differ(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).any(|(a, b)| (b - a).abs() >= f64::MIN_POSITIVE)
 }
 
 impl WrittenGuide {
-    /// The guide that is meant.
+    /// The guide with these numbers.
     ///
     /// # Errors
     ///

@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Scene files: what is there to be touched, as data.
+//! Scene files: bodies to be touched, with their tool and guides, as data.
 //!
 //! A [`Scene`] is read from JSON with [`Scene::from_json`], which names the path
 //! and the line of whatever is wrong; it is plain data, written back with
 //! [`Scene::to_json`] without loss. [`Scene::build`] makes [`AnyScene`]: bodies with
 //! their [`Shape`](palpate_field::Shape)s.
 //!
-//! Shapes are [`Node`]s: primitives of the catalogue of `palpate-field`,
-//! operators, and references to shapes that have a name. The primitives are
-//! listed nowhere in this crate: reading, writing and the [`schema`] follow the
-//! catalogue.
+//! Shapes are [`Node`]s: primitives of the catalogue of `palpate-field`, operators, and
+//! references to named shapes. Reading, writing and the [`schema`] follow the catalogue; this
+//! crate has no list of primitives. Shapes made in code become a scene with
+//! [`Scene::with_bodies`] and read back to the same bits.
 //!
 //! Materials are those of `palpate-haptics`; a scene makes its bodies, world and servo with
-//! [`BuiltScene::bodies`], [`BuiltScene::world`] and [`BuiltScene::servo`]. [`Motion`] and [`View`]
-//! are data that other crates give a meaning to.
+//! [`BuiltScene::bodies`], [`BuiltScene::world`] and [`BuiltScene::servo`]. This crate reads and
+//! checks [`Motion`]s and [`View`]s; other crates interpret them.
 //!
 //! ```
 //! use palpate_scene::{Scene, AnyScene};
@@ -38,6 +38,8 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod angle;
+mod attitude;
 mod build;
 mod catalogue;
 mod check;
@@ -54,17 +56,20 @@ mod schema;
 mod tool;
 mod touch;
 mod view;
+mod write;
 mod written_material;
 
+pub use angle::Angle;
 pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
 pub use error::SceneError;
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
-pub use node::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Row, Rows};
+pub use node::{Axis, Factor, Form, Node, Primitive, Row, Rows};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};
 pub use tool::{WrittenCoupling, WrittenTool, WrittenWorkspace};
 pub use touch::ServoSettings;
 pub use view::{FreePlane, View, ViewPlane};
+pub use write::SceneBody;
 pub use written_material::WrittenMaterial;

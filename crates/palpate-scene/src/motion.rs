@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How bodies move.
+//! Motions of bodies.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,15 +29,15 @@ use crate::problem::Problem;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct Motion {
-    /// What it shows.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The name of the body.
     pub body: String,
-    /// Where it begins; the body's own pose if left out.
+    /// The first pose; the body's own if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<WrittenPose>,
-    /// Where it ends.
+    /// The last pose.
     pub to: WrittenPose,
     /// When it begins [s]; 0 if left out.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
@@ -76,7 +76,7 @@ pub enum Repeat {
 }
 
 impl Motion {
-    /// What is wrong with the numbers, body and poses aside.
+    /// Checks the numbers; body and poses are checked by the scene.
     pub(crate) fn check(&self) -> Result<(), Problem> {
         at_least("start", self.start, 0.0, "s")?;
         positive("duration", self.duration, "s")

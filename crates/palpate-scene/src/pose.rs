@@ -11,6 +11,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
+pub(crate) use crate::attitude::Attitude;
 use crate::problem::Problem;
 use crate::schema::{TurnSchema, VectorSchema};
 
@@ -29,7 +30,7 @@ use crate::schema::{TurnSchema, VectorSchema};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PoseFile", into = "PoseFile")]
 pub struct WrittenPose {
-    /// Why it is there.
+    /// A note for readers of the file.
     pub description: Option<String>,
     /// The translation, applied second [m]; none if left out.
     pub translation: Option<Vec<f64>>,
@@ -46,13 +47,16 @@ pub enum WrittenRotation {
     AxisAngle(AxisAngle),
     /// In space: a quaternion `[x, y, z, w]` of any length but zero.
     Quaternion([f64; 4]),
+    /// The rows of a matrix: the same rotation to the bit if they are orthonormal within 1e-9,
+    /// made orthonormal if they are within 1e-6.
+    Rows(Vec<Vec<f64>>),
 }
 
 /// A rotation about an axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 pub struct AxisAngle {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The direction of the axis, of any length but zero.
@@ -75,7 +79,7 @@ impl AxisAngle {
 #[schemars(rename = "Pose")]
 #[schemars(extend("not" = { "required": ["rotate_degrees", "rotation"] }))]
 struct PoseFile {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     description: Option<String>,
     /// The translation, applied second [m].
@@ -86,9 +90,10 @@ struct PoseFile {
     /// space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     rotate_degrees: Option<Turn>,
-    /// The rotation as a quaternion `[x, y, z, w]`, in space.
+    /// The rotation, applied first: the rows of a matrix, or in space a quaternion
+    /// `[x, y, z, w]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    rotation: Option<[f64; 4]>,
+    rotation: Option<Attitude>,
 }
 
 impl JsonSchema for WrittenPose {
@@ -183,13 +188,14 @@ impl From<WrittenPose> for PoseFile {
 /// The rotation of the two keys that may give it.
 pub(crate) fn one_rotation(
     rotate_degrees: Option<Turn>,
-    rotation: Option<[f64; 4]>,
+    rotation: Option<Attitude>,
 ) -> Result<Option<WrittenRotation>, &'static str> {
     Ok(match (rotate_degrees, rotation) {
         (None, None) => None,
         (Some(Turn::Degrees(angle)), None) => Some(WrittenRotation::Degrees(angle)),
         (Some(Turn::AxisAngle(turn)), None) => Some(WrittenRotation::AxisAngle(turn)),
-        (None, Some(quaternion)) => Some(WrittenRotation::Quaternion(quaternion)),
+        (None, Some(Attitude::Quaternion(q))) => Some(WrittenRotation::Quaternion(q)),
+        (None, Some(Attitude::Rows(rows))) => Some(WrittenRotation::Rows(rows)),
         (Some(_), Some(_)) => {
             return Err("`rotate_degrees` and `rotation` say the same; give one of them");
         }
@@ -197,12 +203,13 @@ pub(crate) fn one_rotation(
 }
 
 /// The values of `rotate_degrees` and `rotation`.
-pub(crate) fn keys(rotation: Option<WrittenRotation>) -> (Option<Turn>, Option<[f64; 4]>) {
+pub(crate) fn keys(rotation: Option<WrittenRotation>) -> (Option<Turn>, Option<Attitude>) {
     match rotation {
         None => (None, None),
         Some(WrittenRotation::Degrees(angle)) => (Some(Turn::Degrees(angle)), None),
         Some(WrittenRotation::AxisAngle(turn)) => (Some(Turn::AxisAngle(turn)), None),
-        Some(WrittenRotation::Quaternion(quaternion)) => (None, Some(quaternion)),
+        Some(WrittenRotation::Quaternion(q)) => (None, Some(Attitude::Quaternion(q))),
+        Some(WrittenRotation::Rows(rows)) => (None, Some(Attitude::Rows(rows))),
     }
 }
 
@@ -211,7 +218,7 @@ impl WrittenRotation {
     pub(crate) fn key(&self) -> &'static str {
         match self {
             Self::Degrees(_) | Self::AxisAngle(_) => "rotate_degrees",
-            Self::Quaternion(_) => "rotation",
+            Self::Quaternion(_) | Self::Rows(_) => "rotation",
         }
     }
 }
@@ -239,6 +246,7 @@ impl Turning<2> for Turns {
                 Err(Problem::new("a quaternion turns in 3D; in 2D give `rotate_degrees`")
                     .of_dimension())
             }
+            WrittenRotation::Rows(rows) => of_rows(rows),
         }
     }
 }
@@ -262,7 +270,31 @@ impl Turning<3> for Turns {
             WrittenRotation::Quaternion(quaternion) => {
                 Rotation::from_quaternion(*quaternion).map_err(|error| seen(None, error))
             }
+            WrittenRotation::Rows(rows) => of_rows(rows),
         }
+    }
+}
+
+/// How far from orthonormal rows may be that are kept to the bit: more than the rounding of any
+/// product of rotations, less than that of numbers written with nine digits.
+const KEPT: f64 = 1e-9;
+
+/// The rotation with these rows.
+pub(crate) fn of_rows<const D: usize>(rows: &[Vec<f64>]) -> Result<Rotation<D>, Problem> {
+    let count = rows.len();
+    let arrays: Vec<_> = rows.iter().filter_map(|row| row.as_slice().try_into().ok()).collect();
+    let Ok(rows) = <[[f64; D]; D]>::try_from(arrays) else {
+        let message = format!("rotation must have {D} rows of {D} numbers in {D}D");
+        let problem = Problem::new(message);
+        return Err(if count == 5 - D { problem.of_dimension() } else { problem });
+    };
+    let read = |error: ShapeError| Problem::new(error.to_string());
+    let straight = Rotation::from_matrix(rows).map_err(read)?;
+    let numbers = straight.matrix().as_flattened().iter().zip(rows.as_flattened());
+    if numbers.into_iter().all(|(straight, given)| (straight - given).abs() <= KEPT) {
+        Rotation::from_rows(rows).map_err(read)
+    } else {
+        Ok(straight)
     }
 }
 

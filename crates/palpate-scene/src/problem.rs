@@ -28,7 +28,7 @@ pub(crate) struct Problem {
     wants_subject: bool,
     /// `true` if the outermost step begins at the root.
     rooted: bool,
-    /// `true` if what is wrong here could be right in the other dimension.
+    /// `true` if the other dimension may accept what is wrong here.
     of_dimension: bool,
     message: String,
 }
@@ -71,17 +71,17 @@ impl Problem {
         Self { rooted: true, ..self }
     }
 
-    /// The same problem, which would be none in the other dimension.
+    /// The same problem, which the other dimension may not have.
     pub(crate) fn of_dimension(self) -> Self {
         Self { of_dimension: true, ..self }
     }
 
-    /// `true` if what is wrong here could be right in the other dimension.
+    /// `true` if the other dimension may accept what is wrong here.
     pub(crate) fn is_of_dimension(&self) -> bool {
         self.of_dimension
     }
 
-    /// The same problem, at a place that has its dimension in any case.
+    /// The same problem, at a place whose dimension is fixed.
     pub(crate) fn in_any_dimension(self) -> Self {
         Self { of_dimension: false, ..self }
     }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A scene as it is written.
+//! The data of a scene file.
 
 use std::fmt;
 use std::path::Path;
@@ -48,7 +48,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// What a file holds: shapes, and bodies made of them.
+/// The data of a scene file: named shapes, bodies, a tool, guides, motions and views.
 ///
 /// Plain data: [`build`](Self::build) checks it and makes the shapes.
 ///
@@ -76,23 +76,23 @@ pub struct Scene {
     /// 2 for the plane, 3 for space.
     #[schemars(schema_with = "crate::schema::dimension")]
     dimension: Dimension,
-    /// What the scene shows.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Shapes that have a name, which any shape may refer to.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "crate::schema::named_shapes")]
     pub shapes: IndexMap<String, Node>,
-    /// What is there to be touched; at least one.
+    /// The bodies to be touched; at least one.
     #[schemars(length(min = 1))]
     pub bodies: Vec<WrittenBody>,
-    /// What touches: the tip of a stylus, fingers, a shape held in the hand.
+    /// The tool that touches them: the tip of a stylus, fingers, or a shape held in the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tool: Option<WrittenTool>,
-    /// What guides the hand in free space.
+    /// Guides of the hand in free space.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub guides: Vec<WrittenGuide>,
-    /// How bodies move.
+    /// Motions of bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
     /// Pictures worth making of the scene.
@@ -100,7 +100,7 @@ pub struct Scene {
     pub views: Vec<View>,
 }
 
-/// A shape with its place in the world and what it feels like.
+/// A body: a shape with its pose in the world and its material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[schemars(rename = "Body")]
@@ -108,7 +108,7 @@ pub struct WrittenBody {
     /// The name, unlike that of any other body.
     #[schemars(length(min = 1))]
     pub name: String,
-    /// What the body is for.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The shape, in the body's own coordinates.
@@ -116,8 +116,7 @@ pub struct WrittenBody {
     /// Where the body is, as `world_from_body`; at the origin if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pose: Option<WrittenPose>,
-    /// What the body feels like, in numbers or the name of a preset; the default material if
-    /// left out.
+    /// The material, in numbers or as the name of a preset; the default material if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(schema_with = "crate::schema::material")]
     pub material: Option<WrittenMaterial>,
@@ -131,7 +130,7 @@ impl WrittenBody {
 }
 
 impl Scene {
-    /// A scene without anything in it: give it bodies before building.
+    /// An empty scene; [`build`](Self::build) refuses it until it has a body.
     #[must_use]
     pub fn new(dimension: Dimension) -> Self {
         Self {

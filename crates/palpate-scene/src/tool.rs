@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What touches the scene.
+//! The tool of a scene, as a file gives it.
 
 use palpate_haptics::ToolOptions;
 use schemars::JsonSchema;
@@ -13,7 +13,7 @@ use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::schema::VectorSchema;
 
-/// What touches the scene: the tip of a stylus, fingers, a shape in the hand.
+/// The tool that touches a scene: the tip of a stylus, fingers, or a shape in the hand.
 ///
 /// Each contact point is felt on its own, as a ball of the tool's radius. A tool
 /// with a shape is felt as a whole, with force and torque.
@@ -33,7 +33,7 @@ use crate::schema::VectorSchema;
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Tool")]
 pub struct WrittenTool {
-    /// What it is meant to be.
+    /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The radius of each contact point [m]; 0 if left out.
@@ -48,10 +48,10 @@ pub struct WrittenTool {
     /// The shape of the tool in its own coordinates, instead of points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Node>,
-    /// How the tool hangs on the hand.
+    /// The virtual coupling between the hand and the tool.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<WrittenCoupling>,
-    /// How the device's space lies in the world.
+    /// The map from the device's space to the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<WrittenWorkspace>,
     /// The greatest force on the hand [N]; the device's own limit if left out.
@@ -61,13 +61,12 @@ pub struct WrittenTool {
 }
 
 /// A virtual coupling: the spring and damper between the hand and a tool with a
-/// shape (Colgate, Stanley and Brown 1995). What is left out is chosen by the
-/// engine from the device.
+/// shape (Colgate, Stanley and Brown 1995). The engine derives missing values from the device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Coupling")]
 pub struct WrittenCoupling {
-    /// Why it is as it is.
+    /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Force for each metre apart [N/m].
@@ -88,12 +87,12 @@ pub struct WrittenCoupling {
     pub angular_damping: Option<f64>,
 }
 
-/// How the device's space lies in the world: scaled, turned, then moved.
+/// The map from the device's space to the world: scaled, rotated, then translated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Workspace")]
 pub struct WrittenWorkspace {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Metres in the world for each metre of the device; 1 if left out.
@@ -112,7 +111,7 @@ impl Default for WrittenWorkspace {
 }
 
 impl WrittenTool {
-    /// What is wrong with the numbers, the shape and the pose aside.
+    /// Checks the numbers; the shape and the pose are checked when they are built.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
         at_least("radius", self.radius, 0.0, "m")?;
         for (i, point) in self.points.iter().enumerate() {
@@ -151,7 +150,7 @@ impl WrittenCoupling {
 }
 
 impl WrittenTool {
-    /// The options of the tool with a shape that is meant: what is left out is that of
+    /// The options of a tool with a shape; missing keys have the values of
     /// [`ToolOptions::default`].
     #[must_use]
     pub fn options(&self) -> ToolOptions {

@@ -33,7 +33,7 @@ pub struct View {
     /// The name, unlike that of any other view.
     #[schemars(length(min = 1))]
     pub name: String,
-    /// What it shows.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The plane, in space alone; `"xy"` if left out.
@@ -79,7 +79,7 @@ pub enum ViewPlane {
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[schemars(inline)]
 pub struct FreePlane {
-    /// Why it is there.
+    /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The point of the plane that has coordinates 0, 0 [m].
@@ -139,7 +139,7 @@ impl<'de> Visitor<'de> for PlaneVisitor {
 }
 
 impl View {
-    /// What is wrong with the numbers, in a scene of `dimension`.
+    /// Checks the numbers, in a scene of `dimension`.
     pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
         positive_if("width", self.width, "m")?;
         positive_if("height", self.height, "m")?;

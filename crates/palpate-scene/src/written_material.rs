@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A material as a body has it: by name or in numbers.
+//! The material of a body, by name or in numbers.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ pub enum WrittenMaterial {
 }
 
 impl WrittenMaterial {
-    /// The material that is meant.
+    /// The preset of that name, or the material with these numbers.
     ///
     /// # Errors
     ///
@@ -44,7 +44,7 @@ impl WrittenMaterial {
         self.known().map_err(|problem| problem.located(None))
     }
 
-    /// The material that is meant, unchecked.
+    /// As [`material`](Self::material), with a problem that has no place yet.
     pub(crate) fn known(&self) -> Result<Material, Problem> {
         match self {
             Self::Preset(name) => Material::preset(name).map_err(|_| {

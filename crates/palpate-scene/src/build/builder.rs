@@ -6,12 +6,12 @@
 use std::collections::HashMap;
 
 use palpate_field::Shape;
-use palpate_field::kernel::Entry;
 
 use super::shape_error;
 use super::size::{Allowance, Size, check_depth};
+use crate::angle::Angle;
 use crate::node::Node;
-use crate::node::operators::{EXTRUDE, OF, REVOLVE, TWIST_DEGREES};
+use crate::node::operators::{EXTRUDE, OF, REVOLVE, TWIST, TWIST_DEGREES};
 use crate::pose::{Turning, Turns};
 use crate::problem::{Problem, shortened, unknown};
 use crate::scene::{Dimension, Scene};
@@ -23,7 +23,7 @@ pub(super) struct Built<const D: usize> {
     pub(super) size: Size,
 }
 
-/// The shapes of one dimension that are built already.
+/// The named shapes of one dimension that are built already.
 type Memory<'a, const D: usize> = HashMap<&'a str, Built<D>>;
 
 /// Builds the shapes of a scene.
@@ -32,7 +32,7 @@ pub(super) struct Builder<'a> {
     scene: &'a Scene,
     planar: Memory<'a, 2>,
     spatial: Memory<'a, 3>,
-    /// The names that are being built, outermost first.
+    /// The names of shapes under construction, outermost first, to find cycles.
     open: Vec<&'a str>,
     pub(super) allowance: Allowance,
 }
@@ -41,9 +41,6 @@ pub(super) struct Builder<'a> {
 pub(super) trait Space<'a, const D: usize> {
     /// The dimension.
     const DIMENSION: Dimension;
-
-    /// Its primitives.
-    fn catalogue() -> &'static [Entry<D>];
 
     /// Its shapes.
     fn memory(&mut self) -> &mut Memory<'a, D>;
@@ -56,8 +53,8 @@ pub(super) trait Space<'a, const D: usize> {
         level: usize,
     ) -> Result<Built<D>, Problem>;
 
-    /// A shape twisted by `rate` [rad/m].
-    fn twisted(shape: Shape<D>, rate: f64) -> Result<Shape<D>, Problem>;
+    /// A shape twisted by a `rate` for each metre.
+    fn twisted(shape: Shape<D>, rate: Angle) -> Result<Shape<D>, Problem>;
 }
 
 impl<'a> Builder<'a> {
@@ -71,7 +68,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Builds a shape that is no part of another.
+    /// Builds the shape of a body or a tool.
     pub(super) fn shape<const D: usize>(&mut self, node: &'a Node) -> Result<Shape<D>, Problem>
     where
         Self: Space<'a, D>,
@@ -177,10 +174,6 @@ impl<'a> Builder<'a> {
 impl<'a> Space<'a, 2> for Builder<'a> {
     const DIMENSION: Dimension = Dimension::Two;
 
-    fn catalogue() -> &'static [Entry<2>] {
-        Entry::<2>::ALL
-    }
-
     fn memory(&mut self) -> &mut Memory<'a, 2> {
         &mut self.planar
     }
@@ -196,18 +189,15 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         Err(Problem::new(message).of_dimension())
     }
 
-    fn twisted(_shape: Shape<2>, _rate: f64) -> Result<Shape<2>, Problem> {
-        let message = format!("`{TWIST_DEGREES}` twists a 3D shape, this place is 2D");
+    fn twisted(_shape: Shape<2>, rate: Angle) -> Result<Shape<2>, Problem> {
+        let key = rate.key(TWIST_DEGREES, TWIST);
+        let message = format!("`{key}` twists a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension())
     }
 }
 
 impl<'a> Space<'a, 3> for Builder<'a> {
     const DIMENSION: Dimension = Dimension::Three;
-
-    fn catalogue() -> &'static [Entry<3>] {
-        Entry::<3>::ALL
-    }
 
     fn memory(&mut self) -> &mut Memory<'a, 3> {
         &mut self.spatial
@@ -233,8 +223,8 @@ impl<'a> Space<'a, 3> for Builder<'a> {
         Ok(Built { shape, size })
     }
 
-    fn twisted(shape: Shape<3>, rate: f64) -> Result<Shape<3>, Problem> {
-        let twisted = shape.twisted(rate);
-        twisted.map_err(|error| shape_error::of_operator(TWIST_DEGREES, &error))
+    fn twisted(shape: Shape<3>, rate: Angle) -> Result<Shape<3>, Problem> {
+        let key = rate.key(TWIST_DEGREES, TWIST);
+        shape.twisted(rate.radians()).map_err(|error| shape_error::of_operator(key, &error))
     }
 }

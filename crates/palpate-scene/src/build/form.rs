@@ -4,15 +4,16 @@
 //! One node at a time: from its form to a shape.
 
 use palpate_field::Shape;
+use palpate_field::catalogue::Entry;
 use palpate_field::kernel::Argument;
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Boolean, Copies, Profile};
 
 use super::builder::{Builder, Built, Space};
 use super::shape_error;
 use super::size::Size;
 use crate::catalogue::{self, file_key};
 use crate::node::operators as keys;
-use crate::node::{Axis, Boolean, Factor, Form, Primitive, Profile, Row, Rows};
+use crate::node::{Axis, Factor, Form, Primitive, Row, Rows};
 use crate::pose::{self, Turning, Turns};
 use crate::problem::{Problem, unknown};
 
@@ -52,7 +53,7 @@ impl<'a> Builder<'a> {
         Self: Space<'a, D>,
     {
         let name = primitive.name.as_str();
-        let Some(entry) = Self::catalogue().iter().find(|entry| entry.name == name) else {
+        let Some(entry) = Entry::<D>::find(name) else {
             let here = Self::DIMENSION;
             let problem = match catalogue::named(name).first() {
                 Some(other) => Problem::new(format!(
@@ -61,7 +62,7 @@ impl<'a> Builder<'a> {
                 ))
                 .of_dimension(),
                 None => {
-                    let names: Vec<_> = Self::catalogue().iter().map(|e| e.name).collect();
+                    let names: Vec<_> = Entry::<D>::all().iter().map(|e| e.name).collect();
                     Problem::new(unknown("primitive", name, &names))
                 }
             };
@@ -69,15 +70,14 @@ impl<'a> Builder<'a> {
         };
         let mut arguments = Vec::with_capacity(entry.parameters.len());
         for parameter in entry.parameters {
-            let key = file_key(parameter);
-            let Some(argument) = primitive.arguments.get(&*key) else {
+            let Some((key, argument)) = primitive.argument(parameter) else {
+                let key = file_key(parameter);
                 let missing = Problem::new(format!("missing key `{key}`: {}", parameter.about));
                 return Err(missing.under(name));
             };
-            check_dimension::<D>(argument)
-                .map_err(|problem| problem.under(&key).under(name))?;
+            check_dimension::<D>(argument).map_err(|problem| problem.under(key).under(name))?;
             arguments.push(match argument {
-                Argument::Number(degrees) if *key != *parameter.name => {
+                Argument::Number(degrees) if key != parameter.name => {
                     Argument::Number(degrees.to_radians())
                 }
                 other => other.clone(),
@@ -87,7 +87,7 @@ impl<'a> Builder<'a> {
         self.allowance.take(size, level)?;
         let shape = entry
             .build(&arguments)
-            .map_err(|error| shape_error::of_primitive(entry.parameters, &error).under(name))?;
+            .map_err(|error| shape_error::of_primitive(entry, primitive, &error).under(name))?;
         Ok(Built { shape, size })
     }
 
@@ -119,7 +119,7 @@ impl<'a> Builder<'a> {
             Form::Intersection(_) => Shape::intersection(shapes),
             Form::SymmetricDifference(_) => Shape::symmetric_difference(shapes),
             Form::Smooth { boolean, width, profile, .. } => {
-                let profile = Smooth::from(profile.unwrap_or(Profile::Quadratic));
+                let profile = profile.unwrap_or(Profile::Quadratic);
                 match boolean {
                     Boolean::Union => Shape::smooth_union(shapes, profile, *width),
                     Boolean::Intersection => {
@@ -207,12 +207,12 @@ impl<'a> Builder<'a> {
             }
             Form::Mirrored { axis, .. } => (keys::MIRROR, child.mirrored(*axis as usize)),
             Form::Repeated { rows, .. } => (keys::REPEAT, child.repeated(copies(rows)?)),
-            Form::Twisted { degrees_per_metre, .. } => {
-                let shape = Self::twisted(child, degrees_per_metre.to_radians())?;
+            Form::Twisted { rate, .. } => {
+                let shape = Self::twisted(child, *rate)?;
                 return Ok(Built { shape, size });
             }
-            Form::Bent { degrees_per_metre, .. } => {
-                (keys::BEND_DEGREES, child.bent(degrees_per_metre.to_radians()))
+            Form::Bent { rate, .. } => {
+                (rate.key(keys::BEND_DEGREES, keys::BEND), child.bent(rate.radians()))
             }
             _ => return Err(Problem::new("an operator on one shape")),
         };
@@ -243,9 +243,15 @@ fn copies<const D: usize>(rows: &Rows) -> Result<[Copies; D], Problem> {
     let mut copies = [Copies::One; D];
     for (copies, (axis, row)) in copies.iter_mut().zip(axes) {
         *copies = match row {
-            None => Copies::One,
-            Some(Row { spacing, first: None, last: None }) => Copies::Endless { spacing },
-            Some(Row { spacing, first: Some(first), last: Some(last) }) => {
+            None | Some(Row { spacing: None, first: Some(0), last: Some(0) }) => Copies::One,
+            Some(Row { spacing: None, .. }) => {
+                let problem = Problem::new("missing key `spacing`");
+                return Err(problem.under(axis).under(keys::REPEAT));
+            }
+            Some(Row { spacing: Some(spacing), first: None, last: None }) => {
+                Copies::Endless { spacing }
+            }
+            Some(Row { spacing: Some(spacing), first: Some(first), last: Some(last) }) => {
                 Copies::Between { spacing, first, last }
             }
             Some(_) => {

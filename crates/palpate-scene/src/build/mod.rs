@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From what is written to what can be asked.
+//! Builds a scene: from the data of a file to shapes that can be evaluated.
 
 mod builder;
 mod form;
@@ -19,7 +19,7 @@ use crate::problem::Problem;
 use crate::scene::{Dimension, Scene};
 use builder::{Builder, Space};
 
-/// A scene that can be asked, in its dimension.
+/// A built scene, in its dimension.
 #[derive(Clone, Debug)]
 pub enum AnyScene {
     /// A scene in the plane.
@@ -28,27 +28,27 @@ pub enum AnyScene {
     Spatial(BuiltScene<3>),
 }
 
-/// The shapes of a scene.
+/// A built scene: its bodies, tool and guides.
 #[derive(Clone, Debug)]
 pub struct BuiltScene<const D: usize> {
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BuiltBody<D>>,
     /// The union of the bodies in the world.
     pub whole: Shape<D>,
-    /// What touches, if the scene says.
+    /// The tool, if the scene has one.
     pub tool: Option<BuiltTool<D>>,
-    /// What guides the hand in free space.
+    /// The guides of the hand in free space.
     pub guides: Vec<Guide<D>>,
-    /// How the device's space lies in the world; `None` if the scene does not say.
+    /// The map from the device's space to the world; `None` if the scene gives none.
     pub workspace: Option<WorkspaceMap<D>>,
 }
 
-/// What touches the bodies of a scene.
+/// The tool of a built scene.
 #[derive(Clone, Debug)]
 pub struct BuiltTool<const D: usize> {
-    /// The radius of each contact point, or by how much the shape is thicker [m].
+    /// The radius of each contact point, or the offset added to the shape [m].
     pub radius: f64,
-    /// The contact points in the tool's own coordinates [m]; none if one at the origin is meant.
+    /// The contact points in the tool's own coordinates [m]; empty for one at the origin.
     pub points: Vec<Point<D>>,
     /// The shape in the tool's own coordinates, instead of points.
     pub shape: Option<Shape<D>>,
@@ -58,7 +58,7 @@ pub struct BuiltTool<const D: usize> {
     pub max_force: Option<f64>,
 }
 
-/// A body with its shape.
+/// A body of a built scene.
 #[derive(Clone, Debug)]
 pub struct BuiltBody<const D: usize> {
     /// Its name.
@@ -69,7 +69,7 @@ pub struct BuiltBody<const D: usize> {
     pub shape_in_body: Shape<D>,
     /// Its pose.
     pub world_from_body: Pose<D>,
-    /// What it feels like.
+    /// Its material.
     pub material: Material,
 }
 
@@ -140,7 +140,7 @@ where
     Ok(bodies)
 }
 
-/// How the tool's device lies in the world.
+/// The map from the device's space to the world, if the tool has one.
 fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap<D>>, Problem>
 where
     Turns: Turning<D>,

@@ -3,10 +3,11 @@
 
 //! What a shape refuses, said with the keys of files.
 
-use palpate_field::kernel::{Parameter, ParameterKind};
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::ParameterKind;
 use palpate_field::{ShapeError, Unit};
 
-use crate::catalogue::file_key;
+use crate::node::Primitive;
 use crate::problem::Problem;
 
 /// The problem of an operator whose number is under `key`.
@@ -18,8 +19,12 @@ pub(super) fn of_operator(key: &str, error: &ShapeError) -> Problem {
     }
 }
 
-/// The problem of a primitive with these parameters, seen from its arguments.
-pub(super) fn of_primitive(parameters: &[Parameter], error: &ShapeError) -> Problem {
+/// The problem of a primitive of `entry`, seen from its arguments.
+pub(super) fn of_primitive<const D: usize>(
+    entry: &Entry<D>,
+    primitive: &Primitive,
+    error: &ShapeError,
+) -> Problem {
     let (ShapeError::Number { parameter: name, .. }
     | ShapeError::Count { parameter: name, .. }) = error
     else {
@@ -27,10 +32,11 @@ pub(super) fn of_primitive(parameters: &[Parameter], error: &ShapeError) -> Prob
     };
     // "points[2]" is about the parameter "points".
     let base = name.split(['[', '.']).next().unwrap_or(name);
-    let Some(parameter) = parameters.iter().find(|parameter| parameter.name == base) else {
+    let parameter = entry.parameters.iter().find(|parameter| parameter.name == base);
+    let Some((parameter, (key, _))) = parameter.and_then(|p| Some((p, primitive.argument(p)?)))
+    else {
         return Problem::new(error.to_string());
     };
-    let key = file_key(parameter);
     let message = match error {
         ShapeError::Number { rule, value, .. }
             if parameter.kind == ParameterKind::Angle && value.1 == Unit::Radian =>
@@ -39,5 +45,5 @@ pub(super) fn of_primitive(parameters: &[Parameter], error: &ShapeError) -> Prob
         }
         _ => error.to_string(),
     };
-    Problem::new(message).under(&key)
+    Problem::new(message).under(key)
 }

@@ -11,9 +11,8 @@ use crate::problem::Problem;
 pub(crate) const DEEPEST: usize = 2 * palpate_field::MAX_DEPTH;
 
 /// The most nodes of a scene once every reference is followed, each counted
-/// again in everything that holds it; points of polygons count as nodes. It
-/// takes seconds to build as many; without a limit, twenty lines could ask for
-/// years.
+/// again in everything that holds it; points of polygons count as nodes. Building as many takes
+/// seconds; without a limit, twenty lines of references could take years.
 pub(crate) const MOST: usize = 1_000_000;
 
 /// The size of a built shape.
@@ -44,7 +43,7 @@ impl Size {
     }
 }
 
-/// What may still be built.
+/// The nodes that were built, of at most [`MOST`].
 #[derive(Debug)]
 pub(super) struct Allowance {
     spent: usize,

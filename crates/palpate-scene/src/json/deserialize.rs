@@ -43,8 +43,7 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
         }
     }
 
-    /// A key that is there has a value: `null` is not another way to leave it
-    /// out.
+    /// Refuses `null`: a key is left out, or has a value.
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Problem> {
         visitor.visit_some(self)
     }
@@ -73,8 +72,7 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
         }
     }
 
-    /// An object: a list of the values in order is another way to write it for
-    /// serde, but not for scenes.
+    /// Takes objects alone, where serde would also take a list of the values in order.
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -96,7 +94,7 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
     }
 }
 
-/// A whole number as such, for counts; everything else as `f64`.
+/// Visits whole numbers as integers, for counts, and all others as `f64`.
 fn visit_number<'de, V: Visitor<'de>>(literal: &str, visitor: V) -> Result<V::Value, Problem> {
     if let Ok(whole) = literal.parse::<u64>() {
         return visitor.visit_u64(whole);
@@ -225,7 +223,7 @@ impl<'de> serde::de::VariantAccess<'de> for OnlyWord {
     }
 }
 
-/// What is there instead, for a message.
+/// The value that was found, for a message.
 struct Found;
 
 impl<'de> Visitor<'de> for Found {

@@ -73,7 +73,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// What the text says, as a `T`.
+    /// The text deserialised as a `T`.
     pub(crate) fn read<T: DeserializeOwned>(&self) -> Result<T, Problem> {
         T::deserialize(Node(&self.root))
     }

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From the keys of an object to the one shape that they describe.
+//! From the keys of an object to its node.
+
+use palpate_field::operator::{Boolean, Profile};
 
 use super::operators::{self as keys, OF};
-use super::{Axis, Boolean, Factor, Form, Node, Primitive, Profile, Rows};
-use crate::pose::{self, Turn};
+use super::{Axis, Factor, Form, Node, Primitive, Rows};
+use crate::angle::Angle;
+use crate::pose::{self, Attitude, Turn};
 
 /// The values of a node's keys.
 #[derive(Default)]
@@ -19,7 +22,7 @@ pub(super) struct Parts {
     pub(super) progress: Option<f64>,
     pub(super) translate: Option<Vec<f64>>,
     pub(super) rotate_degrees: Option<Turn>,
-    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) rotation: Option<Attitude>,
     pub(super) scale: Option<Factor>,
     pub(super) offset: Option<f64>,
     pub(super) shell: Option<f64>,
@@ -27,7 +30,9 @@ pub(super) struct Parts {
     pub(super) mirror: Option<Axis>,
     pub(super) repeat: Option<Rows>,
     pub(super) bend_degrees: Option<f64>,
+    pub(super) bend: Option<f64>,
     pub(super) twist_degrees: Option<f64>,
+    pub(super) twist: Option<f64>,
     pub(super) extrude: Option<f64>,
     pub(super) revolve: Option<About>,
     pub(super) lists: Vec<(&'static str, Vec<Node>)>,
@@ -83,8 +88,7 @@ impl Parts {
         Ok(Node { description, form })
     }
 
-    /// The keys that each make a shape; translation and rotation together are
-    /// one.
+    /// The keys that make a shape; translation and rotation together count as one.
     fn heads(&self) -> Vec<String> {
         let mut heads: Vec<&str> = Vec::new();
         heads.extend(self.primitives.iter().map(|primitive| primitive.name.as_str()));
@@ -104,7 +108,9 @@ impl Parts {
             (self.mirror.is_some(), keys::MIRROR),
             (self.repeat.is_some(), keys::REPEAT),
             (self.bend_degrees.is_some(), keys::BEND_DEGREES),
+            (self.bend.is_some(), keys::BEND),
             (self.twist_degrees.is_some(), keys::TWIST_DEGREES),
+            (self.twist.is_some(), keys::TWIST),
             (self.extrude.is_some(), keys::EXTRUDE),
             (self.revolve.is_some(), keys::REVOLVE),
         ];
@@ -112,7 +118,7 @@ impl Parts {
         heads.into_iter().map(str::to_owned).collect()
     }
 
-    /// The form whose one head is there.
+    /// The form that the key `head` makes.
     fn form(self, head: &str) -> Result<Form, String> {
         if let Some(name) = self.shape {
             return Ok(Form::Reference(name));
@@ -153,10 +159,10 @@ impl Parts {
             Ok(Form::Mirrored { axis, of })
         } else if let Some(rows) = self.repeat {
             Ok(Form::Repeated { rows, of })
-        } else if let Some(degrees_per_metre) = self.bend_degrees {
-            Ok(Form::Bent { degrees_per_metre, of })
-        } else if let Some(degrees_per_metre) = self.twist_degrees {
-            Ok(Form::Twisted { degrees_per_metre, of })
+        } else if let Some(rate) = angle(self.bend_degrees, self.bend) {
+            Ok(Form::Bent { rate, of })
+        } else if let Some(rate) = angle(self.twist_degrees, self.twist) {
+            Ok(Form::Twisted { rate, of })
         } else if let Some(height) = self.extrude {
             Ok(Form::Extruded { height, of })
         } else if let Some(About::Y) = self.revolve {
@@ -167,4 +173,9 @@ impl Parts {
             Ok(Form::Placed { translate: self.translate, rotation, of })
         }
     }
+}
+
+/// The angle of two keys, of which at most one is there.
+fn angle(degrees: Option<f64>, radians: Option<f64>) -> Option<Angle> {
+    degrees.map(Angle::Degrees).or(radians.map(Angle::Radians))
 }

@@ -11,6 +11,7 @@ use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use super::assemble::Parts;
 use super::operators::{self, all_keys};
 use super::primitive::{Parameters, Refused};
+use super::profile::ByName;
 use super::{Factor, Node};
 use crate::catalogue;
 use crate::problem::unknown;
@@ -42,11 +43,16 @@ impl<'de> Visitor<'de> for NodeVisitor {
                 operators::OF => parts.of = Some(map.next_value()?),
                 operators::SHAPE => parts.shape = Some(map.next_value()?),
                 operators::WIDTH => parts.width = Some(map.next_value()?),
-                operators::PROFILE => parts.profile = Some(map.next_value()?),
+                operators::PROFILE => {
+                    let ByName(profile) = map.next_value()?;
+                    parts.profile = Some(profile);
+                }
                 operators::HEIGHT => parts.height = Some(map.next_value()?),
                 operators::PROGRESS => parts.progress = Some(map.next_value()?),
                 operators::REPEAT => parts.repeat = Some(map.next_value()?),
                 operators::BEND_DEGREES => parts.bend_degrees = Some(map.next_value()?),
+                operators::BEND => parts.bend = Some(map.next_value()?),
+                operators::TWIST => parts.twist = Some(map.next_value()?),
                 operators::TWIST_DEGREES => parts.twist_degrees = Some(map.next_value()?),
                 operators::TRANSLATE => parts.translate = Some(map.next_value()?),
                 operators::ROTATE_DEGREES => parts.rotate_degrees = Some(map.next_value()?),

@@ -7,18 +7,20 @@ mod assemble;
 mod deserialize;
 pub(crate) mod operators;
 mod primitive;
+pub(crate) mod profile;
 mod serialize;
 
 use palpate_field::kernel::Argument;
-use palpate_field::operator::Smooth;
+use palpate_field::operator::{Boolean, Profile};
 
 pub use primitive::Primitive;
 
+use crate::angle::Angle;
 use crate::pose::WrittenRotation;
 
-/// A shape as it is written, without a place of its own.
+/// A shape as a file gives it: an operator, a primitive or a reference, with a description.
 ///
-/// A node has no dimension: what it is made of decides in which it can be built.
+/// A node has no dimension. Its primitives and operators decide in which it can be built.
 ///
 /// ```
 /// use palpate_scene::{Form, Node};
@@ -33,18 +35,18 @@ use crate::pose::WrittenRotation;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// What it is for.
+    /// A note for readers of the file.
     pub description: Option<String>,
-    /// What it is.
+    /// The operator, primitive or reference.
     pub form: Form,
 }
 
-/// What a node is.
+/// The operator, primitive or reference of a node.
 ///
 /// Lengths are in metres; vectors have one number for each dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
-    /// The shape of that name in the scene.
+    /// A reference to the named shape of the scene.
     Reference(String),
     /// A primitive with its parameters.
     Primitive(Primitive),
@@ -58,7 +60,7 @@ pub enum Form {
     SymmetricDifference(Vec<Node>),
     /// A boolean with its creases filled, or its edges rounded off.
     Smooth {
-        /// Which.
+        /// Which boolean.
         boolean: Boolean,
         /// The shapes, blended in their order.
         of: Vec<Node>,
@@ -74,11 +76,11 @@ pub enum Form {
         /// How far the surface moves at most [m].
         height: f64,
     },
-    /// A shape on the way from the first to the second.
+    /// A shape between the first and the second.
     Morphed {
-        /// Both.
+        /// The two shapes.
         of: Vec<Node>,
-        /// How far on the way, from 0 to 1.
+        /// How far from the first to the second, from 0 to 1.
         progress: f64,
     },
     /// The shape turned, then moved.
@@ -92,7 +94,7 @@ pub enum Form {
     },
     /// The shape scaled about the origin.
     Scaled {
-        /// How much.
+        /// The factor.
         factor: Factor,
         /// The shape.
         of: Box<Node>,
@@ -120,7 +122,7 @@ pub enum Form {
     },
     /// The positive side of the shape and its mirror image.
     Mirrored {
-        /// The axis whose sign is ignored.
+        /// The axis along which it is mirrored.
         axis: Axis,
         /// The shape.
         of: Box<Node>,
@@ -134,15 +136,15 @@ pub enum Form {
     },
     /// The shape turned in the plane of x and y, more and more along x.
     Bent {
-        /// By how much for each metre [°/m].
-        degrees_per_metre: f64,
+        /// The angle for each metre.
+        rate: Angle,
         /// The shape.
         of: Box<Node>,
     },
     /// The shape turned about y, more and more along y; in space alone.
     Twisted {
-        /// By how much for each metre [°/m].
-        degrees_per_metre: f64,
+        /// The angle for each metre.
+        rate: Angle,
         /// The shape.
         of: Box<Node>,
     },
@@ -181,17 +183,6 @@ pub enum Axis {
     Z,
 }
 
-/// A boolean that can be smooth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Boolean {
-    /// What is in any of the shapes.
-    Union,
-    /// What is in all of the shapes.
-    Intersection,
-    /// What is in the first shape and none of the others.
-    Difference,
-}
-
 /// Rows of copies, along the axes that have one.
 #[derive(
     Clone,
@@ -216,67 +207,22 @@ pub struct Rows {
     pub z: Option<Row>,
 }
 
-/// A row of copies: between two numbers, or without end.
+/// A row of copies: between two numbers, or without end. A row from 0 to 0 without a spacing is
+/// the shape alone, as along an axis without a row.
 #[derive(
     Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// From one copy to the next [m].
-    pub spacing: f64,
+    /// From one copy to the next [m]; needed if there is more than the shape itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing: Option<f64>,
     /// The lowest number of a copy, the shape itself being number 0; goes with `last`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first: Option<i32>,
     /// The highest number of a copy; goes with `first`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<i32>,
-}
-
-/// The profile of the crease of a smooth boolean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Profile {
-    /// Reaches 4 times its width.
-    Quadratic,
-    /// Reaches 6 times its width, rounder at its ends.
-    Cubic,
-    /// Reaches 16/3 times its width, round at its ends and in the middle.
-    Quartic,
-    /// Reaches 3.41 times its width, a quarter circle.
-    Circular,
-    /// A hyperbola, without end.
-    Root,
-    /// Without end; the order of the shapes makes no difference.
-    Exponential,
-    /// A fillet where two shapes meet at right angles; √2 times as steep.
-    CircularGeometrical,
-}
-
-impl Profile {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Quadratic,
-        Self::Cubic,
-        Self::Quartic,
-        Self::Circular,
-        Self::Root,
-        Self::Exponential,
-        Self::CircularGeometrical,
-    ];
-}
-
-impl From<Profile> for Smooth {
-    fn from(profile: Profile) -> Self {
-        match profile {
-            Profile::Quadratic => Self::Quadratic,
-            Profile::Cubic => Self::Cubic,
-            Profile::Quartic => Self::Quartic,
-            Profile::Circular => Self::Circular,
-            Profile::Root => Self::Root,
-            Profile::Exponential => Self::Exponential,
-            Profile::CircularGeometrical => Self::CircularGeometrical,
-        }
-    }
 }
 
 impl Node {
@@ -291,8 +237,8 @@ impl Node {
         Self::new(Form::Reference(name.into()))
     }
 
-    /// A primitive; the names of its arguments are those of files, angles in
-    /// degrees.
+    /// A primitive; the names of its arguments are the keys of files: `angle_degrees` for an
+    /// angle in degrees, `angle` for one in radians.
     pub fn primitive(
         name: impl Into<String>,
         arguments: impl IntoIterator<Item = (String, Argument)>,
@@ -306,14 +252,12 @@ impl Node {
     }
 }
 
-impl Boolean {
-    /// The key of the smooth boolean.
-    fn key(self) -> &'static str {
-        match self {
-            Self::Union => operators::SMOOTH_UNION,
-            Self::Intersection => operators::SMOOTH_INTERSECTION,
-            Self::Difference => operators::SMOOTH_DIFFERENCE,
-        }
+/// The key of a smooth boolean.
+pub(crate) fn smooth_key(boolean: Boolean) -> &'static str {
+    match boolean {
+        Boolean::Union => operators::SMOOTH_UNION,
+        Boolean::Intersection => operators::SMOOTH_INTERSECTION,
+        Boolean::Difference => operators::SMOOTH_DIFFERENCE,
     }
 }
 
@@ -326,7 +270,7 @@ impl Form {
             Self::Intersection(nodes) => (operators::INTERSECTION, nodes),
             Self::Difference(nodes) => (operators::DIFFERENCE, nodes),
             Self::SymmetricDifference(nodes) => (operators::SYMMETRIC_DIFFERENCE, nodes),
-            Self::Smooth { boolean, of, .. } => (boolean.key(), of),
+            Self::Smooth { boolean, of, .. } => (smooth_key(*boolean), of),
             Self::Displaced { of, .. } => (operators::DISPLACE, of),
             Self::Morphed { of, .. } => (operators::MORPH, of),
             Self::Placed { of, .. }

@@ -34,7 +34,7 @@ pub(crate) const PROGRESS: &str = "progress";
 pub(crate) const TRANSLATE: &str = "translate";
 /// `{ "rotate_degrees": .., "of": .. }`.
 pub(crate) const ROTATE_DEGREES: &str = "rotate_degrees";
-/// `{ "rotation": [x, y, z, w], "of": .. }`.
+/// `{ "rotation": [x, y, z, w], "of": .. }`, or the rows of a matrix.
 pub(crate) const ROTATION: &str = "rotation";
 /// `{ "scale": .., "of": .. }`.
 pub(crate) const SCALE: &str = "scale";
@@ -50,8 +50,12 @@ pub(crate) const MIRROR: &str = "mirror";
 pub(crate) const REPEAT: &str = "repeat";
 /// `{ "bend_degrees": .., "of": .. }`.
 pub(crate) const BEND_DEGREES: &str = "bend_degrees";
+/// `{ "bend": .., "of": .. }`.
+pub(crate) const BEND: &str = "bend";
 /// `{ "twist_degrees": .., "of": .. }`.
 pub(crate) const TWIST_DEGREES: &str = "twist_degrees";
+/// `{ "twist": .., "of": .. }`.
+pub(crate) const TWIST: &str = "twist";
 /// `{ "extrude": .., "of": .. }`.
 pub(crate) const EXTRUDE: &str = "extrude";
 /// `{ "revolve": "y", "of": .. }`.
@@ -83,10 +87,10 @@ pub(crate) const LISTS: [(&str, &str); 9] = [
 ];
 
 /// The operators with one operand, under [`OF`]; the first three go together.
-pub(crate) const UNARY: [(&str, &str); 13] = [
+pub(crate) const UNARY: [(&str, &str); 15] = [
     (TRANSLATE, "Moves the shape [m]; after the rotation, if there is one."),
     (ROTATE_DEGREES, "Turns the shape: degrees in 2D, axis and angle in 3D."),
-    (ROTATION, "Turns the shape in 3D: a quaternion [x, y, z, w]."),
+    (ROTATION, "Turns the shape: the rows of a matrix, or in 3D a quaternion [x, y, z, w]."),
     (SCALE, "Scales the shape: a factor, or one for each axis."),
     (OFFSET, "Grows the shape by a length [m], or shrinks it if negative."),
     (SHELL, "Makes a wall of this thickness on the surface of the shape [m]."),
@@ -97,7 +101,9 @@ pub(crate) const UNARY: [(&str, &str); 13] = [
         BEND_DEGREES,
         "Bends the shape: turns it in the plane of x and y by so much for each metre of x.",
     ),
+    (BEND, "As bend_degrees, in radians for each metre."),
     (TWIST_DEGREES, "Twists the shape: turns it about y by so much for each metre of y."),
+    (TWIST, "As twist_degrees, in radians for each metre."),
     (EXTRUDE, "Gives a 2D shape, drawn in x and z, a height along y [m]."),
     (REVOLVE, "Turns a 2D shape about y, its x the distance from the axis."),
 ];

@@ -6,7 +6,7 @@
 use std::fmt;
 
 use indexmap::IndexMap;
-use palpate_field::kernel::{Argument, ParameterKind};
+use palpate_field::kernel::{Argument, Parameter, ParameterKind};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
@@ -18,12 +18,21 @@ use crate::problem::unknown;
 /// A primitive of the catalogue with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
-    /// Its name in the catalogue.
+    /// Its name in the catalogue, or another name for it there.
     pub name: String,
-    /// What its parameters are for.
+    /// A note for readers of the file.
     pub description: Option<String>,
-    /// Its parameters by their keys in files, angles in degrees.
+    /// Its parameters by their keys in files: `angle_degrees`, or `angle` in radians.
     pub arguments: IndexMap<String, Argument>,
+}
+
+impl Primitive {
+    /// The argument for a parameter, and the key that it has.
+    pub(crate) fn argument(&self, parameter: &Parameter) -> Option<(&str, &Argument)> {
+        let degrees = self.arguments.get_key_value(&*file_key(parameter));
+        let argument = degrees.or_else(|| self.arguments.get_key_value(parameter.name));
+        argument.map(|(key, argument)| (key.as_str(), argument))
+    }
 }
 
 impl Serialize for Primitive {
@@ -100,13 +109,21 @@ impl<'de> Visitor<'de> for Parameters<'_> {
         let mut arguments = IndexMap::new();
         for parameter in signature.parameters {
             let key = file_key(parameter);
-            let Some(argument) = read.swap_remove(&*key) else {
+            let argument = read.swap_remove_entry(&*key);
+            let Some((key, argument)) =
+                argument.or_else(|| read.swap_remove_entry(parameter.name))
+            else {
                 return Err(A::Error::custom(format_args!(
                     "missing key `{key}`: {}",
                     parameter.about
                 )));
             };
-            arguments.insert(key.into_owned(), argument);
+            arguments.insert(key, argument);
+        }
+        if let Some(radians) = read.keys().next() {
+            return Err(A::Error::custom(format_args!(
+                "`{radians}_degrees` and `{radians}` say the same; give one of them"
+            )));
         }
         Ok(Primitive { name: signature.name.to_owned(), description, arguments })
     }

@@ -6,7 +6,7 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::{Factor, Form, Node, operators as keys};
+use super::{Factor, Form, Node, operators as keys, profile};
 use crate::pose;
 
 impl Serialize for Node {
@@ -29,8 +29,8 @@ impl Serialize for Node {
                 if let Some(turn) = rotate_degrees {
                     map.serialize_entry(keys::ROTATE_DEGREES, &turn)?;
                 }
-                if let Some(quaternion) = rotation {
-                    map.serialize_entry(keys::ROTATION, &quaternion)?;
+                if let Some(attitude) = rotation {
+                    map.serialize_entry(keys::ROTATION, &attitude)?;
                 }
             }
             Form::Scaled { factor: Factor::Uniform(factor), .. } => {
@@ -46,18 +46,19 @@ impl Serialize for Node {
             Form::Extruded { height, .. } => map.serialize_entry(keys::EXTRUDE, height)?,
             Form::Revolved { .. } => map.serialize_entry(keys::REVOLVE, "y")?,
             Form::Repeated { rows, .. } => map.serialize_entry(keys::REPEAT, rows)?,
-            Form::Bent { degrees_per_metre, .. } => {
-                map.serialize_entry(keys::BEND_DEGREES, degrees_per_metre)?;
+            Form::Bent { rate, .. } => {
+                map.serialize_entry(rate.key(keys::BEND_DEGREES, keys::BEND), &rate.number())?;
             }
-            Form::Twisted { degrees_per_metre, .. } => {
-                map.serialize_entry(keys::TWIST_DEGREES, degrees_per_metre)?;
+            Form::Twisted { rate, .. } => {
+                let key = rate.key(keys::TWIST_DEGREES, keys::TWIST);
+                map.serialize_entry(key, &rate.number())?;
             }
             Form::Displaced { height, .. } => map.serialize_entry(keys::HEIGHT, height)?,
             Form::Morphed { progress, .. } => map.serialize_entry(keys::PROGRESS, progress)?,
             Form::Smooth { width, profile, .. } => {
                 map.serialize_entry(keys::WIDTH, width)?;
-                if let Some(profile) = profile {
-                    map.serialize_entry(keys::PROFILE, profile)?;
+                if let Some(named) = profile {
+                    map.serialize_entry(keys::PROFILE, profile::name(*named))?;
                 }
             }
             Form::Union(_)

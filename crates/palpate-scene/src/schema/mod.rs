@@ -15,16 +15,16 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
-use crate::node::{Axis, Node, Profile};
+use crate::node::{Axis, Node};
 use crate::pose::AxisAngle;
 use crate::scene::{Dimension, Scene};
 
 /// The JSON Schema of scene files, in draft 2020-12: for editors, and for
 /// programs that write scenes.
 ///
-/// A file that the schema refuses is refused by [`Scene::from_json`] too. What a
-/// schema cannot say is left to it: cycles of references, names that must be
-/// known or unique, and rules that compare two numbers.
+/// A file that the schema refuses is refused by [`Scene::from_json`] too. Rules
+/// that a schema cannot express are checked there alone: cycles of references, names that must
+/// be known or unique, and rules that compare two numbers.
 ///
 /// ```
 /// let schema = palpate_scene::schema();
@@ -107,6 +107,19 @@ fn definitions_of(dimension: Dimension) -> Value {
             Dimension::Three => json!({ "$ref": "#/$defs/AxisAngle" }),
         },
     );
+    let rows = json!({
+        "type": "array",
+        "items": numbers(size),
+        "minItems": size,
+        "maxItems": size,
+    });
+    definitions.insert(
+        "Rotation".to_owned(),
+        match dimension {
+            Dimension::Two => rows,
+            Dimension::Three => json!({ "anyOf": [numbers(4), rows] }),
+        },
+    );
     if dimension == Dimension::Two {
         forbid_in_the_plane(&mut definitions);
     }
@@ -117,19 +130,16 @@ fn definitions_of(dimension: Dimension) -> Value {
     definitions
 }
 
-/// Takes away the keys that mean something in space alone.
+/// Removes the keys that only space has.
 fn forbid_in_the_plane(definitions: &mut Map<String, Value>) {
-    for (definition, key) in [("Pose", "rotation"), ("View", "plane"), ("View", "at")] {
+    for key in ["plane", "at"] {
         let properties = definitions
-            .get_mut(definition)
+            .get_mut("View")
             .and_then(|definition| definition.get_mut("properties"))
             .and_then(Value::as_object_mut);
         if let Some(properties) = properties {
             properties.shift_remove(key);
         }
-    }
-    if let Some(Value::Object(pose)) = definitions.get_mut("Pose") {
-        pose.shift_remove("not");
     }
 }
 
@@ -181,16 +191,6 @@ impl JsonSchema for Axis {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "enum": [Self::X, Self::Y, Self::Z] })
-    }
-}
-
-impl JsonSchema for Profile {
-    fn schema_name() -> Cow<'static, str> {
-        "Profile".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "enum": Self::ALL })
     }
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::{place, reference};
 use crate::catalogue::{self, Signature, file_key};
 use crate::node::operators::{self as keys, DESCRIPTION, LISTS, OF, UNARY};
-use crate::node::{Axis, Profile};
+use crate::node::{Axis, profile};
 use crate::scene::Dimension;
 
 /// A node: the name of a shape, or an object.
@@ -55,7 +55,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
 
     let rest = [
         (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
-        (keys::PROFILE, json!({ "enum": Profile::ALL })),
+        (keys::PROFILE, json!({ "enum": profile::NAMES })),
         (keys::HEIGHT, json!({ "type": "number", "exclusiveMinimum": 0 })),
         (keys::PROGRESS, json!({ "type": "number", "minimum": 0, "maximum": 1 })),
         (OF, operand(dimension)),
@@ -95,11 +95,11 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         "then": { "oneOf": makers },
         "dependentSchemas": needs,
     });
+    node["not"] = json!({
+        "type": "object",
+        "required": [keys::ROTATE_DEGREES, keys::ROTATION],
+    });
     if dimension == Dimension::Three {
-        node["not"] = json!({
-            "type": "object",
-            "required": [keys::ROTATE_DEGREES, keys::ROTATION],
-        });
         flat_operands(&mut node);
     }
     node
@@ -156,7 +156,14 @@ fn rows(dimension: Dimension) -> Value {
             "first": number,
             "last": number,
         },
-        "required": ["spacing"],
+        "anyOf": [
+            { "required": ["spacing"] },
+            {
+                "description": "The shape alone.",
+                "properties": { "first": { "const": 0 }, "last": { "const": 0 } },
+                "required": ["first", "last"],
+            },
+        ],
         "dependentRequired": { "first": ["last"], "last": ["first"] },
         "additionalProperties": false,
     });
@@ -179,9 +186,7 @@ fn operator(key: &str, dimension: Dimension) -> Option<Value> {
     Some(match key {
         keys::TRANSLATE => json!({ "$ref": "#/$defs/Vector" }),
         keys::ROTATE_DEGREES => json!({ "$ref": "#/$defs/Turn" }),
-        keys::ROTATION if is_solid => {
-            json!({ "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 })
-        }
+        keys::ROTATION => json!({ "$ref": "#/$defs/Rotation" }),
         keys::SCALE => json!({ "anyOf": [factor, factors(&factor, dimension)] }),
         keys::OFFSET => json!({ "type": "number" }),
         keys::SHELL => factor,
@@ -189,8 +194,8 @@ fn operator(key: &str, dimension: Dimension) -> Option<Value> {
         keys::MIRROR if is_solid => json!({ "enum": [Axis::X, Axis::Y, Axis::Z] }),
         keys::MIRROR => json!({ "enum": [Axis::X, Axis::Y] }),
         keys::REPEAT => rows(dimension),
-        keys::BEND_DEGREES => json!({ "type": "number" }),
-        keys::TWIST_DEGREES if is_solid => json!({ "type": "number" }),
+        keys::BEND_DEGREES | keys::BEND => json!({ "type": "number" }),
+        keys::TWIST_DEGREES | keys::TWIST if is_solid => json!({ "type": "number" }),
         keys::EXTRUDE if is_solid => factor,
         keys::REVOLVE if is_solid => json!({ "enum": [Axis::Y] }),
         _ => return None,
@@ -207,19 +212,32 @@ fn factors(each: &Value, dimension: Dimension) -> Value {
 fn primitive(signature: &Signature) -> Value {
     let mut properties = Map::new();
     let mut required = Vec::new();
+    let mut angles = Vec::new();
     for parameter in signature.parameters {
         let key = file_key(parameter);
-        required.push(Value::from(&*key));
+        if *key == *parameter.name {
+            required.push(Value::from(parameter.name));
+        } else {
+            let mut radians = value(parameter);
+            radians["description"] = format!("{} [rad]", capitalised(parameter.about)).into();
+            properties.insert(parameter.name.to_owned(), radians);
+            let either = [&*key, parameter.name].map(|key| json!({ "required": [key] }));
+            angles.push(json!({ "oneOf": either }));
+        }
         properties.insert(key.into_owned(), value(parameter));
     }
     properties.insert(DESCRIPTION.to_owned(), json!({ "type": "string" }));
-    json!({
+    let mut primitive = json!({
         "description": signature.about,
         "type": "object",
         "properties": properties,
         "required": required,
         "additionalProperties": false,
-    })
+    });
+    if !angles.is_empty() {
+        primitive["allOf"] = angles.into();
+    }
+    primitive
 }
 
 /// The value of a parameter.

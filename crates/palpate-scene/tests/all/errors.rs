@@ -257,6 +257,11 @@ fn bad_shapes_are_refused_with_their_place() {
                 Accepts,
             ),
             (
+                r#"{ "repeat": { "x": { "first": 1, "last": 2 } }, "of": "cup" }"#,
+                "shapes.a.repeat.x, line 4: missing key `spacing`",
+                Refuses,
+            ),
+            (
                 r#"{ "repeat": {}, "of": "cup" }"#,
                 "shapes.a.repeat, line 4: repeat must have a row along at least one axis",
                 Refuses,
@@ -317,6 +322,26 @@ fn bad_shapes_are_refused_with_their_place() {
                 Accepts,
             ),
             (
+                r#"{ "capped_torus": { "ring_radius": 1, "angle": 1, "angle_degrees": 57, "radius": 0.1 } }"#,
+                "shapes.a.capped_torus, line 4: `angle_degrees` and `angle` say the same; give one of them",
+                Refuses,
+            ),
+            (
+                r#"{ "capped_torus": { "ring_radius": 1, "angle": -1, "radius": 0.1 } }"#,
+                "shapes.a.capped_torus.angle, line 4: angle must be in (0, 2π], a full turn at most, got -1 rad (-57.29577951308232°)",
+                Accepts,
+            ),
+            (
+                r#"{ "twist": 1e9, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.twist, line 4: twist must be such that the shape turns by at most 10000 rad, got 1000000000",
+                Accepts,
+            ),
+            (
+                r#"{ "bend": 1, "bend_degrees": 1, "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a, line 4: `bend_degrees` and `bend` in one object; an object makes one shape: nest them",
+                Refuses,
+            ),
+            (
                 r#"{ "rotate_degrees": { "axis": [0, 1, 0], "angel": 1 }, "of": { "ball": { "radius": 1 } } }"#,
                 "shapes.a.rotate_degrees.angel, line 4: unknown key `angel`, did you mean `angle`?",
                 Refuses,
@@ -334,6 +359,21 @@ fn bad_shapes_are_refused_with_their_place() {
             (
                 r#"{ "rotation": [0, 0, 0, 0], "of": { "ball": { "radius": 1 } } }"#,
                 "shapes.a.rotation, line 4: rotation must be a quaternion, got 0",
+                Accepts,
+            ),
+            (
+                r#"{ "rotation": [[1, 0], [0, 1]], "of": { "ball": { "radius": 1 } } }"#,
+                "bodies[0].shape, line 6: shape `a` cannot be used in 3D: rotation must have 3 rows of 3 numbers in 3D",
+                Accepts,
+            ),
+            (
+                r#"{ "rotation": [[1, 0, 0], [0, 1, 0], 3], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation[2], line 4: rotation[2] must be a list, got 3",
+                Refuses,
+            ),
+            (
+                r#"{ "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 2]], "of": { "ball": { "radius": 1 } } }"#,
+                "shapes.a.rotation, line 4: rotation must be an orthonormal matrix, got 2",
                 Accepts,
             ),
             (

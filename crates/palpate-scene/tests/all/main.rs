@@ -7,6 +7,7 @@
 mod common;
 mod errors;
 mod errors_in_bodies;
+mod from_code;
 mod fuzz;
 mod generated;
 mod hostile;

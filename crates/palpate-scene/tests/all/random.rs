@@ -5,10 +5,11 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
+use palpate_field::operator::{Boolean, Profile};
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
-    Axis, AxisAngle, Boolean, Dimension, Factor, Form, FreePlane, GuideCurve, GuideLine,
-    GuidePlane, GuideSegment, GuideWell, Motion, Node, Profile, Repeat, Row, Rows, Scene, View,
+    Angle, Axis, AxisAngle, Dimension, Factor, Form, FreePlane, GuideCurve, GuideLine,
+    GuidePlane, GuideSegment, GuideWell, Motion, Node, Repeat, Row, Rows, Scene, View,
     ViewPlane, WrittenBody, WrittenCoupling, WrittenGuide, WrittenMaterial, WrittenPose,
     WrittenRotation, WrittenTool, WrittenWorkspace,
 };
@@ -94,6 +95,16 @@ impl Known {
         )
     }
 }
+
+const PROFILES: [Profile; 7] = [
+    Profile::Quadratic,
+    Profile::Cubic,
+    Profile::Quartic,
+    Profile::Circular,
+    Profile::Root,
+    Profile::Exponential,
+    Profile::CircularGeometrical,
+];
 
 /// What random scenes are made from.
 pub(crate) struct Generator {
@@ -182,13 +193,13 @@ impl Generator {
                 ])?,
                 of: many(u)?,
                 width: length(u)?,
-                profile: maybe(u, |u| Ok(*u.choose(&Profile::ALL)?))?,
+                profile: maybe(u, |u| Ok(*u.choose(&PROFILES)?))?,
             },
             11 => Form::Displaced { of: two(u)?, height: length(u)? },
             12 => Form::Morphed { of: two(u)?, progress: u.int_in_range(0..=8)? as f64 / 8.0 },
-            13 => Form::Bent { degrees_per_metre: number(u)?, of: of(u)? },
+            13 => Form::Bent { rate: rate(u)?, of: of(u)? },
             14 => Form::Repeated { rows: rows(u, d)?, of: of(u)? },
-            15 => Form::Twisted { degrees_per_metre: number(u)?, of: of(u)? },
+            15 => Form::Twisted { rate: rate(u)?, of: of(u)? },
             5 => Form::Placed {
                 translate: Some(numbers(u, d)?),
                 rotation: maybe(u, |u| rotation(u, d))?,
@@ -288,7 +299,23 @@ fn direction<const N: usize>(u: Random) -> Result<[f64; N]> {
     Ok(direction)
 }
 
+/// An angle for each metre.
+fn rate(u: Random) -> Result<Angle> {
+    let rate = number(u)?;
+    Ok(if u.arbitrary()? { Angle::Degrees(rate) } else { Angle::Radians(rate) })
+}
+
+/// A matrix that turns by an angle in the plane of the first two axes.
+fn matrix(u: Random, d: usize) -> Result<WrittenRotation> {
+    let (sin, cos) = number(u)?.sin_cos();
+    let rows = [[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]];
+    Ok(WrittenRotation::Rows(rows[..d].iter().map(|row| row[..d].to_vec()).collect()))
+}
+
 fn rotation(u: Random, d: usize) -> Result<WrittenRotation> {
+    if u.ratio(1, 4)? {
+        return matrix(u, d);
+    }
     if d == 2 {
         return number(u).map(WrittenRotation::Degrees);
     }
@@ -450,7 +477,7 @@ fn rows(u: Random, d: usize) -> Result<Rows> {
             Ok((first, first + u.int_in_range(0..=3_i32)?))
         })?;
         Ok(Row {
-            spacing: length(u)?,
+            spacing: Some(length(u)?),
             first: ends.map(|(first, _)| first),
             last: ends.map(|(_, last)| last),
         })
