@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a material, a hand path or a servo.
+//! Errors of materials, hand paths, tools and servos.
 
 use std::convert::Infallible;
 
-/// Why something cannot be touched as asked. Every variant carries the offending numbers.
+/// Why a material, hand path, tool or servo is refused. Every variant carries the offending
+/// numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HapticsError {
@@ -14,14 +15,15 @@ pub enum HapticsError {
     Number {
         /// The parameter's name, as in scene files.
         parameter: &'static str,
-        /// What it must be: "positive".
+        /// The rule: "positive".
         rule: &'static str,
-        /// What it was, in `unit`.
+        /// The value that was given, in `unit`.
         value: f64,
         /// The unit of the parameter: "N/m".
         unit: &'static str,
     },
-    /// A device does not render a material, and is not to render a softer one.
+    /// A device cannot render a material, and [`Acceptance`](crate::Acceptance) forbids a
+    /// softer one.
     #[error(
         "a stiffness of {stiffness} N/m and a damping of {damping} N·s/m at the device break \
          {condition}; {factor} times both would not"
@@ -33,10 +35,11 @@ pub enum HapticsError {
         damping: f64,
         /// The rule that is broken: "K ≤ 2 (b − |B|) / T".
         condition: &'static str,
-        /// What both would have to be multiplied by.
+        /// The factor by which both would have to be multiplied.
         factor: f64,
     },
-    /// A device does not turn a tool with its coupling, and is not to be given a softer one.
+    /// A device cannot render a tool's angular coupling, and [`Acceptance`](crate::Acceptance)
+    /// forbids a softer one.
     #[error(
         "an angular stiffness of {stiffness} N·m/rad and an angular damping of {damping} \
          N·m·s/rad at the device break {condition}; {factor} times both would not"
@@ -48,27 +51,27 @@ pub enum HapticsError {
         damping: f64,
         /// The rule that is broken: "κ ≤ 2 (b − |β|) / T".
         condition: &'static str,
-        /// What both would have to be multiplied by.
+        /// The factor by which both would have to be multiplied.
         factor: f64,
     },
     /// A hand path needs a beginning and an end.
     #[error("a hand path needs at least 2 samples, got {count}")]
     TooFewSamples {
-        /// How many there were.
+        /// The number of samples.
         count: usize,
     },
-    /// The times of a hand path and its positions are not pairs.
+    /// A hand path has not as many times as positions.
     #[error("a hand path has {times} times but {positions} positions")]
     UnpairedSamples {
-        /// How many times.
+        /// The number of times.
         times: usize,
-        /// How many positions.
+        /// The number of positions.
         positions: usize,
     },
-    /// A time or coordinate of a hand path is NaN, infinite or beyond any scene.
+    /// A time or coordinate of a hand path is not finite or exceeds 1e15.
     #[error("sample {index} of the hand path must be finite and at most 1e15, got {value}")]
     SampleNotFinite {
-        /// Which sample, from 0.
+        /// The index of the sample, from 0.
         index: usize,
         /// The time [s] or coordinate [m].
         value: f64,
@@ -78,7 +81,7 @@ pub enum HapticsError {
         "sample {index} of the hand path is at {time} s, which must be later than {previous} s"
     )]
     TimeNotIncreasing {
-        /// Which sample, from 0.
+        /// The index of the sample, from 0.
         index: usize,
         /// The time of the sample before [s].
         previous: f64,
@@ -96,13 +99,13 @@ pub enum HapticsError {
         /// Contact points of the device.
         device: usize,
     },
-    /// A device bears less than the one that the servo was made for.
+    /// A device has tighter limits than the device that the servo was made for.
     #[error(
         "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \
          {device} {unit}: make the servo for this device"
     )]
     OtherDevice {
-        /// Which limit differs: "max_force".
+        /// The name of the limit: "max_force".
         limit: &'static str,
         /// The limit that the servo was made for, in `unit`.
         servo: f64,
@@ -111,47 +114,47 @@ pub enum HapticsError {
         /// The unit of the limit: "N".
         unit: &'static str,
     },
-    /// There is nothing to touch.
+    /// The list of bodies is empty.
     #[error("there must be at least one body to touch")]
     NoBody,
-    /// There is no body of that number.
+    /// No body has this index.
     #[error("there is no body {body}; there are {bodies}, counted from 0")]
     NoSuchBody {
-        /// The number asked for.
+        /// The index that was asked for.
         body: usize,
-        /// How many bodies there are.
+        /// The number of bodies.
         bodies: usize,
     },
-    /// A hand-off has no room for so many bodies.
+    /// A hand-off has fewer places than there are bodies.
     #[error("the hand-off has room for {most} bodies, got {bodies}")]
     TooManyBodies {
-        /// How many bodies there are.
+        /// The number of bodies.
         bodies: usize,
-        /// How many it has room for.
+        /// The capacity.
         most: usize,
     },
     /// A thread for the servo could not be started.
     #[error("the servo's thread did not start: {reason}")]
     ThreadNotStarted {
-        /// What the system said.
+        /// The error of the operating system.
         reason: String,
     },
-    /// A pose has numbers that are not finite or beyond any scene.
+    /// A number of a pose is not finite or exceeds 1e15.
     #[error("the numbers of a pose must be finite and at most 1e15")]
     Pose,
-    /// A shape cannot be what a surface asks for.
+    /// A shape cannot carry the texture of a surface.
     #[error(transparent)]
     Shape(#[from] palpate_field::ShapeError),
-    /// A guide leads to one target.
+    /// A guide must have exactly one target.
     #[error("a guide needs one target, got {count}")]
     GuideTargets {
-        /// How many it has.
+        /// The number of targets.
         count: usize,
     },
-    /// A tool has no surface to sample.
+    /// The shape of a tool has no bounded surface.
     #[error("a tool needs a bounded surface, and none was found")]
     NothingToTouchWith,
-    /// A tour finds nothing to touch in its box.
+    /// The box of a tour contains no surface.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,
 }
@@ -181,7 +184,7 @@ pub fn positive(
     }
 }
 
-/// Checks that `value` is not negative and finite.
+/// Checks that `value` is zero or more, and finite.
 ///
 /// # Errors
 ///

@@ -13,7 +13,7 @@ mod strata;
 use crate::material::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
 
-use crate::bend::way_over;
+use crate::curvature::surface_displacement;
 use crate::error::{HapticsError, not_negative, positive};
 use crate::impedance::Impedance;
 use crate::limit::limited;
@@ -219,7 +219,7 @@ impl<const D: usize> Surface<D> {
             let along = gradient - normal * gradient.dot(normal);
             // Below a bent surface the proxy goes farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
-            let seen = way_over(|way| turn(way, far), along, (depth, SOLVED));
+            let seen = surface_displacement(|way| turn(way, far), along, (depth, SOLVED));
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm());
         }
         let spring = self.strata.force(level, push);

@@ -35,7 +35,7 @@ use palpate_field::{Pose, Vector};
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
-use crate::nearby::{Nearby, Pierced};
+use crate::nearby::{Nearby, Punctured};
 use crate::sampler::Sampler;
 pub(crate) use coupled::CoupledTool;
 pub use coupled::HeldTool;
@@ -344,7 +344,7 @@ impl<const D: usize> Tool<D> {
         let reach = self.shell.reach();
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
-        let place = (nearby, Pierced::default());
+        let place = (nearby, Punctured::default());
         let sampler = Sampler::new(place, self.radius, 0, extent);
         let unit = self.coupling.unit();
         let skin = sampler.skin().max(SKIN * reach);
