@@ -16,7 +16,7 @@ use crate::contact_point::{ContactPoint, Setting, Touch};
 use crate::device::{PointState, TurnState};
 use crate::limit::limited;
 use crate::protection::TurningPort;
-use crate::safety::{Both, WrenchChain, WrenchState};
+use crate::safety::{SpatialVector, WrenchChain, WrenchState};
 use crate::servo::ServoOptions;
 
 /// A tool after a tick, as rows of a trace and snapshots have it. World coordinates.
@@ -204,12 +204,12 @@ impl<const D: usize> CoupledTool<D> {
             let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
             let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
             let state = WrenchState {
-                position: Both { along: at_device.position, about: angle },
-                velocity: Both { along: at_device.velocity, about: spin },
+                position: SpatialVector { along: at_device.position, about: angle },
+                velocity: SpatialVector { along: at_device.velocity, about: spin },
                 free_force: map.force_to_device(free),
                 is_late: setting.is_late,
             };
-            let given = chain.step(Both { along: force, about: torque }, &state);
+            let given = chain.step(SpatialVector { along: force, about: torque }, &state);
             self.torque = given.about;
             touch.force = map.force_to_world(given.along);
             given.along
