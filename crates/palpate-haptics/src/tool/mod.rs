@@ -94,7 +94,7 @@ const MOST_EVENTS: usize = 2;
 /// with the velocities `u` [m/s] and `Ω` [rad/s] of the device as read, and those of the tool
 /// from its last two poses. The damper acts only in contact and never pulls the hand in.
 ///
-/// # What is felt of a material
+/// # How materials are rendered
 ///
 /// The rest pose does not depend on the stiffness of the bodies: tool and bodies meet as rigid
 /// bodies, and the coupling is stretched. The force does depend on it. With the depth `d =

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where a tool comes to rest: as close to the device as the bodies let it.
+//! The search for the rest pose of a tool: the free pose closest to the device's pose.
 //!
-//! The *closeness* of two poses is the energy of the spring between them, `‖v‖² + ℓ²‖ω‖²` with
-//! the length `ℓ` whose square is angular over linear stiffness. Each turn looks at the points
-//! that could touch, replaces the bodies there by their tangent planes, and goes to the closest
-//! pose that all planes allow: the quasi-statics of Ortega, Redon and Coquillart, "A six
-//! degree-of-freedom god-object method for haptic display of rigid bodies with surface
-//! properties" (2007), with positions for accelerations, until it stays. On the way no point may
-//! dip deeper than a skin, which evaluations prove as for a [`Proxy`](crate::Proxy); at rest
-//! none may be inside.
+//! The distance of two poses is the energy of the spring between them, `‖v‖² + ℓ²‖ω‖²`, where
+//! `ℓ²` is angular over linear stiffness. Each iteration evaluates the points that could touch,
+//! replaces the bodies there by their tangent planes, and moves to the closest pose that all
+//! planes allow, until the pose no longer changes: the quasi-statics of Ortega, Redon and
+//! Coquillart, "A six degree-of-freedom god-object method for haptic display of rigid bodies
+//! with surface properties" (2007), with positions instead of accelerations. During a motion no
+//! point may dip deeper than a skin, which evaluations prove as for a [`Proxy`](crate::Proxy);
+//! at rest no point may be inside.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -26,52 +26,56 @@ use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::rotation::{cross, in_space};
 
-/// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
+/// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
+/// creases.
 const MOST_TURNS: usize = 6;
 
-/// In these last turns, a tool that is not outside goes straight out instead of on: where it
-/// turns much, each turn ends a little inside.
+/// In these last iterations, a tool that is not outside moves straight out instead of on: with
+/// large rotations, each iteration ends a little inside.
 const LAST_TURNS: usize = 3;
 
-/// What the first look may take of the budget, and each further one of what is left.
+/// The part of the budget that the first evaluation of the shell may use; later ones may use
+/// the same part of the remainder.
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
 
-/// After a turn that was cut short by its horizon, the next looks this many times as far.
+/// After an iteration that its horizon limited, the next horizon is this many times as far.
 const FARTHER: f64 = 4.0;
 
-/// After any other turn, the next looks at most this many times as far as that one would have
-/// gone: motions get shorter, and where one grows, it is cut short and looks farther. Less
-/// would cut short more often, more looks at what nothing comes to.
+/// After any other iteration, the next horizon is at most this multiple of the last desired
+/// motion, because motions get shorter; one that grows is limited and evaluated farther. A
+/// smaller factor would limit more often, a larger one would evaluate points that nothing
+/// reaches.
 const NEXT: f64 = 1.5;
 
-/// Constraints are satisfied up to this part of the tolerance.
+/// The accuracy of constraints, as a part of the tolerance.
 const SLACK: f64 = 1e-3;
 
-/// Below this part of the Lipschitz constant a gradient says nothing about the surface.
+/// A gradient shorter than this part of the Lipschitz constant says nothing about the surface.
 const LEAST_SLOPE: f64 = 0.1;
 
-/// The most that one turn turns the tool among contacts [rad]: their planes turn with it.
+/// The largest rotation of one iteration in contact [rad]: the tangent planes change with the
+/// rotation.
 const MOST_ANGLE: f64 = 0.3;
 
-/// What a tool lives with in a tick.
+/// Lengths of a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lengths {
-    /// How long one radian is [m]: ℓ.
+    /// The length that a radian counts as, ℓ [m].
     pub(super) unit: f64,
-    /// How deep a point may rest [m].
+    /// The largest depth of a point at rest [m].
     pub(super) tolerance: f64,
-    /// The tool rests where the next motion is less [m].
+    /// The tool rests when its next motion is shorter than this [m].
     pub(super) still: f64,
-    /// How deep a point may dip on its way [m].
+    /// The largest depth of a point during a motion [m].
     pub(super) skin: f64,
-    /// How far points are likely to move in this tick [m]: what is farther from the bodies is
-    /// looked at only if they do.
+    /// The expected motion of points in this tick [m]: points farther from the bodies are
+    /// evaluated only if the motion is longer.
     pub(super) horizon: f64,
 }
 
 impl Lengths {
-    /// How much a constraint may be violated by [m].
+    /// The largest violation of a constraint [m].
     pub(super) fn slack(&self) -> f64 {
         SLACK * self.tolerance
     }
@@ -87,21 +91,21 @@ pub(super) struct Push<const D: usize> {
     /// The distance from the ball to the body, to first order [m].
     pub(super) gap: f64,
     pub(super) body: u32,
-    /// Its force over the stiffness [m].
+    /// The push: force over stiffness [m].
     pub(super) push: f64,
 }
 
-/// Where a tool rests.
+/// A rest pose of a tool.
 #[derive(Clone, Debug)]
 pub(super) struct Rest<const D: usize> {
     pub(super) pose: Pose<D>,
-    /// What pushes it there.
+    /// The points that push the tool there.
     pub(super) pushes: Room<Push<D>>,
-    /// Points known to be outside.
+    /// The number of points proven outside.
     pub(super) known: u32,
-    /// `true` if every point that was looked at is outside.
+    /// `true` if every evaluated point is outside.
     pub(super) is_outside: bool,
-    /// How far from the goal, squared [m²].
+    /// The squared distance from the goal [m²].
     energy: f64,
 }
 
@@ -117,17 +121,17 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-/// Room for a tick.
+/// The search, with memory for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
     pub(super) rows: Room<Row>,
-    /// Of which point each of the first rows is; those after them are of cones of friction.
+    /// The points of the first rows; the later rows belong to friction cones.
     numbers: Room<u32>,
-    /// How many rows there are without those of friction.
+    /// The number of rows before those of friction.
     pub(super) plain: usize,
-    /// Points that pushed in the tick before.
+    /// Points that pushed in the last tick.
     pub(super) held: Room<u32>,
-    /// Contacts with friction.
+    /// The friction cones of contacts.
     pub(super) cones: Room<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
@@ -147,10 +151,11 @@ impl<const D: usize> Settler<D> {
         }
     }
 
-    /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) says where it came to.
+    /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) then holds the rest
+    /// pose.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_TURNS`] turns,
-    /// and the evaluations that `scan` has left.
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_TURNS`]
+    /// iterations, and the evaluations that `scan` has left.
     pub(super) fn settle(
         &mut self,
         (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
@@ -215,7 +220,7 @@ impl<const D: usize> Settler<D> {
             if is_free && part >= 1.0 {
                 pose = goal;
                 if is_all && self.rows.is_empty() {
-                    // Nothing that could touch: proven free, without another look.
+                    // No point could touch: the goal is proven free without further evaluation.
                     self.keep(
                         scan,
                         (&pose, &Twist::between(&pose, &goal), 1.0),
@@ -244,7 +249,7 @@ impl<const D: usize> Settler<D> {
         }
     }
 
-    /// The tangent planes of all points that the wish could bring to the surface.
+    /// The tangent planes of all points that the desired motion could bring to the surface.
     fn make_rows(
         &mut self,
         (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
@@ -271,7 +276,7 @@ impl<const D: usize> Settler<D> {
         self.plain = self.rows.len();
     }
 
-    /// Keeps a pose that is outside if it is the closest so far.
+    /// Keeps a free pose if it is the closest so far.
     fn keep(
         &mut self,
         scan: &Scan<D>,
@@ -303,7 +308,7 @@ impl<const D: usize> Settler<D> {
     }
 }
 
-/// How a motion of the tool moves a point `arm` from its origin along `normal`, as a row.
+/// The row that gives the motion along `normal` of a point at `arm` from the tool's origin.
 pub(super) fn stacked_along<const D: usize>(
     arm: Point<D>,
     normal: Vector<f64, D>,

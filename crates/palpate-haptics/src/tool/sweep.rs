@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How far a motion is proven free.
+//! Sweeping: the part of a motion that is proven free.
 //!
-//! A value `g` at a point proves that nothing within `(g + s) / L` of it is as deep as the skin
-//! `s`, before it and behind. Where that does not cover the way of a point, it is asked further
-//! on, and halfway where two answers leave a hole: conservative advancement (Mirtich 1996) from
-//! both sides, for all points at once. Xu and Barbič, "6-DoF haptic rendering using continuous
-//! collision detection between points and signed distance fields" (2017), follow points likewise.
+//! A value `g` at a point proves that no point within `(g + s) / L` of it is deeper than the
+//! skin `s`. If this does not cover the path of a point, the field is evaluated further along
+//! the path, and halfway between two evaluations that leave a gap: conservative advancement
+//! (Mirtich 1996) from both ends, for all points at once. Xu and Barbič, "6-DoF haptic
+//! rendering using continuous collision detection between points and signed distance fields"
+//! (2017), also sweep points.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -18,31 +19,32 @@ use super::shell::Shell;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
-/// A motion that values at its start prove for this part of it needs no evaluations on the way.
-/// Less ends turns early, and a turn costs more than the few points in its way.
+/// If the evaluations at the start prove this part of a motion, the motion stops there and no
+/// point is swept. A smaller part would end iterations early, and an iteration costs more than
+/// sweeping a few points.
 const WORTH_GOING: f64 = 0.75;
 
-/// Poses on a way at most.
+/// The most poses on a path.
 const MOST_STEPS: u32 = 64;
 
-/// On the way of a point, values prove that it does not dip deeper than this part of a skin.
+/// The depth that swept points may reach, as a part of a skin.
 const DIPS: f64 = 0.75;
 
-/// A way whose steps would be below this part of a skin is not free.
+/// A path whose steps fall below this part of a skin counts as blocked.
 const MET: f64 = 0.125;
 
-/// A point on its way.
+/// A point that is being swept.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct March {
     number: u32,
-    /// The length of its way [m].
+    /// The length of its path [m].
     way: f64,
-    /// The part of it that is proven.
+    /// The proven part of the path.
     covered: f64,
 }
 
 impl<const D: usize> Scan<D> {
-    /// The part of a motion, `most` at most, on which no point dips deeper than the skin.
+    /// The part of a motion, at most `most`, in which no point dips deeper than the skin.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most 64 evaluations a point,
     /// and what the budget has left.
@@ -59,11 +61,12 @@ impl<const D: usize> Scan<D> {
         let (mut proven, mut marches) = (whole, std::mem::take(&mut self.marches));
         marches.clear();
         for (number, seen) in self.seen() {
-            // Points that are deeper than a skin already are on their way out.
+            // Points that are already deeper than a skin are moving out.
             if seen.gap <= -skin {
                 continue;
             }
-            // To half a skin; from below, half of the way to a whole one.
+            // A point may go down to half a skin; from below that, half of the way to a whole
+            // skin.
             let room = (seen.gap + 0.5 * skin).max(0.5 * (seen.gap + skin)) / lipschitz;
             let way = linear + angle * (seen.centre - pose.translation).norm();
             if way * whole > room && marches.len() < marches.capacity() {
@@ -80,8 +83,9 @@ impl<const D: usize> Scan<D> {
         proven
     }
 
-    /// Follows points on their way until the `whole` part of it is proven; the part that is. They
-    /// may dip by the first of the lengths, and the second is too little to go on [m].
+    /// Sweeps points until the part `whole` of the motion is proven, and returns the proven
+    /// part. Points may dip by the first length [m]; steps shorter than the second length [m]
+    /// end the sweep.
     fn follow(
         &mut self,
         (shell, nearby): (&Shell<D>, &Nearby<'_, D>),
@@ -95,7 +99,7 @@ impl<const D: usize> Scan<D> {
         let mut step = proven(marches);
         for _ in 0..MOST_STEPS {
             let covered = proven(marches);
-            // Written so that NaN ends.
+            // Written so that NaN ends the sweep.
             if covered.is_nan() || covered >= whole {
                 break;
             }
