@@ -3,18 +3,18 @@
 
 //! A device of your own: a plotter's carriage in the plane, driven by two voltages.
 //!
-//! All that palpate asks of a device is [`Device`]: where its points are, and what to do with
-//! the forces. Here the transport is two numbers; yours would be a port.
+//! palpate needs one trait of a device, [`Device`]: it reads the device points and writes the
+//! forces. Here the transport is two numbers; yours would be a port.
 
 use palpate_devices::{Device, DeviceLost, DeviceProfile, PointState};
 use palpate_field::{Shape, ShapeError, Vector, kernel::Ball};
 use palpate_haptics::{HapticsError, Servo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
 
-/// A carriage that a motor draws around a circle of 48 mm in two seconds.
+/// A carriage that a motor moves around a circle of 48 mm in two seconds.
 struct Carriage {
     profile: DeviceProfile,
-    /// What the coils get [V]: 0.5 V for each newton.
+    /// The voltages on the coils [V]: 0.5 V per newton.
     volts: [f64; 2],
 }
 
@@ -64,7 +64,7 @@ fn feel() -> Result<RunReport, Failure> {
     };
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::from_kernel(Ball::new(0.02)?).translated(Vector([0.06, 0.0]))?;
-    // Protected by what the profile says: no force beyond it reaches the hand.
+    // The servo keeps the limits of the profile: no larger force reaches the hand.
     let mut servo = Servo::for_device(disc, &device)?;
     let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
     Ok(run(&mut servo, &mut device, options)?)

@@ -208,7 +208,7 @@ struct GateState {
 }
 
 impl Gate {
-    // Its numbers are whole whatever thread panicked.
+    // The state is valid even if a thread panicked while it held the lock.
     fn state(&self) -> MutexGuard<'_, GateState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
