@@ -360,7 +360,7 @@ impl<const D: usize> Bodies<D> {
     /// Returns the [scratch memory](Self::take_scratch).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn put_back(&mut self, (list, reactions): (Box<[u32]>, Vec<Reaction<D>>)) {
+    pub(crate) fn put_back(&mut self, list: Box<[u32]>, reactions: Vec<Reaction<D>>) {
         (self.list, self.reactions) = (list, reactions);
     }
 
@@ -393,7 +393,8 @@ impl<const D: usize> Bodies<D> {
     #[must_use]
     pub fn nearby<'a>(
         &'a self,
-        (centre, radius): (Point<D>, f64),
+        centre: Point<D>,
+        radius: f64,
         list: &'a mut [u32],
     ) -> Nearby<'a, D> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);

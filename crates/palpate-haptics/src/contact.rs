@@ -118,6 +118,23 @@ impl<const D: usize> LocalSurface<D> {
     }
 }
 
+/// Where a proxy is; a slide updates both parts.
+pub(crate) struct Place<'a, const D: usize> {
+    /// The evaluated point.
+    pub(crate) here: &'a mut Sample<D>,
+    /// The unit normal of the surface last seen.
+    pub(crate) normal: &'a mut Vector<f64, D>,
+}
+
+/// Where a proxy is to go.
+#[derive(Clone, Copy)]
+pub(crate) struct Goal<const D: usize> {
+    /// The device point, or the point to which friction shifts it [m].
+    pub(crate) device: Point<D>,
+    /// How far the device point moved in this tick [m].
+    pub(crate) motion: f64,
+}
+
 /// Slides from `here`, on or above the offset surface, to the point closest to `device`, which
 /// moved by `motion` [m] in this tick. Afterwards `here` is the place where the proxy rests, an
 /// evaluated point on or above the offset surface, and `normal` is the unit normal of the
@@ -134,10 +151,12 @@ impl<const D: usize> LocalSurface<D> {
 /// evaluations.
 pub(crate) fn slide<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
-    (device, motion): (Point<D>, f64),
+    place: Place<'_, D>,
+    goal: Goal<D>,
     LocalSurface { planes, curvature }: &mut LocalSurface<D>,
 ) -> bool {
+    let Place { here, normal } = place;
+    let Goal { device, motion } = goal;
     planes.clear();
     let mut slide = Slide {
         curvature,
@@ -235,7 +254,7 @@ impl<const D: usize> Slide<'_, D> {
         let is_new = self.is_first;
         *self.normal = normal;
         let foot = here - normal * gap;
-        self.learn_curvature(sampler, (foot, normal));
+        self.learn_curvature(sampler, foot, normal);
         let wall = HalfSpace { point: foot, normal };
         // The first plane is stored even if the search ends here.
         let is_only = self.planes.is_empty();
@@ -265,7 +284,7 @@ impl<const D: usize> Slide<'_, D> {
             || is_to_go(2.0)
             || is_to_go(MOST_GAIN) && !self.curvature.at_most_doubles(stretch)
         {
-            goal = self.along_the_curvature((foot, normal), goal, sampler.tolerance());
+            goal = self.along_the_curvature(foot, normal, goal, sampler.tolerance());
         }
         let is_at_rest = is_outside && squared(goal - here) <= at_rest;
         if is_only {
@@ -332,7 +351,8 @@ impl<const D: usize> Slide<'_, D> {
     fn learn_curvature(
         &mut self,
         sampler: &Sampler<'_, D>,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
     ) {
         let (way, turn) = (foot - self.last_foot, normal - self.last_normal);
         let last_normal = self.last_normal;
@@ -351,7 +371,7 @@ impl<const D: usize> Slide<'_, D> {
         } else {
             let is_turn =
                 |way, turn| is_explained(self.curvature.residual(way, turn), squared(turn));
-            self.planes.forget_wall((foot, normal), is_turn);
+            self.planes.forget_wall(foot, normal, is_turn);
         }
         let most = if turn.dot(way) > 0.0 { MOST_CONVEX } else { MOST_CONCAVE };
         if turned * sampler.skin().powi(2) > most * most * length {
@@ -366,7 +386,8 @@ impl<const D: usize> Slide<'_, D> {
     /// The goal on a tangent plane, corrected along and below the plane for the curvature.
     fn along_the_curvature(
         &self,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
         goal: Point<D>,
         tolerance: f64,
     ) -> Point<D> {

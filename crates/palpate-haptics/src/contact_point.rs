@@ -17,7 +17,7 @@ use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::safety::PortState;
 use crate::servo::ServoOptions;
-use crate::surface::Ringing;
+use crate::surface::{Press, Ringing};
 use crate::workspace::WorkspaceMap;
 
 /// One contact point after a tick. World coordinates.
@@ -132,6 +132,15 @@ impl<'a, const D: usize> Tick<'a, D> {
     }
 }
 
+/// The force in free space, of guides and magnets.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeForce<const D: usize> {
+    /// The force [N].
+    pub(crate) force: Vector<f64, D>,
+    /// Whether the proxy was placed anew: then all forces rise from zero.
+    pub(crate) placed: bool,
+}
+
 /// What a contact point touched in the tick before: its contact, body and motion.
 #[derive(Clone, Copy)]
 struct Before {
@@ -192,8 +201,8 @@ impl<const D: usize> ContactPoint<D> {
     ) -> Vector<f64, D> {
         let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
         let in_world = tick.setting.map.state_to_world(at_device);
-        let (free, placed) = self.feel(tick, &in_world, touch);
-        self.give(tick.setting, at_device, touch, (free, placed))
+        let free = self.feel(tick, &in_world, touch);
+        self.give(tick.setting, at_device, touch, free)
     }
 
     /// Sets the rendered force of `touch` from its wanted force and the force in free space.
@@ -207,8 +216,9 @@ impl<const D: usize> ContactPoint<D> {
         setting: &Setting<D>,
         at_device: PointState<D>,
         touch: &mut Touch<D>,
-        (free, placed): (Vector<f64, D>, bool),
+        free: FreeForce<D>,
     ) -> Vector<f64, D> {
+        let FreeForce { force: free, placed } = free;
         let Setting { options, map, rise_step, is_late } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
@@ -234,7 +244,7 @@ impl<const D: usize> ContactPoint<D> {
         tick: &mut Tick<'_, D>,
         state: &PointState<D>,
         touch: &mut Touch<D>,
-    ) -> (Vector<f64, D>, bool) {
+    ) -> FreeForce<D> {
         let device = state.position;
         // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
@@ -254,7 +264,7 @@ impl<const D: usize> ContactPoint<D> {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return (Vector::ZERO, following.placed);
+            return FreeForce { force: Vector::ZERO, placed: following.placed };
         };
         let guides = self.guides.iter_mut();
         let mut free =
@@ -269,7 +279,7 @@ impl<const D: usize> ContactPoint<D> {
             self.fall_silent(tick, before);
         }
         free += self.pull(tick, touch);
-        (free, following.placed)
+        FreeForce { force: free, placed: following.placed }
     }
 
     /// The part of the force at which the rise begins: zero after a placement; after bodies
@@ -340,7 +350,8 @@ impl<const D: usize> ContactPoint<D> {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let force = surface.force(level, pull, velocity, (in_body, turn));
+        let press = Press { stretch: pull, velocity, proxy: in_body };
+        let force = surface.force(level, press, turn);
         let force = body.vector_in_world(force);
         if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
             let held = surface.strata.force(level, stretch.norm());

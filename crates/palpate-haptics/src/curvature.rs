@@ -75,7 +75,7 @@ impl<const D: usize> Curvature<D> {
     /// near.
     #[inline]
     pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
-        surface_displacement(|way| self.turn(way), along, (depth, SOLVED))
+        surface_displacement(|way| self.turn(way), along, depth, SOLVED)
     }
 }
 
@@ -92,7 +92,8 @@ impl<const D: usize> Curvature<D> {
 pub(crate) fn surface_displacement<const D: usize>(
     mut turn: impl FnMut(Vector<f64, D>) -> Vector<f64, D>,
     along: Vector<f64, D>,
-    (depth, solved): (f64, f64),
+    depth: f64,
+    solved: f64,
 ) -> Option<Vector<f64, D>> {
     let (mut way, mut rest, mut step) = (Vector::ZERO, along, along);
     let mut left = rest.dot(rest);

@@ -16,8 +16,8 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::contact::{LocalSurface, slide};
-use crate::sampler::{Sample, Sampler};
+use crate::contact::{Goal, LocalSurface, Place, slide};
+use crate::sampler::Sampler;
 use crate::surface::Friction;
 
 /// The most of the stretch that lies along the surface when a single wall holds the proxy. A
@@ -40,6 +40,13 @@ pub(crate) enum Hold {
     Slip,
 }
 
+/// The friction of the surface that holds a proxy, and its effect in the tick before.
+#[derive(Clone, Copy)]
+pub(crate) struct Held {
+    pub(crate) friction: Friction,
+    pub(crate) hold: Hold,
+}
+
 /// [Slides](slide) the proxy from `here` towards the point closest to `device`, as far as
 /// `friction` permits; `device` moved by `motion` [m] in this tick. Returns whether the surface
 /// keeps the proxy from the device, and how friction acts.
@@ -48,13 +55,16 @@ pub(crate) enum Hold {
 /// evaluations.
 pub(crate) fn drag<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
-    (device, motion): (Point<D>, f64),
-    (friction, hold): (Friction, Hold),
+    place: Place<'_, D>,
+    goal: Goal<D>,
+    held: Held,
     local: &mut LocalSurface<D>,
 ) -> (bool, Hold) {
+    let Place { here, normal } = place;
+    let Goal { device, motion } = goal;
+    let Held { friction, hold } = held;
     if here.tangent.is_none() || friction.fixed <= 0.0 {
-        return (slide(sampler, (here, normal), (device, motion), local), Hold::None);
+        return (slide(sampler, Place { here, normal }, goal, local), Hold::None);
     }
     let start = *here;
     let (first_normal, gap) = sampler.tangent(&start, *normal);
@@ -63,15 +73,15 @@ pub(crate) fn drag<const D: usize>(
     let depth = height - gap;
     *normal = first_normal;
     if depth <= 0.0 || gap > sampler.near() {
-        return (slide(sampler, (here, normal), (device, motion), local), Hold::None);
+        return (slide(sampler, Place { here, normal }, goal, local), Hold::None);
     }
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
     let Some(goal) =
-        held_back(device, stretch - first_normal * height, depth, (most, friction.slipping))
+        held_back(device, stretch - first_normal * height, depth, most, friction.slipping)
     else {
         return (true, Hold::Stick);
     };
-    let contact = slide(sampler, (here, normal), (goal, motion), local);
+    let contact = slide(sampler, Place { here, normal }, Goal { device: goal, motion }, local);
     let pull = here.point - goal;
     let along = pull - *normal * pull.dot(*normal);
     if !contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
@@ -87,12 +97,15 @@ pub(crate) fn drag<const D: usize>(
     }
     // The walls together press with the part of the stretch across the crease.
     let pressed = *normal * stretch.dot(*normal) + across * stretch.dot(across);
-    match held_back(device, stretch - pressed, pressed.norm(), (most, friction.slipping)) {
+    match held_back(device, stretch - pressed, pressed.norm(), most, friction.slipping) {
         None => {
             (*here, *normal) = (start, first_normal);
             (true, Hold::Stick)
         }
-        Some(goal) => (slide(sampler, (here, normal), (goal, motion), local), Hold::Slip),
+        Some(goal) => (
+            slide(sampler, Place { here, normal }, Goal { device: goal, motion }, local),
+            Hold::Slip,
+        ),
     }
 }
 
@@ -103,7 +116,8 @@ fn held_back<const D: usize>(
     device: Point<D>,
     along: Vector<f64, D>,
     depth: f64,
-    (most, slipping): (f64, f64),
+    most: f64,
+    slipping: f64,
 ) -> Option<Point<D>> {
     let squared = along.dot(along);
     // Written so that NaN sticks.

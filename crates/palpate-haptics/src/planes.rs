@@ -65,7 +65,8 @@ impl<const D: usize> Planes<D> {
     /// between the two feet.
     pub(crate) fn forget_wall(
         &mut self,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
         is_turn: impl Fn(Vector<f64, D>, Vector<f64, D>) -> bool,
     ) {
         self.retain(|wall| !is_turn(foot - wall.foot, normal - wall.half_space.normal));

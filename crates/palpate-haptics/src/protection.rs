@@ -14,8 +14,8 @@ use crate::error::HapticsError;
 use crate::impedance::Impedance;
 use crate::rotation::turn_between;
 use crate::safety::{
-    Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
-    SafetyReport, WrenchChain,
+    Acceptance, Accepted, Limits, PassivityReport, PerMotion, PortState, SafetyChain,
+    SafetyOptions, SafetyReport, WrenchChain,
 };
 use crate::tool::Coupling;
 use crate::velocity::VelocityEstimator;
@@ -133,8 +133,7 @@ impl<const D: usize> Protection<D> {
         }
         let mut accepted: Vec<_> = worst.into_iter().collect();
         if let Some(turning) = self.torques() {
-            let turning =
-                self.accept_turning(&layers(&bodies)?, &mut coupling, (turning, rate));
+            let turning = self.accept_turning(&layers(&bodies)?, &mut coupling, turning, rate);
             accepted.push(turning?);
         }
         Ok(AcceptedBodies { bodies, coupling: Some(coupling), accepted })
@@ -152,7 +151,8 @@ impl<const D: usize> Protection<D> {
         &self,
         layers: &[Impedance],
         coupling: &mut Coupling,
-        (turning, rate): (&TurningProfile, f64),
+        turning: &TurningProfile,
+        rate: f64,
     ) -> Result<Accepted, HapticsError> {
         let (mut part, mut damping) = (0.0_f64, 0.0_f64);
         for layer in layers {
@@ -163,7 +163,7 @@ impl<const D: usize> Protection<D> {
         // A torque at the device is this multiple of the torque in the world.
         let scale = 1.0 / self.map.scale();
         let of =
-            |impedance, acceptance| Accepted::of((impedance, scale), &limits, acceptance, rate);
+            |impedance, acceptance| Accepted::of(impedance, scale, &limits, acceptance, rate);
         if self.acceptance == Acceptance::Strict {
             return of(coupling.turning_on(part, damping)?, Acceptance::Strict);
         }
@@ -183,7 +183,7 @@ impl<const D: usize> Protection<D> {
     fn accepted(&self, impedance: Impedance, rate: f64) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = Limits::along(&self.profile);
-        Accepted::of((impedance, scale), &limits, self.acceptance, rate)
+        Accepted::of(impedance, scale, &limits, self.acceptance, rate)
     }
 
     /// Makes the port of one contact point.
@@ -209,9 +209,11 @@ impl<const D: usize> Protection<D> {
     ) -> Result<Option<TurningPort<D>>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
         let chain = if let Some((along, about)) = bodies.wrench() {
-            let limits = (&Limits::along(&self.profile), &Limits::about(turning));
+            let (along_limits, about_limits) =
+                (Limits::along(&self.profile), Limits::about(turning));
+            let limits = PerMotion { along: &along_limits, about: &about_limits };
             let options = self.safety_options(along.impedance);
-            let accepted = (along.clone(), about.clone());
+            let accepted = PerMotion { along: along.clone(), about: about.clone() };
             Some(WrenchChain::new(limits, accepted, &options, rate)?)
         } else {
             None

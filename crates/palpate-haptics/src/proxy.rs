@@ -18,9 +18,9 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{LocalSurface, slide};
+use crate::contact::{Goal, LocalSurface, Place, slide};
 use crate::error::{HapticsError, not_negative};
-use crate::friction::{Hold, drag};
+use crate::friction::{Held, Hold, drag};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
@@ -253,7 +253,7 @@ impl<const D: usize> Proxy<D> {
         self.device = device;
         let moved = moved.max(squared(carried - last)).sqrt();
         let Probe { radius, budget } = self.probe;
-        let mut sampler = Sampler::new((nearby, self.punctured), radius, budget, extent);
+        let mut sampler = Sampler::new(nearby, self.punctured, radius, budget, extent);
 
         if !self.punctured.is_empty() {
             self.restore(&mut sampler);
@@ -280,7 +280,7 @@ impl<const D: usize> Proxy<D> {
             placed |= is_moved;
         }
         let goal = sampler.within_region(device);
-        self.pursue(&mut sampler, (goal, moved));
+        self.pursue(&mut sampler, Goal { device: goal, motion: moved });
         let proxy = self.at.as_ref().map_or(device, |at| at.point);
         self.following(proxy, placed, sampler.evaluations())
     }
@@ -385,32 +385,32 @@ impl<const D: usize> Proxy<D> {
 
     /// Moves the proxy straight to the device while the path is free, then slides. A proxy
     /// without a place touches nothing.
-    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, (device, moved): (Point<D>, f64)) {
+    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, goal: Goal<D>) {
         let Self { at, normal, contact, hold, local, punctured, .. } = self;
         let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
         loop {
-            let way = device - here.point;
+            let way = goal.device - here.point;
             let squared = way.dot(way);
             let free = sampler.free_radius(here);
             let is_free = free > 0.0 && free * free > squared;
             let next = if is_free {
-                device
+                goal.device
             } else if free > 0.0 && free * free > WORTH_FLYING * WORTH_FLYING * squared {
                 // Conservative advancement (Mirtich 1996): no surface is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let place = (&mut *here, &mut *normal);
-                let friction = friction(sampler, place.0, (squared.sqrt(), punctured));
+                let friction = friction(sampler, here, squared.sqrt(), punctured);
                 match friction.filter(|_| was_held) {
                     Some(friction) => {
-                        let held = (friction, how);
-                        (*contact, *hold) = drag(sampler, place, (device, moved), held, local);
+                        let held = Held { friction, hold: how };
+                        (*contact, *hold) =
+                            drag(sampler, Place { here, normal }, goal, held, local);
                     }
-                    None => *contact = slide(sampler, place, (device, moved), local),
+                    None => *contact = slide(sampler, Place { here, normal }, goal, local),
                 }
                 *contact =
-                    *contact || was_held && is_held_still(sampler, (here, normal), device);
+                    *contact || was_held && is_held_still(sampler, here, normal, goal.device);
                 if !*contact {
                     *hold = Hold::None;
                 }
@@ -438,7 +438,8 @@ impl<const D: usize> Proxy<D> {
 #[inline(never)]
 fn is_held_still<const D: usize>(
     sampler: &Sampler<'_, D>,
-    (here, normal): (&Sample<D>, &Vector<f64, D>),
+    here: &Sample<D>,
+    normal: &Vector<f64, D>,
     device: Point<D>,
 ) -> bool {
     let (normal, gap) = sampler.tangent(here, *normal);
@@ -450,7 +451,8 @@ fn is_held_still<const D: usize>(
 fn friction<const D: usize>(
     sampler: &Sampler<'_, D>,
     at: &Sample<D>,
-    (depth, punctured): (f64, &Punctured),
+    depth: f64,
+    punctured: &Punctured,
 ) -> Option<Friction> {
     let strata = &sampler.nearby().body(at.body)?.surface().strata;
     Some(strata.at(punctured.level(at.body), depth).friction)

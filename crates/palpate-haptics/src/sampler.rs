@@ -85,7 +85,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// A sampler for a probe of `radius` [m] that moves between points at most `extent` [m]
     /// from the origin.
     pub(crate) fn new(
-        (nearby, punctured): (&'a Nearby<'a, D>, Punctured),
+        nearby: &'a Nearby<'a, D>,
+        punctured: Punctured,
         radius: f64,
         budget: u32,
         extent: f64,

@@ -141,7 +141,7 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, HapticsError> {
-        Self::of((impedance, scale), &Limits::along(device), Acceptance::Scaled, rate)
+        Self::of(impedance, scale, &Limits::along(device), Acceptance::Scaled, rate)
     }
 
     /// As [`new`](Self::new), but refuses an impedance that would have to be scaled.
@@ -170,7 +170,7 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, HapticsError> {
-        Self::of((impedance, scale), &Limits::along(device), Acceptance::Strict, rate)
+        Self::of(impedance, scale, &Limits::along(device), Acceptance::Strict, rate)
     }
 
     /// The part of `impedance` that a device with these limits renders; lengths in the world,
@@ -180,7 +180,8 @@ impl Accepted {
     ///
     /// As [`new`](Self::new), or [`strict`](Self::strict) with [`Acceptance::Strict`].
     pub(crate) fn of(
-        (impedance, scale): (Impedance, f64),
+        impedance: Impedance,
+        scale: f64,
         limits: &Limits,
         acceptance: Acceptance,
         rate: f64,

@@ -79,7 +79,8 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
         &mut self,
-        (observed, free): (Vector<f64, D>, Vector<f64, D>),
+        observed: Vector<f64, D>,
+        free: Vector<f64, D>,
         input: &TickInput,
     ) -> (Vector<f64, D>, Vector<f64, D>) {
         self.effects.ticks += 1;

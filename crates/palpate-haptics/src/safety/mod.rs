@@ -31,7 +31,7 @@ pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 use channel::{Channel, TickInput};
 pub(crate) use limits::Limits;
 use passivity::{Passivity, PassivityOptions, Seen};
-pub(crate) use wrench::{SpatialVector, WrenchChain, WrenchState};
+pub(crate) use wrench::{PerMotion, SpatialVector, WrenchChain, WrenchState};
 
 use crate::device::DeviceProfile;
 use crate::error::{HapticsError, not_negative, positive};
@@ -188,7 +188,7 @@ impl<const D: usize> SafetyChain<D> {
         let rate = positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
         let limits = Limits::along(device);
-        let accepted = Accepted::of((impedance, scale), &limits, options.acceptance, rate)?;
+        let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
         let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {
             // A device with infinite damping is passive whatever it renders.
@@ -236,7 +236,7 @@ impl<const D: usize> SafetyChain<D> {
         let seen = Seen { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let input = TickInput { is_sound, is_late, start };
-        let (force, left) = self.channel.step((observed, state.free_force), &input);
+        let (force, left) = self.channel.step(observed, state.free_force, &input);
         self.passivity.written(left);
         force
     }

@@ -94,10 +94,10 @@ pub(crate) struct WrenchState<const D: usize> {
 /// slower slew limit: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, the force is never changed.
 #[derive(Clone, Debug)]
 pub(crate) struct WrenchChain<const D: usize> {
-    /// Translational and rotational.
-    accepted: (Accepted, Accepted),
-    /// Properties of the device, translational and rotational.
-    sides: (AxisLimits, AxisLimits),
+    /// What the device renders.
+    accepted: PerMotion<Accepted>,
+    /// Properties of the device.
+    sides: PerMotion<AxisLimits>,
     /// A radian as a length [m].
     unit: f64,
     passivity: Passivity<SpatialVector<D>>,
@@ -105,6 +105,15 @@ pub(crate) struct WrenchChain<const D: usize> {
     torque: Channel<3>,
     /// The largest torque written so far [N·m].
     largest_torque: f64,
+}
+
+/// One value for translation and one for rotation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PerMotion<T> {
+    /// The value for translation, along the axes.
+    pub(crate) along: T,
+    /// The value for rotation, about the axes.
+    pub(crate) about: T,
 }
 
 /// Guaranteed properties of a device, in translation or rotation.
@@ -153,15 +162,17 @@ impl<const D: usize> WrenchChain<D> {
     ///
     /// As [`SafetyChain::new`](super::SafetyChain::new).
     pub(crate) fn new(
-        (along, about): (&Limits, &Limits),
-        accepted: (Accepted, Accepted),
+        limits: PerMotion<&Limits>,
+        accepted: PerMotion<Accepted>,
         options: &SafetyOptions,
         rate: f64,
     ) -> Result<Self, HapticsError> {
-        let sides = (AxisLimits::new(along)?, AxisLimits::new(about)?);
-        let unit = unit(&accepted.0, &accepted.1);
-        let stiffness = accepted.0.device_stiffness;
-        let AxisLimits { damping, mass, max_rate } = sides.0.with(&sides.1, unit);
+        let PerMotion { along, about } = limits;
+        let sides =
+            PerMotion { along: AxisLimits::new(along)?, about: AxisLimits::new(about)? };
+        let unit = unit(&accepted.along, &accepted.about);
+        let stiffness = accepted.along.device_stiffness;
+        let AxisLimits { damping, mass, max_rate } = sides.along.with(&sides.about, unit);
         let passivity = PassivityOptions {
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness,
@@ -185,15 +196,16 @@ impl<const D: usize> WrenchChain<D> {
     /// Replaces the accepted impedances by others for the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn renew(&mut self, (along, about): (&Accepted, &Accepted)) {
-        self.accepted.0.renew(along);
-        self.accepted.1.renew(about);
+    pub(crate) fn renew(&mut self, along: &Accepted, about: &Accepted) {
+        self.accepted.along.renew(along);
+        self.accepted.about.renew(about);
         let unit = unit(along, about);
         let longer = unit / self.unit;
         self.passivity.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
         self.unit = unit;
         let stiffness = along.device_stiffness;
-        let AxisLimits { damping, mass, max_rate } = self.sides.0.with(&self.sides.1, unit);
+        let AxisLimits { damping, mass, max_rate } =
+            self.sides.along.with(&self.sides.about, unit);
         let options = *self.passivity.options();
         let options = PassivityOptions { stiffness, damping, mass, max_rate, ..options };
         self.passivity.renew(options);
@@ -220,8 +232,8 @@ impl<const D: usize> WrenchChain<D> {
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
         let input = TickInput { is_sound, is_late, start: 1.0 };
-        let (along, force_left) = self.force.step((allowed.along, free_force), &input);
-        let (about, torque_left) = self.torque.step((allowed.about, Vector::ZERO), &input);
+        let (along, force_left) = self.force.step(allowed.along, free_force, &input);
+        let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);
         let left = SpatialVector { along: force_left, about: torque_left };
         self.passivity.written(left.turning(1.0 / unit));
         self.largest_torque = self.largest_torque.max(about.norm());
@@ -264,7 +276,7 @@ impl<const D: usize> WrenchChain<D> {
     }
 
     pub(crate) fn report(&self) -> SafetyReport {
-        let (along, about) = &self.accepted;
+        let PerMotion { along, about } = &self.accepted;
         let turning = TurningReport::of(about, self.largest_torque, &self.torque);
         SafetyReport {
             turning: Some(turning),

@@ -23,7 +23,7 @@ use crate::nearby::Nearby;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::safety::SafetyReport;
-use crate::tool::{CoupledTool, Coupling, HeldTool, Tool};
+use crate::tool::{CoupledTool, Coupling, HeldTool, Sides, Tool};
 use crate::workspace::WorkspaceMap;
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
@@ -346,8 +346,8 @@ impl<const D: usize> Renderer<D> {
         events.clear();
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
-            let at = (point, &mut self.bodies);
-            *force = coupled.tick(at, &self.setting, state(states, index), touch);
+            let sides = Sides { point, bodies: &mut self.bodies };
+            *force = coupled.tick(sides, &self.setting, state(states, index), touch);
         }
         let told = coupled.tool.events().iter().take(MOST_EVENTS);
         events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
@@ -375,7 +375,7 @@ impl<const D: usize> Renderer<D> {
                 reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
             }
         }
-        self.bodies.put_back((list, reactions));
+        self.bodies.put_back(list, reactions);
     }
 
     /// Runs a tick with `states` on copies of the contact points, only to load the code and
@@ -418,7 +418,11 @@ fn nearby<'a, const D: usize>(
     hand: impl FnOnce() -> (Point<D>, f64),
     list: &'a mut [u32],
 ) -> Nearby<'a, D> {
-    if bodies.bodies().len() < FEW { bodies.everything() } else { bodies.nearby(hand(), list) }
+    if bodies.bodies().len() < FEW {
+        return bodies.everything();
+    }
+    let (centre, radius) = hand();
+    bodies.nearby(centre, radius, list)
 }
 
 /// The state of a contact point; NaN if it is missing.

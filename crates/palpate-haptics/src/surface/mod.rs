@@ -34,6 +34,17 @@ const SOLVED: f64 = 1e-8;
 /// would grow without bound.
 const STEEPER: f64 = 8.0;
 
+/// How a hand presses on a body, in body coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Press<const D: usize> {
+    /// From the device point to the proxy [m].
+    pub(crate) stretch: Vector<f64, D>,
+    /// The velocity of the device point relative to the body [m/s].
+    pub(crate) velocity: Vector<f64, D>,
+    /// The proxy [m].
+    pub(crate) proxy: Point<D>,
+}
+
 /// A material prepared for the servo.
 ///
 /// With the proxy `p`, the device point `x`, the stretch `s = p − x`, its direction
@@ -182,9 +193,7 @@ impl<const D: usize> Surface<D> {
         Ok(shape.displaced(Shape::from_kernel(relief.clone()), height)?)
     }
 
-    /// The force on the hand [N] for a `stretch` from device point to proxy [m], a `velocity`
-    /// of the device point relative to the body [m/s], and the place of the proxy in the body,
-    /// in the body's coordinates.
+    /// The force on the hand [N], in body coordinates.
     ///
     /// `level` is the number of punctured layers. `turn(displacement, distance)` gives the
     /// change of the unit normal along a displacement from the proxy, extrapolated from the
@@ -196,13 +205,10 @@ impl<const D: usize> Surface<D> {
     pub(crate) fn force(
         &self,
         level: usize,
-        stretch: Vector<f64, D>,
-        velocity: Vector<f64, D>,
-        (proxy_in_body, mut turn): (
-            Point<D>,
-            impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
-        ),
+        press: Press<D>,
+        mut turn: impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
     ) -> Vector<f64, D> {
+        let Press { stretch, velocity, proxy } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
         let drag = velocity * -layer.viscosity;
@@ -212,7 +218,7 @@ impl<const D: usize> Surface<D> {
         let normal = stretch * (1.0 / depth);
         let (mut push, mut slope) = (depth, Vector::ZERO);
         if let Some(ripples) = &self.ripples {
-            let (height, gradient) = ripples.at(proxy_in_body);
+            let (height, gradient) = ripples.at(proxy);
             // If crests rose above the surface, a hand that enters at a crest would feel a jump
             // of force, and a hand that leaves through a trough would not give the energy back.
             push = (depth + height - ripples.height()).max(0.0);
@@ -221,7 +227,7 @@ impl<const D: usize> Surface<D> {
             let along = gradient - normal * gradient.dot(normal);
             // Below a curved surface the proxy moves farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
-            let seen = surface_displacement(|way| turn(way, far), along, (depth, SOLVED));
+            let seen = surface_displacement(|way| turn(way, far), along, depth, SOLVED);
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm());
         }
         let spring = self.strata.force(level, push);

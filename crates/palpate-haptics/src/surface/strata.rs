@@ -166,7 +166,7 @@ impl Strata {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force(&self, level: usize, depth: f64) -> f64 {
-        self.integral((level, f64::INFINITY), depth)
+        self.integral(level, f64::INFINITY, depth)
     }
 
     /// The force of the springs `depth` [m] below the surface, none of them stiffer than `most`
@@ -174,10 +174,10 @@ impl Strata {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force_up_to(&self, most: f64, depth: f64) -> f64 {
-        self.integral((0, most), depth)
+        self.integral(0, most, depth)
     }
 
-    fn integral(&self, (level, most): (usize, f64), depth: f64) -> f64 {
+    fn integral(&self, level: usize, most: f64, depth: f64) -> f64 {
         let top = self.top(level).unwrap_or(&self.outermost);
         let (mut force, mut stiffness, mut from) = (0.0, top.stiffness.min(most), 0.0);
         for layer in self.deeper.iter().skip(level) {

@@ -8,6 +8,7 @@
 use palpate_field::Pose;
 
 use super::Tool;
+use super::scan::{Path, Surroundings};
 use super::settle::Lengths;
 use super::twist::Twist;
 use crate::nearby::Nearby;
@@ -49,16 +50,18 @@ impl<const D: usize> Tool<D> {
     pub(super) fn carried(
         &mut self,
         nearby: &Nearby<'_, D>,
-        (start, carry): (Pose<D>, &Twist<D>),
+        start: Pose<D>,
+        carry: &Twist<D>,
         lengths: Lengths,
     ) -> Pose<D> {
         let length = carry.way(self.shell.reach());
         let horizon = length + lengths.skin;
-        if !self.scan.look(&self.shell, nearby, &start, (carry, horizon, SHARE)) {
+        let surroundings = Surroundings { shell: &self.shell, nearby };
+        let path = Path { pose: &start, twist: carry };
+        if !self.scan.look(surroundings, path, horizon, SHARE) {
             return start;
         }
-        let way = (&start, carry);
-        let part = self.scan.sweep((&self.shell, nearby), way, lengths.skin, 1.0);
+        let part = self.scan.sweep(surroundings, path, lengths.skin, 1.0);
         // Stop before the obstacle instead of a skin deep in it, because friction only holds a
         // tool that is outside.
         let short = if part < 1.0 { lengths.skin / length } else { 0.0 };

@@ -12,7 +12,7 @@ use super::twist::Twist;
 use super::{Coupling, Tool, ToolState};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
-use crate::contact_point::{ContactPoint, Setting, Touch};
+use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::device::{PointState, TurnState};
 use crate::limit::limited;
 use crate::protection::TurningPort;
@@ -79,6 +79,12 @@ impl<const D: usize> Tool<D> {
     }
 }
 
+/// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
+pub(crate) struct Sides<'a, const D: usize> {
+    pub(crate) point: &'a mut ContactPoint<D>,
+    pub(crate) bodies: &'a mut Bodies<D>,
+}
+
 /// A tool coupled to the contact point of a servo, with the rotation of the device.
 #[derive(Clone, Debug)]
 pub(crate) struct CoupledTool<const D: usize> {
@@ -124,8 +130,8 @@ impl<const D: usize> CoupledTool<D> {
         if let Some(coupling) = bodies.coupling {
             self.tool.coupling = coupling;
         }
-        if let Some((chain, accepted)) = self.chain().zip(bodies.wrench()) {
-            chain.renew(accepted);
+        if let Some((chain, (along, about))) = self.chain().zip(bodies.wrench()) {
+            chain.renew(along, about);
         }
     }
 
@@ -165,11 +171,12 @@ impl<const D: usize> CoupledTool<D> {
     /// Real-time: as [`Tool::step`].
     pub(crate) fn tick(
         &mut self,
-        (point, bodies): (&mut ContactPoint<D>, &mut Bodies<D>),
+        sides: Sides<'_, D>,
         setting: &Setting<D>,
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
+        let Sides { point, bodies } = sides;
         let map = &setting.map;
         let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
         let (turn, angle) = match &mut self.port {
@@ -218,7 +225,8 @@ impl<const D: usize> CoupledTool<D> {
             // A port without a safety chain belongs to a device that gives no torque.
             let most = if self.port.is_some() { 0.0 } else { self.max_torque };
             self.torque = limited(torque, most);
-            point.give(setting, at_device, touch, (free, false))
+            let free = FreeForce { force: free, placed: false };
+            point.give(setting, at_device, touch, free)
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));
         force

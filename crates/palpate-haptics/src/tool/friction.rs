@@ -21,7 +21,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use palpate_field::{Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
-use super::scan::Scan;
+use super::scan::{Path, Scan};
 use super::settle::{Lengths, Push, Settler, stacked_along};
 use super::twist::Twist;
 use crate::nearby::Nearby;
@@ -68,21 +68,23 @@ pub(super) struct Cone<const D: usize> {
 }
 
 impl<const D: usize> Settler<D> {
-    /// The friction of the last tick's contacts on a tool at `pose`; all rows were made for the
-    /// desired motion `wish`.
+    /// The friction of the last tick's contacts on a tool that would move along `path`, for
+    /// which all rows were made.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn hold_back(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish): (&Pose<D>, &Twist<D>),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
         lengths: Lengths,
     ) -> Hold<D> {
+        let Path { pose, twist: wish } = path;
         let away = wish.stacked(lengths.unit);
-        if !self.find_cones((scan, nearby), (pose, wish), length(&away)) {
+        if !self.find_cones(scan, nearby, path, length(&away)) {
             return Hold::None;
         }
-        let found = self.solve((pose, away), lengths, self.is_slipping);
+        let found = self.solve(pose, away, lengths, self.is_slipping);
         let moves = length(&found.motion);
         // Written so that NaN sticks.
         if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
@@ -91,7 +93,7 @@ impl<const D: usize> Settler<D> {
         }
         // A tool that slipped in the last tick was already solved with its dynamic friction.
         let found =
-            if self.is_slipping { found } else { self.solve((pose, away), lengths, true) };
+            if self.is_slipping { found } else { self.solve(pose, away, lengths, true) };
         let mut friction = [0.0; FREEDOMS];
         for held in found.held() {
             let Some((cone, row)) = self.cone_of(held.row) else { continue };
@@ -120,10 +122,12 @@ impl<const D: usize> Settler<D> {
     /// friction at this depth [m].
     fn find_cones(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish): (&Pose<D>, &Twist<D>),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
         depth: f64,
     ) -> bool {
+        let Path { pose, twist: wish } = path;
         self.cones.clear();
         let mut has_friction = false;
         for number in self.held.iter().take(FREEDOMS) {
@@ -147,7 +151,8 @@ impl<const D: usize> Settler<D> {
     /// The closest motion to the desired one under friction cones.
     fn solve(
         &mut self,
-        (pose, wish): (&Pose<D>, [f64; FREEDOMS]),
+        pose: &Pose<D>,
+        wish: [f64; FREEDOMS],
         lengths: Lengths,
         is_slipping: bool,
     ) -> Closest {

@@ -37,13 +37,13 @@ use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::Sampler;
-pub(crate) use coupled::CoupledTool;
 pub use coupled::HeldTool;
+pub(crate) use coupled::{CoupledTool, Sides};
 pub use coupling::Coupling;
 use felt::Before;
 use room::Room;
-use scan::Scan;
-use settle::{Lengths, Settler};
+use scan::{Scan, Surroundings};
+use settle::{Ends, Lengths, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{ToolOptions, ToolState, ToolTouch};
 use twist::Twist;
@@ -280,7 +280,7 @@ impl<const D: usize> Tool<D> {
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         if device.is_usable() {
-            self.follow(bodies, (&mut list, &mut reactions), device);
+            self.follow(bodies, &mut list, &mut reactions, device);
         } else {
             if bodies.has_moved {
                 // Bodies that move in this tick make earlier evaluations invalid.
@@ -291,7 +291,7 @@ impl<const D: usize> Tool<D> {
             self.hand_velocity = Vector::ZERO;
             self.tell_changes(was, 0.0);
         }
-        bodies.put_back((list, reactions));
+        bodies.put_back(list, reactions);
         bodies.settle();
         self.tick += 1;
         &self.touch
@@ -300,7 +300,8 @@ impl<const D: usize> Tool<D> {
     fn follow(
         &mut self,
         bodies: &Bodies<D>,
-        (list, reactions): (&mut [u32], &mut [Reaction<D>]),
+        list: &mut [u32],
+        reactions: &mut [Reaction<D>],
         device: &ToolState<D>,
     ) {
         let start = self.pose.unwrap_or(device.pose);
@@ -310,7 +311,7 @@ impl<const D: usize> Tool<D> {
             bodies.everything()
         } else {
             let way = WAYS * motion.way(reach);
-            bodies.nearby((start.translation, reach + way), list)
+            bodies.nearby(start.translation, reach + way, list)
         };
         if nearby.has_moved() {
             self.scan.forget();
@@ -318,12 +319,12 @@ impl<const D: usize> Tool<D> {
         let carry = self.carrier(&nearby, &start, &device.pose);
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
-        let lengths = self.lengths(&nearby, &start, (&motion, moved));
+        let lengths = self.lengths(&nearby, &start, &motion, moved);
         self.scan.begin(&self.shell, self.options.budget);
-        let start =
-            carry.map_or(start, |carry| self.carried(&nearby, (start, &carry), lengths));
-        let parts = (&self.shell, &mut self.scan, &nearby);
-        self.settler.settle(parts, (start, device.pose), lengths);
+        let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
+        let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
+        let ends = Ends { start, goal: device.pose };
+        self.settler.settle(&mut self.scan, surroundings, ends, lengths);
         let rest = &self.settler.rest;
         if self.pose.is_none() && rest.pose != device.pose {
             // The tool was placed anew.
@@ -343,13 +344,13 @@ impl<const D: usize> Tool<D> {
         &self,
         nearby: &Nearby<'_, D>,
         start: &Pose<D>,
-        (motion, moved): (&Twist<D>, f64),
+        motion: &Twist<D>,
+        moved: f64,
     ) -> Lengths {
         let reach = self.shell.reach();
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
-        let place = (nearby, Punctured::default());
-        let sampler = Sampler::new(place, self.radius, 0, extent);
+        let sampler = Sampler::new(nearby, Punctured::default(), self.radius, 0, extent);
         let unit = self.coupling.unit();
         let skin = sampler.skin().max(SKIN * reach);
         let horizon = LIKELY * moved + LIKELY_SKINS * skin;

@@ -64,6 +64,22 @@ impl Look {
     }
 }
 
+/// The shell that moves, and the bodies near it.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'a, const D: usize> {
+    pub(super) shell: &'a Shell<D>,
+    pub(super) nearby: &'a Nearby<'a, D>,
+}
+
+/// A motion of the tool.
+#[derive(Clone, Copy)]
+pub(super) struct Path<'a, const D: usize> {
+    /// The pose at the start.
+    pub(super) pose: &'a Pose<D>,
+    /// The motion from there.
+    pub(super) twist: &'a Twist<D>,
+}
+
 /// A cluster to evaluate now.
 #[derive(Clone, Copy, Debug)]
 struct Due {
@@ -188,19 +204,20 @@ impl<const D: usize> Scan<D> {
         self.points.get(number as usize)
     }
 
-    /// Evaluates all points that could touch a body if the tool at `pose` makes a motion like
-    /// `twist`, limited to `horizon` [m] for every point. If these points need more than
+    /// Evaluates all points that could touch a body if the tool makes a motion like `path`, limited to `horizon` [m] for every point. If these points need more than
     /// `share` of the remaining budget, fewer levels are evaluated; `false` if the budget does
     /// not suffice for the first level.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn look(
         &mut self,
-        shell: &Shell<D>,
-        nearby: &Nearby<'_, D>,
-        pose: &Pose<D>,
-        (twist, horizon, share): (&Twist<D>, f64, f64),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
+        horizon: f64,
+        share: f64,
     ) -> bool {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
         self.due.clear();
         let (left, begin, stamp) = (f64::from(self.left()), self.near.len(), self.stamp);
         let mut is_enough = true;

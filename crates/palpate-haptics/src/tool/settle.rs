@@ -20,19 +20,18 @@ use super::batch::Seen;
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::friction::{Cone, Hold, MOST_AROUND};
 use super::room::Room;
-use super::scan::Scan;
-use super::shell::Shell;
+use super::scan::{Path, Scan, Surroundings};
 use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::rotation::{cross, in_space};
 
 /// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
 /// creases.
-const MOST_TURNS: usize = 6;
+const MOST_ITERATIONS: usize = 6;
 
 /// In these last iterations, a tool that is not outside moves straight out instead of on: with
 /// large rotations, each iteration ends a little inside.
-const LAST_TURNS: usize = 3;
+const LAST_ITERATIONS: usize = 3;
 
 /// The part of the budget that the first evaluation of the shell may use; later ones may use
 /// the same part of the remainder.
@@ -121,6 +120,25 @@ impl<const D: usize> Rest<D> {
     }
 }
 
+/// The ends of a motion.
+#[derive(Clone, Copy)]
+pub(super) struct Ends<const D: usize> {
+    /// The pose from which the tool starts.
+    pub(super) start: Pose<D>,
+    /// The pose towards which the tool moves.
+    pub(super) goal: Pose<D>,
+}
+
+/// A free pose that may become the rest pose.
+#[derive(Clone, Copy)]
+struct Candidate<'a, const D: usize> {
+    pose: &'a Pose<D>,
+    /// The squared distance from the goal [m²].
+    energy: f64,
+    /// The number of points proven outside.
+    known: u32,
+}
+
 /// The search, with memory for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
@@ -154,31 +172,33 @@ impl<const D: usize> Settler<D> {
     /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) then holds the rest
     /// pose.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_TURNS`]
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_ITERATIONS`]
     /// iterations, and the evaluations that `scan` has left.
     pub(super) fn settle(
         &mut self,
-        (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
-        (start, goal): (Pose<D>, Pose<D>),
-        lengths: Lengths,
+        scan: &mut Scan<D>,
+        surroundings: Surroundings<'_, D>,
+        ends: Ends<D>,
+        mut lengths: Lengths,
     ) {
-        let mut horizon = lengths.horizon;
-        let (mut pose, mut goal) = (start, goal);
+        let Surroundings { shell, nearby } = surroundings;
+        let Ends { start: mut pose, mut goal } = ends;
         self.held.clear();
         self.held.extend(self.rest.pushes.iter().map(|push| push.point));
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
-        for turn in 0..MOST_TURNS {
+        for iteration in 0..MOST_ITERATIONS {
             let mut wish = Twist::between(&pose, &goal);
-            let share = if turn == 0 { FIRST_SHARE } else { SHARE };
-            if !scan.look(shell, nearby, &pose, (&wish, horizon, share)) {
+            let share = if iteration == 0 { FIRST_SHARE } else { SHARE };
+            let path = Path { pose: &pose, twist: &wish };
+            if !scan.look(surroundings, path, lengths.horizon, share) {
                 break;
             }
             let is_outside = scan.least_gap() >= -lengths.tolerance;
-            self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
-            if turn == 0 && is_outside {
-                match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
+            self.make_rows(scan, nearby, path, lengths);
+            if iteration == 0 && is_outside {
+                match self.hold_back(scan, nearby, path, lengths) {
                     Hold::None => self.is_slipping = false,
                     Hold::Stick => {
                         self.is_slipping = false;
@@ -190,53 +210,52 @@ impl<const D: usize> Settler<D> {
                         self.is_slipping = true;
                         goal = held_back;
                         wish = Twist::between(&pose, &goal);
-                        if !scan.look(shell, nearby, &pose, (&wish, horizon, SHARE)) {
+                        let path = Path { pose: &pose, twist: &wish };
+                        if !scan.look(surroundings, path, lengths.horizon, SHARE) {
                             break;
                         }
-                        self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
+                        self.make_rows(scan, nearby, path, lengths);
                     }
                 }
                 self.rows.truncate(self.plain);
             }
-            let goes_out = !is_outside && turn + LAST_TURNS >= MOST_TURNS;
+            let goes_out = !is_outside && iteration + LAST_ITERATIONS >= MOST_ITERATIONS;
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
             let found = closest(target, &self.rows, lengths.slack());
             if is_outside {
-                self.keep(scan, (&pose, &wish, lengths.unit), &found, scan.known(shell));
+                let (energy, known) = (wish.squared(lengths.unit), scan.known(shell));
+                self.keep(scan, &found, Candidate { pose: &pose, energy, known });
             }
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
             // Written so that NaN rests.
             let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { lengths.still };
-            if !goes_on || turn + 1 == MOST_TURNS {
+            if !goes_on || iteration + 1 == MOST_ITERATIONS {
                 break;
             }
-            let is_all = horizon >= wish.way(shell.reach);
+            let is_all = lengths.horizon >= wish.way(shell.reach);
             let most = if is_free { 1.0 } else { twist.part_up_to(MOST_ANGLE) };
-            let way = (&pose, &twist);
-            let part = scan.sweep((shell, nearby), way, lengths.skin, most);
+            let path = Path { pose: &pose, twist: &twist };
+            let part = scan.sweep(surroundings, path, lengths.skin, most);
             scan.moved(&twist.part(part));
             if is_free && part >= 1.0 {
                 pose = goal;
                 if is_all && self.rows.is_empty() {
                     // No point could touch: the goal is proven free without further evaluation.
-                    self.keep(
-                        scan,
-                        (&pose, &Twist::between(&pose, &goal), 1.0),
-                        &found,
-                        scan.known(shell),
-                    );
+                    let energy = Twist::between(&pose, &goal).squared(1.0);
+                    let known = scan.known(shell);
+                    self.keep(scan, &found, Candidate { pose: &pose, energy, known });
                     break;
                 }
             } else {
                 pose = twist.part(part).moved(&pose);
             }
             let way = twist.way(shell.reach);
-            if part < 1.0 && part * way > 0.5 * horizon {
-                horizon *= FARTHER;
+            if part < 1.0 && part * way > 0.5 * lengths.horizon {
+                lengths.horizon *= FARTHER;
             } else {
-                horizon = horizon.min((NEXT * way).max(lengths.still));
+                lengths.horizon = lengths.horizon.min((NEXT * way).max(lengths.still));
             }
         }
         if self.rest.is_outside {
@@ -252,16 +271,19 @@ impl<const D: usize> Settler<D> {
     /// The tangent planes of all points that the desired motion could bring to the surface.
     fn make_rows(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish, horizon, lengths): (&Pose<D>, &Twist<D>, f64, Lengths),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
+        lengths: Lengths,
     ) {
+        let Path { pose, twist: wish } = path;
         self.rows.clear();
         self.numbers.clear();
         let lipschitz = nearby.lipschitz();
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
         for (number, seen) in scan.seen() {
             let arm = seen.centre - pose.translation;
-            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(horizon) {
+            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(lengths.horizon) {
                 continue;
             }
             let slope = seen.gradient.norm();
@@ -277,14 +299,8 @@ impl<const D: usize> Settler<D> {
     }
 
     /// Keeps a free pose if it is the closest so far.
-    fn keep(
-        &mut self,
-        scan: &Scan<D>,
-        (pose, wish, unit): (&Pose<D>, &Twist<D>, f64),
-        found: &Closest,
-        known: u32,
-    ) {
-        let energy: f64 = wish.stacked(unit).iter().map(|x| x * x).sum();
+    fn keep(&mut self, scan: &Scan<D>, found: &Closest, candidate: Candidate<'_, D>) {
+        let Candidate { pose, energy, known } = candidate;
         if energy.is_nan() || energy >= self.rest.energy {
             return;
         }

@@ -12,12 +12,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::Pose;
-
-use super::scan::Scan;
-use super::shell::Shell;
-use super::twist::Twist;
-use crate::nearby::Nearby;
+use super::scan::{Path, Scan, Surroundings};
 
 /// If the evaluations at the start prove this part of a motion, the motion stops there and no
 /// point is swept. A smaller part would end iterations early, and an iteration costs more than
@@ -43,6 +38,19 @@ pub(super) struct March {
     covered: f64,
 }
 
+/// What ends a sweep.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// The part of the motion to prove.
+    whole: f64,
+    /// How deep points may dip [m].
+    dips: f64,
+    /// Shorter steps end the sweep [m].
+    least: f64,
+    /// The Lipschitz constant of the field.
+    lipschitz: f64,
+}
+
 impl<const D: usize> Scan<D> {
     /// The part of a motion, at most `most`, in which no point dips deeper than the skin.
     ///
@@ -50,11 +58,13 @@ impl<const D: usize> Scan<D> {
     /// and what the budget has left.
     pub(super) fn sweep(
         &mut self,
-        (shell, nearby): (&Shell<D>, &Nearby<'_, D>),
-        (pose, twist): (&Pose<D>, &Twist<D>),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
         skin: f64,
         most: f64,
     ) -> f64 {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         let whole = self.free_part(shell, twist).min(most);
         let (linear, angle) = (twist.linear.norm(), twist.angular.norm());
@@ -76,23 +86,24 @@ impl<const D: usize> Scan<D> {
             }
         }
         if proven < WORTH_GOING * whole {
-            let lengths = (DIPS * skin, MET * skin, lipschitz);
-            proven = self.follow((shell, nearby), (pose, twist, whole), &mut marches, lengths);
+            let limits = Limits { whole, dips: DIPS * skin, least: MET * skin, lipschitz };
+            proven = self.follow(surroundings, path, &mut marches, limits);
         }
         self.marches = marches;
         proven
     }
 
-    /// Sweeps points until the part `whole` of the motion is proven, and returns the proven
-    /// part. Points may dip by the first length [m]; steps shorter than the second length [m]
-    /// end the sweep.
+    /// Sweeps points until `limits` end it, and returns the proven part of the motion.
     fn follow(
         &mut self,
-        (shell, nearby): (&Shell<D>, &Nearby<'_, D>),
-        (pose, twist, whole): (&Pose<D>, &Twist<D>, f64),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
         marches: &mut [March],
-        (dips, least, lipschitz): (f64, f64, f64),
+        limits: Limits,
     ) -> f64 {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
+        let Limits { whole, dips, least, lipschitz } = limits;
         let proven = |marches: &[March]| {
             marches.iter().fold(whole, |least, march| least.min(march.covered))
         };

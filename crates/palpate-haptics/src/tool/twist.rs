@@ -69,6 +69,11 @@ impl<const D: usize> Twist<D> {
         [x, y, z, a, b, c]
     }
 
+    /// The squared length of the motion, in which a radian counts as the length `unit` [m²].
+    pub(super) fn squared(&self, unit: f64) -> f64 {
+        self.stacked(unit).iter().map(|x| x * x).sum()
+    }
+
     /// The inverse of [`stacked`](Self::stacked).
     pub(super) fn unstacked([x, y, z, a, b, c]: [f64; 6], unit: f64) -> Self {
         let angular = Vector([a, b, c]) * (1.0 / unit);
