@@ -50,7 +50,7 @@ struct Player {
     slide: Oscillator,
     tap: Oscillator,
     ringing: Ringing,
-    /// The last tones of hold and slide: a sine that fades out keeps its frequency.
+    /// The last tones of hold and slide, because a sine that fades out keeps its frequency.
     last: [f64; 2],
 }
 

@@ -12,7 +12,7 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice, Tour};
 use palpate_field::{CustomField, Point, Promise, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
-    Servo, ServoOptions, Surface, UnprotectedServo,
+    Protection, Servo, ServoOptions, Surface, UnprotectedServo,
 };
 use palpate_haptics::{Impact, Layer, PopThrough};
 use palpate_loop::{Clock, Ending, Pace, Recorder, RunOptions, VirtualClock, run, run_on};
@@ -293,8 +293,10 @@ impl Device<2> for Leaving<'_> {
 #[test]
 fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let left = AtomicBool::new(false);
-    let mut servo = wall_servo(ServoOptions::default());
     let mut device = Leaving { device: Watched::new(), left: &left };
+    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
+    let wall = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
+    let mut servo = wall.protected(&Protection::new(device.profile().clone())).unwrap();
     let options = RunOptions { interrupt: Some(&left), ..fast(4.0) };
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(report.ending, Ending::Interrupted);
