@@ -105,8 +105,10 @@ pub(crate) struct Axis {
 /// Properties of device and hand, from which a [`Body`] is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Parts {
-    /// The masses of device and hand [kg].
-    pub(crate) masses: (f64, f64),
+    /// The mass of the device [kg].
+    pub(crate) device_mass: f64,
+    /// The mass of the hand [kg].
+    pub(crate) hand_mass: f64,
     /// The device's damping [N·s/m].
     pub(crate) damping: f64,
     /// The device's Coulomb friction [N].
@@ -123,7 +125,7 @@ impl Body {
     /// [`HapticsError::Number`] if the total mass is zero, damping or friction are negative or
     /// not finite, or the motion is faster than [`FASTEST`].
     pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
-        let (device, hand) = parts.masses;
+        let (device, hand) = (parts.device_mass, parts.hand_mass);
         not_negative("mass", device, "kg")?;
         let mass = positive("mass of device and hand", device + hand, "kg")?;
         let damping = not_negative("least_damping", parts.damping, "N·s/m")?;

@@ -116,7 +116,8 @@ impl<const D: usize> SimulatedDevice<D> {
         };
         let points = hands.into_iter().map(|hand| {
             let body = Body::new(&Parts {
-                masses: (profile.mass, hand.mass()),
+                device_mass: profile.mass,
+                hand_mass: hand.mass(),
                 damping: profile.least_damping,
                 friction: profile.friction,
                 grip_stiffness: hand.stiffness(),

@@ -61,8 +61,8 @@ const COARSEST_DETAIL: f64 = 0.08;
 /// The clearance in flight, as a part of the detail.
 const CLEARANCE: f64 = 0.75;
 
-/// The depth that no point of the path exceeds, as a multiple of the depth asked for. Between
-/// two points the hand may go a little deeper.
+/// The largest depth of a point of the path, as a multiple of the requested depth. Between two
+/// points the hand may go a little deeper.
 const DEEPEST: f64 = 1.35;
 
 /// Newton steps of a correction: later steps correct what a blend or a corner left of the
@@ -130,7 +130,7 @@ pub struct Tour<const D: usize> {
 impl<const D: usize> Tour<D> {
     /// A tour of `duration` [s] of what lies in `bounds`.
     ///
-    /// With the size `s` of the box (its longest edge) and unless asked otherwise, the hand slides
+    /// With the size `s` of the box (its longest edge) and by default, the hand slides
     /// at `0.3 √(s · 1 m)` a second (0.1 m/s over a scene of 0.1 m, 0.3 m/s over one of 1 m),
     /// touches with the default probe, and presses `0.01 s` deep, but at most 3/4 of the probe's
     /// radius, so that the force is continuous over every edge.

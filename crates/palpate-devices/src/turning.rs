@@ -56,7 +56,8 @@ impl<const D: usize> Turning<D> {
             not_negative("max_torque", profile.max_torque, "N·m")?;
         }
         let body = Body::new(&Parts {
-            masses: (profile.inertia, wrist.inertia),
+            device_mass: profile.inertia,
+            hand_mass: wrist.inertia,
             damping: profile.least_damping,
             friction: profile.friction,
             grip_stiffness: wrist.stiffness,

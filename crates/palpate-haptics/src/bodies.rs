@@ -248,7 +248,7 @@ impl<const D: usize> Body<D> {
     }
 }
 
-/// Scratch memory of a tick with so many bodies.
+/// Scratch memory of a tick for this number of bodies.
 fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Box<[u32]>) {
     (vec![Reaction::NONE; bodies], vec![0; bodies].into_boxed_slice())
 }

@@ -70,7 +70,7 @@ pub struct Evaluations {
 pub enum Ending {
     /// The duration was over.
     Finished,
-    /// The caller asked it to end before its time was over.
+    /// The caller ended the run before its duration was over.
     Interrupted,
     /// The device was lost.
     DeviceLost {

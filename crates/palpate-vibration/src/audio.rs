@@ -23,10 +23,19 @@ struct Oscillator {
     amplitude: f64,
 }
 
+/// From one sample to the next.
+#[derive(Clone, Copy)]
+struct Step {
+    /// The time between two samples [s].
+    period: f64,
+    /// The largest change of an amplitude.
+    slew: f64,
+}
+
 impl Oscillator {
-    /// The next sample while the oscillator moves towards `tone`; its amplitude changes by at
-    /// most `slew`.
-    fn next(&mut self, tone: Tone, (period, slew): (f64, f64)) -> f64 {
+    /// The next sample, a step after the last, while the oscillator moves towards `tone`.
+    fn next(&mut self, tone: Tone, step: Step) -> f64 {
+        let Step { period, slew } = step;
         let change = (tone.amplitude - self.amplitude).clamp(-slew, slew);
         self.amplitude += change;
         let sample = self.amplitude * libm::sin(TAU * self.phase);
@@ -141,7 +150,8 @@ impl Synthesiser {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn render(&mut self, sensations: &[Sensation], samples: &mut [f32]) {
-        let step = (1.0 / self.sample_rate, 1.0 / (ATTACK * self.sample_rate));
+        let step =
+            Step { period: 1.0 / self.sample_rate, slew: 1.0 / (ATTACK * self.sample_rate) };
         let silence = Sensation::default();
         let felt = sensations.iter().chain(std::iter::repeat(&silence));
         for (player, sensation) in self.players.iter_mut().zip(felt) {
@@ -173,7 +183,7 @@ impl Player {
         }
     }
 
-    fn next(&mut self, sensation: &Sensation, step: (f64, f64)) -> f64 {
+    fn next(&mut self, sensation: &Sensation, step: Step) -> f64 {
         let [hold, slide] = self.last;
         let Tap { amplitude, frequency, .. } = self.ringing.next();
         self.hold.next(Tone { frequency: hold, ..sensation.hold }, step)

@@ -60,13 +60,15 @@ impl<const D: usize> Channel<D> {
         let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
         let rise_time = not_negative("rise_time", options.rise_time, "s")?;
         let fall_time = not_negative("fall_time", options.fall_time, "s")?;
-        let times = (rise_time, fall_time);
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),
             continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            ramp: Ramp::new(0.0, times, rate),
-            watchdog: Watchdog::new(options.late_ticks, Ramp::new(1.0, times, rate)),
+            ramp: Ramp::new(0.0, rise_time, fall_time, rate),
+            watchdog: Watchdog::new(
+                options.late_ticks,
+                Ramp::new(1.0, rise_time, fall_time, rate),
+            ),
             is_stopped: false,
             closing: slew,
             effects: Effects::default(),

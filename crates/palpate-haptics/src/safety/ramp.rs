@@ -16,7 +16,7 @@ pub(crate) struct Ramp {
 impl Ramp {
     /// A ramp from 0 to 1 in `rise_time` and back in `fall_time` [s], at `rate` [Hz], which
     /// starts at `factor`. A time of zero gives a jump.
-    pub(crate) fn new(factor: f64, (rise_time, fall_time): (f64, f64), rate: f64) -> Self {
+    pub(crate) fn new(factor: f64, rise_time: f64, fall_time: f64, rate: f64) -> Self {
         // A time of zero gives an infinite step, which is clamped to one.
         Self { factor, rise: 1.0 / (rise_time * rate), fall: 1.0 / (fall_time * rate) }
     }
@@ -45,11 +45,11 @@ mod tests {
 
     #[test]
     fn it_rises_and_falls_in_its_times() {
-        let mut ramp = Ramp::new(0.0, (4.0, 2.0), 1.0);
+        let mut ramp = Ramp::new(0.0, 4.0, 2.0, 1.0);
         let up: Vec<_> = (0..5).map(|_| ramp.step(true)).collect();
         assert_eq!(up, [0.25, 0.5, 0.75, 1.0, 1.0]);
         assert_eq!([ramp.step(false), ramp.step(false), ramp.step(false)], [0.5, 0.0, 0.0]);
-        let mut jump = Ramp::new(0.0, (0.0, 0.0), 1.0);
+        let mut jump = Ramp::new(0.0, 0.0, 0.0, 1.0);
         assert_eq!((jump.step(true), jump.step(false)), (1.0, 0.0));
     }
 }

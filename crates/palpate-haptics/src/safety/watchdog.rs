@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn it_trips_after_late_ticks_in_a_row_and_recovers() {
-        let ramp = Ramp::new(1.0, (2.0, 2.0), 1.0);
+        let ramp = Ramp::new(1.0, 2.0, 2.0, 1.0);
         let mut dog = Watchdog::new(NonZeroU32::new(2).unwrap(), ramp);
         let late = [true, false, true, true, false, true, false, false, false, false];
         let parts = late.map(|is_late| dog.step(is_late));

@@ -205,11 +205,12 @@ impl<const D: usize> UnprotectedServo<D> {
         self.protected(&Protection::new(profile.clone()))
     }
 
-    /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
-    /// where freeing is allowed.
+    /// Replaces the bodies from the next tick on. Returns the old bodies, to be dropped on a
+    /// thread that may free memory.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently; so
-    /// does one that pushes harder on them than on those before, from where it was.
+    /// If the new bodies cover a contact point, its proxy is placed anew and its force rises
+    /// from zero. If they push a contact point harder than the old ones, its force rises from
+    /// the old force.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]

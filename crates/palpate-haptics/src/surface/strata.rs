@@ -169,8 +169,8 @@ impl Strata {
         self.integral(level, f64::INFINITY, depth)
     }
 
-    /// The force of the springs `depth` [m] below the surface, none of them stiffer than `most`
-    /// [N/m].
+    /// The force of the springs `depth` [m] below the surface, with every stiffness limited to
+    /// `most` [N/m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force_up_to(&self, most: f64, depth: f64) -> f64 {

@@ -258,7 +258,7 @@ impl<const D: usize> Tool<D> {
         self.has_new_bodies = true;
     }
 
-    /// Discards what was evaluated of the bodies.
+    /// Discards all evaluations of the bodies.
     fn lose_bodies(&mut self) {
         self.scan.forget();
         self.carrier = None;
