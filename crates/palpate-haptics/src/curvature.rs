@@ -70,9 +70,9 @@ impl<const D: usize> Curvature<D> {
         squared_depth * squared <= 0.25
     }
 
-    /// The displacement to the surface point closest to a device `depth` [m] below the surface,
-    /// less `along`, the displacement on the tangent plane; `None` if the closest point is not
-    /// near.
+    /// The displacement along the surface to the point closest to a device `depth` [m] below
+    /// the surface; on the tangent plane this displacement would be `along`. `None` if the
+    /// closest point is not near.
     #[inline]
     pub(crate) fn way(&self, along: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
         surface_displacement(|way| self.turn(way), along, depth, SOLVED)

@@ -92,7 +92,7 @@ impl<const D: usize> Channel<D> {
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
         let force = self.faded(force, input);
         if !is_sound || self.is_stopped {
-            // SpatialVector exceptions to the slew limit fall to zero at once.
+            // Both exceptions to the slew limit fall to zero at once.
             self.slew.restart();
             self.closing.restart();
         }

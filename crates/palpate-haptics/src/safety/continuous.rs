@@ -17,10 +17,10 @@ const ONSET: f64 = 0.9;
 ///
 /// Heating grows with the square of the current, and so of the force; cooling is proportional
 /// to the heat. With the written force `F` and the time constant `τ`: `τ dh/dt = |F|² − h`,
-/// exact for a held force. While `√h` rises from 0.9 to 1 of the continuous force, the limit on
-/// the force falls linearly to the continuous force. So a burst of any force passes at first,
-/// and `√h` never exceeds the continuous force. Forces below the continuous force are never
-/// changed.
+/// exact for a held force. While `√h` rises from 0.9 to 1 of the continuous force, longer
+/// forces are shortened towards the continuous force, in proportion. So a burst of any force
+/// passes at first, and `√h` never exceeds the continuous force. Forces below the continuous
+/// force are never changed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContinuousLimit {
     continuous_force: f64,
