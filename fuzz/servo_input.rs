@@ -196,7 +196,7 @@ where
 /// A servo with or without a safety chain.
 enum AnyServo<const D: usize> {
     Protected(Box<Servo<D>>),
-    Unprotected(UnprotectedServo<D>),
+    Unprotected(Box<UnprotectedServo<D>>),
 }
 
 /// Does the same with either kind of servo.
@@ -261,7 +261,7 @@ where
         let servo = servo.protected(&Protection::new(profile)).expect("a profile");
         return Ok(AnyServo::Protected(Box::new(servo)));
     }
-    Ok(AnyServo::Unprotected(servo))
+    Ok(AnyServo::Unprotected(Box::new(servo)))
 }
 
 fn play<const D: usize>(u: &mut Unstructured<'_>) -> Result<()>

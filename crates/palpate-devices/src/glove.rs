@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Many fingers without a device to hold.
+//! Gloves: many fingers that follow hand paths.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -11,12 +11,14 @@ use palpate_haptics::{
     Device, DeviceLost, DeviceProfile, HapticsError, PointState, limited, not_negative,
 };
 
-/// Fingers that follow hand paths whatever they touch, each a contact point.
+/// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
+/// point.
 ///
-/// Without force feedback, as most gloves are, or with a largest force for each finger: what is
-/// written is cut to it. One hand has five fingers, two have ten; twelve points a hand are
-/// finger tips, the joints below them, and the palm. Fingers that give way to the force are a
-/// [`SimulatedDevice`](crate::SimulatedDevice) with a hand for each.
+/// A glove has no force feedback, as is usual, or a force limit for each finger, to which
+/// written forces are clamped. One hand has five fingers, two hands have ten; with twelve
+/// points a hand, the points are finger tips, the joints below them, and the palm. For fingers
+/// that yield to forces use a [`SimulatedDevice`](crate::SimulatedDevice) with a
+/// [`Hand`](crate::Hand) for each finger.
 ///
 /// # Examples
 ///
@@ -50,16 +52,16 @@ pub struct Glove<const D: usize> {
 #[derive(Clone, Debug)]
 struct Finger<const D: usize> {
     path: HandPath<D>,
-    /// From the path to the finger [m].
+    /// The offset of the finger from the path [m].
     offset: Vector<f64, D>,
     /// Largest force [N].
     limit: f64,
-    /// The force written last, cut to the limit [N].
+    /// The force written last, clamped to the limit [N].
     force: Vector<f64, D>,
 }
 
 impl<const D: usize> Glove<D> {
-    /// A glove whose fingers have a path each, without force feedback.
+    /// A glove with a path for each finger, without force feedback.
     ///
     /// # Errors
     ///
@@ -101,9 +103,9 @@ impl<const D: usize> Glove<D> {
         Ok(Self { fingers, profile })
     }
 
-    /// The same with a largest force for each finger [N], 0 for none.
+    /// This glove with a force limit for each finger [N]; 0 for no force feedback.
     ///
-    /// The profile's largest force is then the largest of them.
+    /// The profile's largest force becomes the largest of the limits.
     ///
     /// # Errors
     ///
@@ -129,7 +131,7 @@ impl<const D: usize> Glove<D> {
         self
     }
 
-    /// The forces written last, each cut to its finger's largest [N].
+    /// The forces written last, each clamped to its finger's limit [N].
     pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
         self.fingers.iter().map(|finger| finger.force)
     }

@@ -7,8 +7,8 @@ use crate::hand_path::{HandPath, Interpolation};
 use palpate_field::{Point, Vector};
 use palpate_haptics::{HapticsError, not_negative};
 
-/// A hand: a mass that moves with the device, drawn by a spring and a damper to where the arm
-/// wants to be, and a constant push.
+/// A hand that holds a simulated device: a mass that moves with the device, a spring and a
+/// damper that pull it to a target, and a constant push.
 ///
 /// With the position `x` of the device, the target `y` of its path, the stiffness `k` and the
 /// damping `b` of the grip and the push `P`, the hand's force on the device and on its own mass
@@ -18,14 +18,14 @@ use palpate_haptics::{HapticsError, not_negative};
 /// k (y − x) + b (y' − x') + P
 /// ```
 ///
-/// So in free space the device follows the path, late by what the device's own damping takes.
-/// Relaxed to firm, arms have 0.1 to 1 kg, 100 to 1000 N/m and up to 10 N·s/m; a stiffness of
-/// zero is a hand that only pushes.
+/// In free space the device follows the path with a lag due to its own damping. Relaxed to firm
+/// arms have 0.1 to 1 kg, 100 to 1000 N/m and up to 10 N·s/m; with a stiffness of zero the hand
+/// only pushes.
 ///
-/// A device that turns is turned likewise, by a spring and a damper about its axes: with the
-/// moment of inertia, angular stiffness and damping of the grip, to an orientation that may
-/// [follow a path](Self::with_turns) of its own, and by a constant torque. Of the stretch, the
-/// turn that leads from the device to where the hand wants it counts, less than half a turn.
+/// For a device with rotation the hand also has a moment of inertia, an angular spring and
+/// damper that pull the device to a target orientation, which may [follow a
+/// path](Self::with_turns), and a constant torque. The stretch of the angular spring is the
+/// rotation vector from the device to the target, less than half a turn.
 ///
 /// # Examples
 ///
@@ -51,55 +51,56 @@ pub struct Hand<const D: usize> {
     wrist: Wrist,
 }
 
-/// How a hand turns a device.
+/// The rotational properties of a hand.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Wrist {
-    /// The turns it wants to make, as vectors along the axis [rad]; none to hold still.
+    /// The path of target orientations, as rotation vectors [rad]; `None` to hold still.
     pub(crate) path: Option<HandPath<3>>,
-    /// [kg·m²].
+    /// The moment of inertia [kg·m²].
     pub(crate) inertia: f64,
-    /// [N·m/rad].
+    /// The angular stiffness [N·m/rad].
     pub(crate) stiffness: f64,
-    /// [N·m·s/rad].
+    /// The angular damping [N·m·s/rad].
     pub(crate) damping: f64,
-    /// [N·m].
+    /// The constant torque [N·m].
     pub(crate) push: Vector<f64, 3>,
 }
 
 impl Wrist {
-    /// What fingers hold a stylus with: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad.
+    /// Fingers on a stylus: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad.
     const GRIP: Self =
         Self { path: None, inertia: 1e-4, stiffness: 0.5, damping: 0.01, push: Vector::ZERO };
 }
 
 impl<const D: usize> Hand<D> {
-    /// A hand that wants to follow `path`: 0.1 kg, 300 N/m, 5 N·s/m, no push. About axes it wants
-    /// to hold still: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad, no torque.
+    /// A hand that follows `path`: 0.1 kg, 300 N/m, 5 N·s/m, no push. The hand holds the
+    /// orientation still: 1e-4 kg·m², 0.5 N·m/rad, 0.01 N·m·s/rad, no torque.
     #[must_use]
     pub fn new(path: HandPath<D>) -> Self {
         let (push, wrist) = (Vector::ZERO, Wrist::GRIP);
         Self { path, mass: 0.1, stiffness: 300.0, damping: 5.0, push, wrist }
     }
 
-    /// A hand that wants to stay at `place` [m].
+    /// A hand that stays at `place` [m].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::SampleNotFinite`] if `place` is not finite or beyond 1e15 m.
+    /// [`HapticsError::SampleNotFinite`] if a coordinate of `place` is not finite or exceeds
+    /// 1e15 m.
     pub fn resting(place: Point<D>) -> Result<Self, HapticsError> {
         HandPath::new(vec![0.0, 1.0], vec![place; 2], Interpolation::Linear).map(Self::new)
     }
 
-    /// The same, with a mass of its own [kg].
+    /// This hand with another mass [kg].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is negative or not finite.
+    /// [`HapticsError::Number`] if the number is negative or not finite.
     pub fn with_mass(self, mass: f64) -> Result<Self, HapticsError> {
         Ok(Self { mass: not_negative("hand mass", mass, "kg")?, ..self })
     }
 
-    /// The same, with another stiffness [N/m] and damping [N·s/m].
+    /// This hand with another stiffness [N/m] and damping [N·s/m].
     ///
     /// # Errors
     ///
@@ -110,11 +111,11 @@ impl<const D: usize> Hand<D> {
         Ok(Self { stiffness, damping, ..self })
     }
 
-    /// The same, pushing with a constant force [N].
+    /// This hand with a constant push [N].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is not finite.
+    /// [`HapticsError::Number`] if a coordinate is not finite.
     pub fn with_push(self, push: Vector<f64, D>) -> Result<Self, HapticsError> {
         for component in push.0 {
             not_negative("hand push", component.abs(), "N")?;
@@ -122,8 +123,8 @@ impl<const D: usize> Hand<D> {
         Ok(Self { push, ..self })
     }
 
-    /// The same, turning the device by `turns` over time: vectors along the axis, as long as the
-    /// angle [rad], from where it holds the device's own axes; in the plane along z.
+    /// This hand with a path of target orientations: rotation vectors [rad] relative to the
+    /// device's own axes; in the plane along z.
     ///
     /// ```
     /// use palpate_devices::{Device, Hand, HandPath, PointState, SimulatedDevice, profile_named};
@@ -149,17 +150,17 @@ impl<const D: usize> Hand<D> {
         Self { wrist: Wrist { path: Some(turns), ..self.wrist }, ..self }
     }
 
-    /// The same, with a moment of inertia of its own [kg·m²].
+    /// This hand with another moment of inertia [kg·m²].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is negative or not finite.
+    /// [`HapticsError::Number`] if the number is negative or not finite.
     pub fn with_inertia(self, inertia: f64) -> Result<Self, HapticsError> {
         let inertia = not_negative("hand inertia", inertia, "kg·m²")?;
         Ok(Self { wrist: Wrist { inertia, ..self.wrist }, ..self })
     }
 
-    /// The same, with another angular stiffness [N·m/rad] and damping [N·m·s/rad].
+    /// This hand with another angular stiffness [N·m/rad] and damping [N·m·s/rad].
     ///
     /// # Errors
     ///
@@ -174,11 +175,11 @@ impl<const D: usize> Hand<D> {
         Ok(Self { wrist: Wrist { stiffness, damping, ..self.wrist }, ..self })
     }
 
-    /// The same, turning with a constant torque [N·m].
+    /// This hand with a constant torque [N·m].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is not finite.
+    /// [`HapticsError::Number`] if a coordinate is not finite.
     pub fn with_torque(self, torque: Vector<f64, 3>) -> Result<Self, HapticsError> {
         for component in torque.0 {
             not_negative("hand torque", component.abs(), "N·m")?;
@@ -186,36 +187,36 @@ impl<const D: usize> Hand<D> {
         Ok(Self { wrist: Wrist { push: torque, ..self.wrist }, ..self })
     }
 
-    /// How it turns the device.
+    /// The rotational properties.
     pub(crate) fn wrist(&self) -> &Wrist {
         &self.wrist
     }
 
-    /// Where it wants to be.
+    /// The path of the target.
     #[must_use]
     pub fn path(&self) -> &HandPath<D> {
         &self.path
     }
 
-    /// What moves with the device [kg].
+    /// The mass that moves with the device [kg].
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// Of its spring [N/m].
+    /// The stiffness of the spring [N/m].
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// Of its damper [N·s/m].
+    /// The damping of the damper [N·s/m].
     #[must_use]
     pub fn damping(&self) -> f64 {
         self.damping
     }
 
-    /// Its constant push [N].
+    /// The constant push [N].
     #[must_use]
     pub fn push(&self) -> Vector<f64, D> {
         self.push

@@ -8,18 +8,18 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 use palpate_haptics::HapticsError;
 use palpate_haptics::PointState;
 
-/// How a hand moves between two samples.
+/// The interpolation between two samples of a hand path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// Straight, at constant speed; the velocity jumps at samples.
     Linear,
-    /// By a cubic with a continuous velocity: at each sample the slope of the parabola through
-    /// it and its neighbours (Bessel's tangents).
+    /// Cubic, with continuous velocity: the slope at each sample is that of the parabola
+    /// through the sample and its neighbours (Bessel's tangents).
     #[default]
     Smooth,
 }
 
-/// Where a hand is over time: at least two samples at increasing times.
+/// The position of a hand over time: at least two samples at increasing times.
 ///
 /// Before its first sample and after its last one the hand rests there.
 ///
@@ -56,7 +56,7 @@ impl<const D: usize> HandPath<D> {
     /// # Errors
     ///
     /// If there are fewer than two samples, not as many times as positions, a number is not
-    /// finite or beyond 1e15, or the times do not increase.
+    /// finite or exceeds 1e15, or the times do not increase.
     pub fn new(
         times: Vec<f64>,
         positions: Vec<Point<D>>,
@@ -113,7 +113,7 @@ impl<const D: usize> HandPath<D> {
         self.times[self.times.len() - 1] - self.times[0]
     }
 
-    /// Where the hand is at `time` [s], and how fast.
+    /// Position and velocity of the hand at `time` [s].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; a binary search.
     #[must_use]

@@ -1,23 +1,25 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Haptic devices: what known ones can do, simulated ones, gloves, and the trait for one's own.
+//! Haptic devices: profiles of known devices, simulated devices, gloves, and the trait for new
+//! ones.
 //!
-//! [`profile_named`] knows the limits of real devices, each with its source. A
-//! [`SimulatedDevice`] moves as such a device does in a [`Hand`]: with mass, damping, friction,
-//! encoders, and forces that are held between two writes; one of six degrees of freedom turns
-//! likewise, and holds a torque. Its motion is integrated in closed
-//! form, so the energy that a servo puts into the hand is known to the last digits. A [`Glove`]
-//! has many fingers that follow hand paths.
+//! [`profile_named`] gives the limits of real devices, each with its source. A
+//! [`SimulatedDevice`] moves like a device that a [`Hand`] holds: with mass, damping, friction,
+//! encoders, and forces that are held between two writes; with six degrees of freedom it also
+//! rotates and holds a torque. The motion is integrated in closed form, so the energy that a
+//! servo puts into the hand is known to rounding. A [`Glove`] has many fingers that follow hand
+//! paths.
 //!
 //! Another thread leads the hand of a [`SteeredDevice`]; a [`MailboxDevice`] takes its positions
 //! from a driver in another thread, and leaves its forces there.
 //!
-//! A device of one's own implements [`Device`]; `palpate/examples/custom_device.rs` is one.
+//! A new device implements [`Device`]; `palpate/examples/custom_device.rs` is one.
 //!
 //! # Examples
 //!
-//! A simulated stylus is pushed onto a ball with 1 N, and rests where the spring bears it:
+//! A simulated stylus is pushed onto a ball with 1 N, and rests where the ball's stiffness
+//! balances the push:
 //!
 //! ```
 //! use palpate_devices::{Device, Hand, SimulatedDevice, profile_named};

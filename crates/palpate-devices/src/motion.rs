@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How a device in a hand moves along one axis while the force on it is held.
+//! The motion of a device in a hand along one axis while the servo's force is held.
 //!
 //! ```text
 //! (m + m_h) x'' + b x' + b_h (x' − y') + k_h (x − y) = F + P − f_c sign(x')
 //! ```
 //!
-//! with the force `F` and the push `P` constant and the hand's target `y` even in time. Between
-//! two changes of the sign of `x'` this is linear, and integrated exactly. At rest, friction
-//! bears what it can: the device sticks while the other forces stay within `±f_c`, and the
-//! instant at which it lets go is the root of a line.
+//! with constant force `F` and push `P`, and a target `y` of constant velocity. Between two
+//! changes of the sign of `x'` the equation is linear and integrated exactly. At rest the
+//! device sticks while the other forces stay within `±f_c`; the instant of breakaway is the
+//! root of a linear function.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -19,23 +19,23 @@ use palpate_haptics::{HapticsError, NumberError, not_negative, positive};
 use crate::oscillator::{Drive, Nodes, Oscillator};
 
 /// The most pieces of motion in one call: at [`FASTEST`], a tenth of a second. A device that is
-/// not read for longer stands still for the rest, rather than make a tick without end.
+/// not read for longer stands still for the rest, which bounds the time of a call.
 const MOST_PIECES: u32 = 1024;
 
 /// The largest `σ + ω` [1/s] of device and hand, so that [`MOST_PIECES`] cover every tick.
 const FASTEST: f64 = 1e4;
 
-/// Halvings of the time in which something changes its sign: to the last bit.
+/// Bisections for the time of a change of sign: to the last bit.
 const HALVINGS: u32 = 60;
 
-/// Where the energy of a simulated contact point went since its start [J].
+/// The energy balance of a simulated contact point since its start [J].
 ///
 /// ```text
 /// kinetic = servo + hand − viscous − friction
 /// ```
 ///
-/// up to rounding: each term is integrated on its own. What turns adds its own, with torques for
-/// forces and angles for lengths.
+/// up to rounding: each term is integrated separately. Rotation adds its own terms, with
+/// torques for forces and angles for lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
     /// The work of the servo's forces on device and hand, `∫ F·dx`. Positive: the virtual world
@@ -43,14 +43,14 @@ pub struct Energies {
     pub servo: f64,
     /// The work of the hand's spring, damper and push on device and hand.
     pub hand: f64,
-    /// What the device's own damping took.
+    /// Energy dissipated by the device's damping.
     pub viscous: f64,
-    /// What the device's Coulomb friction took.
+    /// Energy dissipated by the device's Coulomb friction.
     pub friction: f64,
 }
 
 impl Energies {
-    /// What is left, as motion: `servo + hand − viscous − friction` [J].
+    /// The kinetic energy by the balance: `servo + hand − viscous − friction` [J].
     #[must_use]
     pub fn balance(&self) -> f64 {
         self.servo + self.hand - self.viscous - self.friction
@@ -64,34 +64,34 @@ impl Energies {
     }
 }
 
-/// What moves: the same for all axes of a contact point.
+/// The moving body: device and hand, the same for all axes of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Body {
-    /// Device and hand together [kg].
+    /// The mass of device and hand together [kg].
     mass: f64,
-    /// Of the device [N·s/m].
+    /// The device's damping [N·s/m].
     damping: f64,
-    /// Coulomb's, of the device [N].
+    /// The device's Coulomb friction [N].
     friction: f64,
-    /// Of the hand [N/m].
+    /// The hand's stiffness [N/m].
     grip_stiffness: f64,
-    /// Of the hand [N·s/m].
+    /// The hand's damping [N·s/m].
     grip_damping: f64,
     oscillator: Oscillator,
-    /// The responses over the time asked last: ticks are alike.
+    /// The responses over the last duration, cached because most ticks have the same duration.
     nodes: Nodes,
 }
 
-/// What is constant, or even, while the force is held.
+/// The inputs while the force is held: constant, or linear in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Load {
     /// The servo's force [N].
     pub(crate) force: f64,
-    /// The hand's [N].
+    /// The hand's push [N].
     pub(crate) push: f64,
-    /// Where the hand wants to be at the start [m].
+    /// The hand's target at the start [m].
     pub(crate) target: f64,
-    /// How fast that moves [m/s].
+    /// The velocity of the target [m/s].
     pub(crate) target_velocity: f64,
 }
 
@@ -102,28 +102,30 @@ pub(crate) struct Axis {
     pub(crate) velocity: f64,
 }
 
-/// Device and hand as [`Body`] takes them.
+/// Properties of device and hand, from which a [`Body`] is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Parts {
-    /// Of the device and of the hand [kg].
-    pub(crate) masses: (f64, f64),
-    /// Of the device [N·s/m].
+    /// The mass of the device [kg].
+    pub(crate) device_mass: f64,
+    /// The mass of the hand [kg].
+    pub(crate) hand_mass: f64,
+    /// The device's damping [N·s/m].
     pub(crate) damping: f64,
-    /// Coulomb's, of the device [N].
+    /// The device's Coulomb friction [N].
     pub(crate) friction: f64,
-    /// Of the hand [N/m].
+    /// The hand's stiffness [N/m].
     pub(crate) grip_stiffness: f64,
-    /// Of the hand [N·s/m].
+    /// The hand's damping [N·s/m].
     pub(crate) grip_damping: f64,
 }
 
 impl Body {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if nothing has a mass, damping or friction are negative or not
-    /// finite, or the parts are too fast to be followed.
+    /// [`HapticsError::Number`] if the total mass is zero, damping or friction are negative or
+    /// not finite, or the motion is faster than [`FASTEST`].
     pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
-        let (device, hand) = parts.masses;
+        let (device, hand) = (parts.device_mass, parts.hand_mass);
         not_negative("mass", device, "kg")?;
         let mass = positive("mass of device and hand", device + hand, "kg")?;
         let damping = not_negative("least_damping", parts.damping, "N·s/m")?;
@@ -152,12 +154,12 @@ impl Body {
         })
     }
 
-    /// Device and hand together [kg].
+    /// The mass of device and hand together [kg].
     pub(crate) fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// Moves `axis` for `duration` [s] under `load`. Returns the energies of that time.
+    /// Moves `axis` for `duration` [s] under `load`. Returns the energies of this time.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_PIECES`] pieces.
     pub(crate) fn advance(
@@ -196,7 +198,7 @@ impl Body {
         energies
     }
 
-    /// For how long the device sticks at `position` [s], and in which direction it lets go.
+    /// How long the device sticks at `position` [s], and the direction in which it breaks away.
     fn rest(&self, position: f64, load: &Load) -> (f64, f64) {
         let pull = self.pull(position, load);
         let growth = self.grip_stiffness * load.target_velocity;
@@ -210,7 +212,7 @@ impl Body {
         }
     }
 
-    /// The force on a device that rests at `position`, but for friction [N].
+    /// The force without friction on a device that rests at `position` [N].
     fn pull(&self, position: f64, load: &Load) -> f64 {
         load.force
             + load.push
@@ -219,7 +221,7 @@ impl Body {
     }
 
     fn piece(&self, axis: &Axis, load: &Load, sign: f64) -> Piece {
-        // Without friction a change of direction changes nothing.
+        // Without friction the direction does not matter.
         let sign = if self.friction > 0.0 { sign } else { 0.0 };
         let push = (self.pull(axis.position, load) - sign * self.friction) / self.mass;
         let growth = self.grip_stiffness * load.target_velocity / self.mass;
@@ -257,10 +259,10 @@ impl Body {
     }
 }
 
-/// Motion in one direction, or in any without friction.
+/// A piece of motion in one direction; without friction in any direction.
 struct Piece {
     drive: Drive,
-    /// Of the velocity; 0 without friction.
+    /// The sign of the velocity; 0 without friction.
     sign: f64,
 }
 

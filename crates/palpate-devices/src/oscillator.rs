@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A mass on a spring and a damper, pushed by a force that grows evenly: where it is after a
-//! time, exactly.
+//! The exact motion of a mass on a spring and a damper under a force that is linear in time.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -12,17 +11,17 @@ const TERMS: u32 = 22;
 
 /// `z'' + σ z' + ω² z = a + j t`, from `z(0) = 0` and `z'(0) = v`.
 ///
-/// With the response `S` to a blow, `S'' + σ S' + ω² S = 0`, `S(0) = 0`, `S'(0) = 1`, its
-/// integral `P = ∫ S` and that one's integral `Q = ∫ P`, the solution is
+/// With the impulse response `S`, `S'' + σ S' + ω² S = 0`, `S(0) = 0`, `S'(0) = 1`, its
+/// integral `P = ∫ S` (step response) and `Q = ∫ P` (ramp response), the solution is
 ///
 /// ```text
 /// z  = v S  + a P + j Q
 /// z' = v S' + a S + j P
 /// ```
 ///
-/// `S` is `e^(−σt/2) sin(νt)/ν`, `t e^(−σt/2)` or `e^(−σt/2) sinh(νt)/ν` with `ν² = |ω² − σ²/4|`,
-/// and `Q` divides by `ω²` twice: near critical damping and without a spring those forms lose
-/// all their digits. Their common power series does not, and needs no case:
+/// `S` is `e^(−σt/2) sin(νt)/ν`, `t e^(−σt/2)` or `e^(−σt/2) sinh(νt)/ν` with `ν² = |ω² −
+/// σ²/4|`, and `Q` divides by `ω²` twice: near critical damping and without a spring these
+/// forms cancel completely. Their common power series does not, and needs no cases:
 ///
 /// ```text
 /// S = Σ sₙ tⁿ,   s₀ = 0,   s₁ = 1,   sₙ₊₂ = −(σ sₙ₊₁ + ω² sₙ / (n + 1)) / (n + 2)
@@ -35,7 +34,7 @@ pub(crate) struct Oscillator {
     pub(crate) spring: f64,
 }
 
-/// The responses after some time.
+/// The responses at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Response {
     /// `S'`.
@@ -48,27 +47,27 @@ pub(crate) struct Response {
     ramp: f64,
 }
 
-/// What moves the mass: its speed at the start, and the force per mass on it.
+/// Initial velocity, and force per mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Drive {
     /// `v`, the velocity at the start [m/s].
     pub(crate) velocity: f64,
     /// `a`, force per mass at the start [m/s²].
     pub(crate) push: f64,
-    /// `j`, its growth [m/s³].
+    /// `j`, the rate of change of force per mass [m/s³].
     pub(crate) growth: f64,
 }
 
 impl Oscillator {
-    /// `σ + ω`: nothing it does is faster [1/s].
+    /// `σ + ω`, a bound on the rates of the motion [1/s].
     pub(crate) fn fastest(&self) -> f64 {
         self.decay + self.spring.sqrt()
     }
 
     /// The longest time for which [`response`](Self::response) is exact [s].
     ///
-    /// It is short enough for two more things: the acceleration is zero at most once in it (its
-    /// zeros are half a period apart), and quadrature with [`Nodes`] is exact too.
+    /// Within this time the acceleration is zero at most once (its zeros are half a period
+    /// apart), and quadrature with [`Nodes`] is exact too.
     pub(crate) fn longest(&self) -> f64 {
         1.0 / self.fastest()
     }
@@ -101,12 +100,12 @@ impl Oscillator {
 }
 
 impl Response {
-    /// How far the mass moved [m].
+    /// The displacement of the mass [m].
     pub(crate) fn way(&self, drive: &Drive) -> f64 {
         drive.velocity * self.blow + drive.push * self.step + drive.growth * self.ramp
     }
 
-    /// How fast it is then [m/s].
+    /// The velocity of the mass [m/s].
     pub(crate) fn velocity(&self, drive: &Drive) -> f64 {
         drive.velocity * self.slope + drive.push * self.blow + drive.growth * self.step
     }
@@ -125,12 +124,12 @@ const GAUSS: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
 ];
 
-/// The responses during and after a time.
+/// The responses at quadrature nodes during a time, and at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nodes {
     /// The time [s].
     pub(crate) length: f64,
-    /// The responses at its end.
+    /// The responses at the end.
     pub(crate) end: Response,
     /// Time, weight [s] and responses of each node.
     within: [(f64, f64, Response); 8],
@@ -163,7 +162,7 @@ impl Nodes {
 mod tests {
     use super::*;
 
-    /// What the closed forms say for `S'`, `S`, `P`, where they have their digits.
+    /// The closed forms of `S'`, `S`, `P`, where they do not cancel.
     fn closed(oscillator: &Oscillator, t: f64) -> [f64; 3] {
         let (sigma, spring) = (oscillator.decay, oscillator.spring);
         let half = 0.5 * sigma;
@@ -197,7 +196,8 @@ mod tests {
                 let [slope, blow, step] = closed(&oscillator, t);
                 assert!((response.slope - slope).abs() < 1e-14, "{oscillator:?} {t}");
                 assert!((response.blow - blow).abs() < 1e-14 * t, "{oscillator:?} {t}");
-                // The closed form of P cancels: its error is that of 1 over ω² or σ.
+                // The closed form of P cancels: its error is a rounding of 1, divided by ω² or
+                // σ.
                 assert!((response.step - step).abs() < 1e-15, "{oscillator:?} {t}");
             }
         }
@@ -230,7 +230,7 @@ mod tests {
         let oscillator = Oscillator { decay: 4.0, spring: 9.0 };
         let nodes = Nodes::new(&oscillator, oscillator.longest());
         let drive = Drive { velocity: 1.0, push: -2.0, growth: 3.0 };
-        // The integral of the velocity is the way; that of z z', half its square.
+        // The integral of the velocity is the displacement; that of z z' is half its square.
         let [way, half_square] = nodes.integral(|_, response| {
             let velocity = response.velocity(&drive);
             [velocity, velocity * response.way(&drive)]

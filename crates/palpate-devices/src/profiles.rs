@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What known devices can do.
+//! Profiles of known devices.
 //!
-//! Largest force, stiffness, damping and the radius of the workspace are what the drivers of
-//! CHAI3D 3.3.0 (Conti et al., 2024) say of each device; nothing else is published there. The
-//! rest is assumed and named so: of the order of makers' data sheets, and coherent with what is
-//! published. The least damping is `K T / 2` at `T` = 1 ms, the least for which the largest
-//! stiffness `K` is passive (Colgate and Schenkel 1997); friction and encoder step satisfy
-//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); all of the force comes in 2 ms. Of those that turn,
-//! likewise, about their worst axis; each says where its numbers are from.
+//! Largest force, stiffness, damping and the radius of the workspace are those in the drivers
+//! of CHAI3D 3.3.0 (Conti et al., 2024), which publish nothing else. All other numbers are
+//! assumed, and listed as such: of the order of makers' data sheets, and consistent with the
+//! published numbers. The least damping is `K T / 2` at `T` = 1 ms, the smallest that makes the
+//! largest stiffness `K` passive (Colgate and Schenkel 1997); friction and encoder step satisfy
+//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); the full force rises within 2 ms. The rotational
+//! numbers follow the same rules, for the worst axis; each profile names its sources.
 
 use std::borrow::Cow;
 
@@ -17,7 +17,7 @@ use palpate_haptics::{DeviceProfile, TurningProfile};
 
 use crate::wrists::{OMEGA, PREMIUM, SIGMA, VIRTUOSE_6D, turning};
 
-/// Where numbers are from, and which are not.
+/// The source of the numbers, and the names of assumed ones.
 pub(crate) struct Origin {
     pub(crate) source: &'static str,
     pub(crate) assumed: &'static [&'static str],
@@ -35,7 +35,7 @@ const DRIVERS: Origin = Origin {
     ],
 };
 
-/// Of a device that articles show and no source at hand gives numbers of.
+/// For a device that is known from articles, without published numbers.
 const ASSUMED: Origin = Origin {
     source: "none: all of the order of the maker's data sheet",
     assumed: &[
@@ -52,7 +52,7 @@ const ASSUMED: Origin = Origin {
     ],
 };
 
-/// What the drivers say.
+/// Numbers from the drivers.
 struct Published {
     force: f64,
     stiffness: f64,
@@ -60,7 +60,7 @@ struct Published {
     workspace: f64,
 }
 
-/// What they do not say.
+/// Assumed numbers.
 struct Assumed {
     continuous_force: f64,
     mass: f64,
@@ -69,7 +69,7 @@ struct Assumed {
     encoder_step: f64,
 }
 
-/// How often a second a force rises from nothing to all of it [1/s]: in 2 ms.
+/// The largest rate of force over the largest force [1/s]: the full force rises within 2 ms.
 pub(crate) const FORCE_RISES: f64 = 500.0;
 
 const fn profile(
@@ -81,7 +81,7 @@ const fn profile(
     turning_profile((origin, name), published, assumed, None)
 }
 
-/// Of a device that turns, if it does.
+/// The rotational profile of a device, if it has one.
 const fn turning_profile(
     (origin, name): (&Origin, &'static str),
     published: Published,
@@ -106,7 +106,7 @@ const fn turning_profile(
     }
 }
 
-/// All devices that are known, by their names on the command line.
+/// All known devices, by their names on the command line.
 ///
 /// ```
 /// use palpate_devices::PROFILES;
@@ -361,7 +361,7 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
 ///
 /// # Errors
 ///
-/// [`UnknownDevice`] if there is none; it lists those there are.
+/// [`UnknownDevice`], which lists the known names.
 ///
 /// # Examples
 ///
@@ -379,11 +379,11 @@ pub fn profile_named(name: &str) -> Result<DeviceProfile, UnknownDevice> {
     found.map(|(_, profile)| profile.clone()).ok_or_else(|| UnknownDevice(name.to_owned()))
 }
 
-/// There is no device of this name.
+/// No device has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no device {0:?}; there are {list}", list = names())]
 pub struct UnknownDevice(
-    /// The name.
+    /// The name that was asked for.
     pub String,
 );
 
@@ -412,7 +412,7 @@ mod tests {
             ];
             assert!(numbers.iter().all(|x| *x > 0.0 && x.is_finite()), "{name}");
             assert!(profile.continuous_force <= profile.max_force, "{name}");
-            // At 1 kHz, up to the rounding of 0.35 and its like.
+            // At 1 kHz, up to the rounding of decimals such as 0.35.
             let passive = 2000.0 * profile.least_damping;
             assert!(profile.max_stiffness <= passive * (1.0 + f64::EPSILON), "{name}");
             assert!(

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A device without hardware, held by a hand that follows a path whatever the force.
+//! A device without hardware, whose hand follows a path whatever the force.
 
 use palpate_field::{Rotation, Vector};
 
@@ -12,7 +12,7 @@ use palpate_haptics::{turn_between, turned};
 
 /// A device whose points follow recorded hand paths.
 ///
-/// Deterministic: it knows no clock but the servo's. The forces written last can be asked for.
+/// Deterministic: states depend on the servo's time alone. The forces written last can be read.
 ///
 /// # Examples
 ///
@@ -36,13 +36,14 @@ pub struct RecordedDevice<const D: usize> {
     paths: Vec<HandPath<D>>,
     forces: Vec<Vector<f64, D>>,
     profile: DeviceProfile,
-    /// How the hand turns it; none of a device that does not turn.
+    /// The path of orientations; `None` for a device without rotation.
     turns: Option<HandPath<3>>,
     turn: Option<TurnState<D>>,
     torque: Vector<f64, 3>,
 }
 
-/// The time over which a turn is measured [s]: short for any hand, and long for rounding.
+/// The time over which an angular velocity is measured [s]: short for any hand, and long enough
+/// that rounding does not matter.
 const INSTANT: f64 = 1e-6;
 
 impl<const D: usize> RecordedDevice<D> {
@@ -61,8 +62,8 @@ impl<const D: usize> RecordedDevice<D> {
         Ok(Self { paths, forces, profile, turns, turn, torque })
     }
 
-    /// The same, turned over time by vectors along the axis, as long as the angle [rad], from the
-    /// device's own axes; in the plane along z.
+    /// This device with a path of orientations: rotation vectors [rad] relative to the device's
+    /// own axes; in the plane along z.
     ///
     /// ```
     /// use palpate_field::Vector;
@@ -85,7 +86,7 @@ impl<const D: usize> RecordedDevice<D> {
         Self { turns: Some(turns), ..self }
     }
 
-    /// The same with what a real device can do.
+    /// This device with the profile of a real one.
     #[must_use]
     pub fn with_profile(self, profile: DeviceProfile) -> Self {
         Self { profile, ..self }

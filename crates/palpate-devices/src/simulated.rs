@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A device that exists only as numbers, in a hand that gives way.
+//! A simulated device, in a hand that yields to forces.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -15,35 +15,35 @@ use crate::hand::Hand;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
 use crate::turning::Turning;
 
-/// Reads closer than this are one [s]: over less, a difference says nothing of a velocity.
+/// Reads closer in time than this count as one [s]: a shorter difference gives no velocity.
 const SHORTEST: f64 = 1e-9;
 
 /// A device of a [`DeviceProfile`], held by a [`Hand`] at each of its contact points.
 ///
 /// A contact point is a mass with the profile's viscous damping and Coulomb friction, together
-/// with its hand's mass, spring, damper and push. The force written last, cut to the profile's
-/// largest, is held until the next is written: a zero-order hold. Between two reads the motion
-/// is integrated in closed form, with the hand's path taken as straight from its place at the
-/// one to its place at the other; sticking and letting go are found within that time. What is
-/// read is the position in whole encoder steps.
+/// with its hand's mass, spring, damper and push. The force written last, clamped to the
+/// profile's largest, is held until the next write: a zero-order hold. Between two reads the
+/// motion is integrated in closed form, with the hand's path as a straight line between its
+/// places at the two reads; sticking and breakaway within that time are found. A read gives the
+/// position in whole encoder steps.
 ///
-/// Axes move on their own, and so friction is that of each axis: `f_c` along an axis, up to
-/// `√D f_c` between axes. This is the friction of a machine with a drive for each axis.
+/// The axes move independently, so friction acts on each axis: `f_c` along an axis, up to `√D
+/// f_c` diagonally, as in a machine with one drive per axis.
 ///
 /// The velocity read is the difference of the last two positions read, over the time between
-/// them: with an encoder step Δ it comes in steps of Δ times the rate. Damping wants a better
-/// estimate than this, over a window.
+/// them: with an encoder step Δ it comes in steps of Δ times the rate. Damping needs a better
+/// estimate, over a window of positions.
 ///
-/// A device whose profile [turns](DeviceProfile::turning), held by one hand, is turned by it about
-/// each axis likewise: inertia, damping, friction, encoder steps of its turn as a vector, and a
-/// torque that is held. Its inertia is the same about every axis.
+/// A device whose profile has [rotation](DeviceProfile::turning) and that one hand holds also
+/// rotates: with inertia, damping, friction and encoder steps about each axis, and a torque
+/// that is held. The inertia is the same about every axis.
 ///
-/// It starts at rest where its hand wants to be at the time of the first read. Profile limits
-/// other than the largest force are for the servo to keep.
+/// The device starts at rest at the hand's target at the time of the first read. The servo must
+/// keep all limits of the profile other than the largest force.
 ///
 /// # Examples
 ///
-/// A mass of 0.5 kg without anything to stop it falls under a push of 1 N:
+/// A mass of 0.5 kg accelerates freely under a push of 1 N:
 ///
 /// ```
 /// use palpate_devices::{Device, DeviceProfile, Hand, PointState, SimulatedDevice};
@@ -72,7 +72,7 @@ const SHORTEST: f64 = 1e-9;
 pub struct SimulatedDevice<const D: usize> {
     profile: DeviceProfile,
     points: Vec<SimulatedPoint<D>>,
-    /// How it turns, if it does.
+    /// The rotation; `None` for a device without it.
     turning: Option<Turning<D>>,
     /// The time of the last read [s].
     time: Option<f64>,
@@ -85,9 +85,9 @@ struct SimulatedPoint<const D: usize> {
     axes: [Axis; D],
     /// The force held [N].
     force: Vector<f64, D>,
-    /// What was read last.
+    /// The last reading.
     reading: PointState<D>,
-    /// Where the hand wanted to be then [m].
+    /// The hand's target at the last read [m].
     target: Point<D>,
     /// Where the hand wants to be instead of on its path [m].
     aim: Option<Point<D>>,
@@ -101,9 +101,9 @@ impl<const D: usize> SimulatedDevice<D> {
     ///
     /// [`HapticsError::NoContactPoint`] if there is no hand. [`HapticsError::Number`] if the
     /// profile's mass, least damping, friction or encoder step is negative or not finite, its
-    /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k / M)`
-    /// of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4 / s;
-    /// likewise of what turns.
+    /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k /
+    /// M)` of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4
+    /// / s; the same rules hold for rotation.
     pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, HapticsError> {
         if hands.is_empty() {
             return Err(HapticsError::NoContactPoint);
@@ -118,7 +118,8 @@ impl<const D: usize> SimulatedDevice<D> {
         };
         let points = hands.into_iter().map(|hand| {
             let body = Body::new(&Parts {
-                masses: (profile.mass, hand.mass()),
+                device_mass: profile.mass,
+                hand_mass: hand.mass(),
                 damping: profile.least_damping,
                 friction: profile.friction,
                 grip_stiffness: hand.stiffness(),
@@ -153,30 +154,30 @@ impl<const D: usize> SimulatedDevice<D> {
         }
     }
 
-    /// Where each contact point is and how fast, as no encoder sees it.
+    /// The true state of each contact point, without encoder steps.
     pub fn states(&self) -> impl Iterator<Item = PointState<D>> {
         self.points.iter().map(SimulatedPoint::state)
     }
 
-    /// How the device is turned and how fast, as no encoder sees it; none of one that does not
-    /// turn.
+    /// The true orientation and angular velocity, without encoder steps; `None` for a device
+    /// without rotation.
     #[must_use]
     pub fn turn(&self) -> Option<TurnState<D>> {
         self.turning.as_ref().map(Turning::state)
     }
 
-    /// The torque held [N·m]: that written last, cut to the largest.
+    /// The held torque [N·m]: the last one written, clamped to the largest.
     #[must_use]
     pub fn torque(&self) -> Vector<f64, 3> {
         self.turning.as_ref().map_or(Vector::ZERO, Turning::torque)
     }
 
-    /// The forces held [N]: those written last, cut to the largest.
+    /// The held forces [N]: the last ones written, clamped to the largest.
     pub fn forces(&self) -> impl Iterator<Item = Vector<f64, D>> {
         self.points.iter().map(|point| point.force)
     }
 
-    /// Where the energy went, all contact points and what turns together, up to the last read.
+    /// The energy balance of all contact points and the rotation up to the last read.
     #[must_use]
     pub fn energies(&self) -> Energies {
         let mut sum = Energies::default();
@@ -192,9 +193,9 @@ impl<const D: usize> SimulatedDevice<D> {
     /// The work that the servo's forces and torques did on device and hand from the start to the
     /// last read, `∑ ∫ F·dx + ∫ τ·dθ` over all contact points [J].
     ///
-    /// Exact, as force and torque are constant over each way. Positive: the virtual world gave energy
-    /// out, as even a plain spring does when its force is held over a way that goes on. The
-    /// device's own damping and friction may take that; what they leave is
+    /// Exact, because force and torque are constant between writes. Positive if the virtual
+    /// world gave energy, as even a plain sampled spring does. The device's own damping and
+    /// friction may dissipate this energy; the remainder is
     /// [`energy_to_hand`](Self::energy_to_hand).
     #[must_use]
     pub fn energy_given(&self) -> f64 {
@@ -211,7 +212,7 @@ impl<const D: usize> SimulatedDevice<D> {
         -self.energies().hand
     }
 
-    /// What moves now, device and hands, `∑ ½ M v² + ½ I ω²` [J].
+    /// The kinetic energy of device and hands, `∑ ½ M v² + ½ I ω²` [J].
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
         let of = |point: &SimulatedPoint<D>| {
@@ -236,7 +237,7 @@ impl<const D: usize> SimulatedPoint<D> {
         self.aim.unwrap_or_else(|| self.hand.path().state_at(time).position)
     }
 
-    /// Lays the device where the hand wants to be.
+    /// Places the device at the hand's target.
     fn start(&mut self, time: f64, encoder_step: f64) {
         self.target = self.wanted(time);
         self.axes = self.target.0.map(|position| Axis { position, velocity: 0.0 });
@@ -315,8 +316,8 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         Ok(())
     }
 
-    /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite is
-    /// none.
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A force that is not finite
+    /// counts as zero.
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
         for (point, force) in self.points.iter_mut().zip(forces) {
             point.force = limited(*force, self.profile.max_force);
@@ -329,8 +330,8 @@ impl<const D: usize> Device<D> for SimulatedDevice<D> {
         Ok(self.turning.as_ref().map(Turning::reading))
     }
 
-    /// Real-time: allocates nothing, takes no lock, cannot panic. A torque that is not finite is
-    /// none.
+    /// Real-time: allocates nothing, takes no lock, cannot panic. A torque that is not finite
+    /// counts as zero.
     fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
         if let Some(turning) = &mut self.turning {
             turning.write(torque);

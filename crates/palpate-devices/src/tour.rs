@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A hand path made up for a shape: around it, over it, into it and away again.
+//! A generated hand path over a shape: around it, along its surface, into it and away again.
 
 mod orbit;
 mod smoothing;
@@ -14,70 +14,73 @@ use palpate_haptics::{HapticsError, not_negative, positive};
 use orbit::orbit;
 use smoothing::{highest, smoothed, smoothed_points};
 
-/// The points of an orbit are this part of the hand's detail apart, so that between two of them
-/// the hand goes no deeper than it may, and a jump from one body to the next is seen as one.
+/// The spacing of an orbit's points, as a part of the hand's detail: small enough that the hand
+/// keeps its depth between two points, and that a jump from one body to the next is detected.
 const STEP: f64 = 1.0 / 15.0;
 
-/// The grain of a scene is the shortest edge of its box, as bodies stand side by side along the
-/// others; but no less than this part of the longest.
+/// The grain of a scene, the size of its bodies, is the shortest edge of its box, because
+/// bodies stand side by side along the others; but at least this part of the longest edge.
 const FINEST_GRAIN: f64 = 0.1;
 
 /// The largest number of points of an orbit: ten minutes of touching take a quarter of it.
 const MOST_POINTS: f64 = 1_000_000.0;
 
-/// The most steps of a ray: what a surface seen at a grazing angle takes.
+/// The most steps of a ray: enough for a surface at a grazing angle.
 const RAY_STEPS: u32 = 128;
 
 /// How far the orbit is from the shape's box, as a part of the shape's size.
 const ORBIT_HEIGHT: f64 = 0.2;
 
-/// The most an orbit is lengthened for the hand to keep its speed: a scene of which little is
-/// touched stays a slow one.
+/// The most that an orbit is lengthened to keep the hand's speed: in a scene with little
+/// surface the hand stays slow.
 const MOST_STRETCH: f64 = 4.0;
 
 /// A ray has arrived within this part of the shape's size.
 const RAY_TOLERANCE: f64 = 1e-6;
 
-/// The surface jumps where its height changes by this many times the way between two points: an
-/// angle at which a hand would push against a wall instead of sliding over it.
+/// The surface jumps where its height changes by this multiple of the distance between two
+/// points: a slope at which a hand would push against a wall instead of sliding over it.
 const STEEPEST: f64 = 4.0;
 
-/// The cosine of the turn of the surface between two points that is an edge, not a bend. A hand
-/// deeper than the probe is wide would leave its proxy behind there.
+/// The surface has an edge where the cosine of the angle between two normals is below this. A
+/// hand deeper than the probe's radius would leave its proxy behind there.
 const SHARPEST: f64 = 0.9;
 
-/// The cosine of the turn of the surface within one step that is a lip. Fields that are bounds
-/// have it as sharp as the shape, however wide the probe; a hand pressed over it would leave its
-/// proxy behind below the lip, to slide away from it.
+/// The surface has a lip where the cosine of the angle between the normals of one step is below
+/// this. In a field that is a bound a lip stays sharp whatever the probe's radius; a hand
+/// pressed over it would leave its proxy behind below the lip.
 const LIP: f64 = 0.0;
 
-/// The hand's detail is this many times its depth or the probe's radius: shorter notches are
-/// flown over, longer ones entered.
+/// The hand's detail, as a multiple of its depth or the probe's radius: the hand flies over
+/// shorter notches and enters longer ones.
 const DETAIL: f64 = 5.0;
 
 /// The largest detail, as a part of the grain.
 const COARSEST_DETAIL: f64 = 0.08;
 
-/// How far the hand keeps from the surface in flight, as a part of the detail.
+/// The clearance in flight, as a part of the detail.
 const CLEARANCE: f64 = 0.75;
 
-/// The depth that no point of the path exceeds, as a multiple of the depth asked for. Between
-/// two points the hand may go a little deeper.
+/// The largest depth of a point of the path, as a multiple of the requested depth. Between two
+/// points the hand may go a little deeper.
 const DEEPEST: f64 = 1.35;
 
-/// Newton steps of a correction: the second mends what a blend or a corner left of the first.
+/// Newton steps of a correction: later steps correct what a blend or a corner left of the
+/// first.
 const CORRECTIONS: u32 = 4;
 
-/// Below this part of the Lipschitz constant a slope is that of a ridge, and leads nowhere.
+/// A gradient shorter than this part of the Lipschitz constant belongs to a ridge and gives no
+/// direction.
 const LEAST_SLOPE: f64 = 0.1;
 
-/// How often the hand is lifted where its path is too deep. Each time is wider than the last.
+/// The most times that the hand is lifted where its path is too deep, each time over a wider
+/// part.
 const MOST_LIFTS: usize = 8;
 
 /// How much faster the hand flies than it slides.
 const FLIGHT_SPEED: f64 = 2.0;
 
-/// The points over which the hand takes up its speed, and gives it up at the end.
+/// The points over which the hand accelerates at the start and decelerates at the end.
 const START: f64 = 40.0;
 
 /// The part of its speed with which it starts.
@@ -86,7 +89,7 @@ const FIRST_SPEED: f64 = 0.05;
 /// How deep the hand presses, as a part of the shape's size.
 const DEPTH: f64 = 0.01;
 
-/// The depth as a part of the probe's radius that leaves edges smooth.
+/// The depth that keeps the force continuous over edges, as a part of the probe's radius.
 const SMOOTH_DEPTH: f64 = 0.75;
 
 /// The least time between two samples, as a part of the time for one step of the orbit.
@@ -98,7 +101,7 @@ const PRESS_LENGTH: f64 = 0.8;
 /// The part of a press in which the hand is down; the rest is rising, flying and landing.
 const DOWN: f64 = 0.85;
 
-/// A hand that tours a shape.
+/// A generator of hand paths that tour a shape.
 ///
 /// # Examples
 ///
@@ -127,7 +130,7 @@ pub struct Tour<const D: usize> {
 impl<const D: usize> Tour<D> {
     /// A tour of `duration` [s] of what lies in `bounds`.
     ///
-    /// With the size `s` of the box (its longest edge) and unless asked otherwise, the hand slides
+    /// With the size `s` of the box (its longest edge) and by default, the hand slides
     /// at `0.3 √(s · 1 m)` a second (0.1 m/s over a scene of 0.1 m, 0.3 m/s over one of 1 m),
     /// touches with the default probe, and presses `0.01 s` deep, but at most 3/4 of the probe's
     /// radius, so that the force is continuous over every edge.
@@ -145,7 +148,7 @@ impl<const D: usize> Tour<D> {
         Ok(Self { bounds, duration, size, probe_radius, depth: None, speed })
     }
 
-    /// With the probe's radius [m], from which depths are counted.
+    /// This tour with another probe radius [m]; depths are below the surface offset by it.
     ///
     /// # Errors
     ///
@@ -154,7 +157,7 @@ impl<const D: usize> Tour<D> {
         Ok(Self { probe_radius: not_negative("radius", radius, "m")?, ..self })
     }
 
-    /// With another depth to press to [m].
+    /// This tour with another depth [m].
     ///
     /// # Errors
     ///
@@ -163,7 +166,8 @@ impl<const D: usize> Tour<D> {
         Ok(Self { depth: Some(not_negative("depth", depth, "m")?), ..self })
     }
 
-    /// With another speed of the hand over the surface [m/s]; in flight it is twice that.
+    /// This tour with another speed of the hand over the surface [m/s]; the speed in flight is
+    /// twice as large.
     ///
     /// # Errors
     ///
@@ -175,25 +179,25 @@ impl<const D: usize> Tour<D> {
     /// The path over `shape`: smooth, with continuous velocity, the same for the same input.
     ///
     /// The hand winds about the box from its foot up to the pole and back, or once up in fewer
-    /// turns if the time is short. From each point of this orbit a
-    /// ray towards the core of the box (the box shrunk by its shortest half edge, so that long
-    /// and flat scenes are touched all over) finds the surface that is seen from there. The hand
-    /// presses into it for some time, rises, flies and lands again, and rises as well where what
-    /// is seen jumps from one body to another. In space nothing is looked at from below the box
-    /// (y points up), where a scene has its table.
+    /// turns if the time is short. From each point of this orbit a ray towards the core of the
+    /// box (the box shrunk by its shortest half edge, so that long and flat scenes are touched
+    /// all over) finds the surface that is seen from there. The hand presses into the surface
+    /// for some time, rises, flies and lands again; it also rises where the surface jumps from
+    /// one body to another. In space no ray starts below the box (y points up), where a scene
+    /// has its table.
     ///
-    /// Where that path is too deep, the field leads it out along its gradient; where it still is
-    /// at more than 1.35 times the depth asked for, the hand is lifted into flight, which is free
-    /// as its rays are. So the hand is nowhere deeper than that, but for what the shape does
-    /// between two points of the path, and for shapes that reach out of the box to
-    /// where the hand would fly: an orbit within a shape cannot be left.
+    /// Where the path is too deep, it is corrected along the field's gradient; where it still
+    /// exceeds 1.35 times the requested depth, the hand is lifted into flight, which is as free
+    /// as its rays. So no point of the path is deeper. Two exceptions: between two points of
+    /// the path the shape may rise, and a shape may reach out of the box to where the hand
+    /// flies.
     ///
     /// # Errors
     ///
     /// [`HapticsError::NothingToTouch`] if no ray meets a surface.
     pub fn over(&self, shape: &Shape<D>) -> Result<HandPath<D>, HapticsError> {
-        // The hand is nearer to the shape than its orbit, so it goes a shorter way; the second
-        // orbit is as much longer.
+        // The hand is nearer to the shape than its orbit, so its path is shorter; the second
+        // orbit is longer by the same factor.
         let way = self.speed * self.duration;
         let first = self.follow(shape, way)?;
         let factor = (way / first.travelled()).clamp(1.0, MOST_STRETCH);
@@ -202,13 +206,13 @@ impl<const D: usize> Tour<D> {
         HandPath::new(times.collect(), route.positions, Interpolation::Smooth)
     }
 
-    /// The size of what stands in the box [m].
+    /// The size of the bodies in the box [m].
     fn grain(&self) -> f64 {
         let shortest = self.bounds.half_extents().0.into_iter().fold(f64::INFINITY, f64::min);
         (2.0 * shortest).max(FINEST_GRAIN * self.size)
     }
 
-    /// How deep the hand presses [m].
+    /// The depth to which the hand presses [m].
     fn depth(&self) -> f64 {
         let felt = DEPTH * self.size;
         let smooth =
@@ -223,7 +227,7 @@ impl<const D: usize> Tour<D> {
         if detail > 0.0 { detail.min(coarsest) } else { coarsest }
     }
 
-    /// Where the hand goes while its orbit goes `way` [m].
+    /// The path of the hand for an orbit of length `way` [m].
     fn follow(&self, shape: &Shape<D>, way: f64) -> Result<Route<D>, HapticsError> {
         let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
@@ -250,11 +254,11 @@ impl<const D: usize> Tour<D> {
         Ok(Route { passed: passed(&positions, &press, (step, window)), positions })
     }
 
-    /// The smooth path that is down as far as `press` says, and corrected by the field.
+    /// The smooth path with the depth that `press` gives, corrected by the field.
     ///
-    /// Smoothing cuts corners; the field leads what is too deep out again. That makes corners, so
-    /// both are done twice, the second time over half the width, and what corners are left are
-    /// rounded once more over a quarter of it.
+    /// Smoothing cuts corners, and the correction by the field makes new ones. So both are done
+    /// twice, the second time over half the width, and the remaining corners are smoothed once
+    /// more over a quarter of the width.
     fn positions(
         &self,
         shape: &Shape<D>,
@@ -324,8 +328,8 @@ impl<const D: usize> Tour<D> {
             .collect()
     }
 
-    /// `true` if the hand touches at both points, or nearly, and the surface turns away by [`LIP`]
-    /// between them. Nearly, as a lip may be touched for less than a step.
+    /// `true` if the hand touches or nearly touches at both points, and the surface turns by
+    /// [`LIP`] between them. Nearly, because a lip may be touched for less than a step.
     fn crosses_lip(&self, shape: &Shape<D>, here: Point<D>, next: Point<D>) -> bool {
         let near = self.probe_radius + 2.0 * STEP * self.detail();
         let normal = |point: Point<D>| {
@@ -338,7 +342,7 @@ impl<const D: usize> Tour<D> {
         }
     }
 
-    /// What is seen from a point of the orbit.
+    /// Casts the ray from a point of the orbit.
     fn look(&self, shape: &Shape<D>, from: Point<D>) -> Sight<D> {
         let half = self.bounds.half_extents();
         let thinnest = half.0.into_iter().fold(f64::INFINITY, f64::min);
@@ -355,7 +359,7 @@ impl<const D: usize> Tour<D> {
         Sight { foot, up, height, seen }
     }
 
-    /// The first offset surface on the way down; none before the foot.
+    /// The first offset surface along the ray; `None` if the ray reaches its foot.
     fn trace(
         &self,
         shape: &Shape<D>,
@@ -381,8 +385,8 @@ impl<const D: usize> Tour<D> {
         None
     }
 
-    /// How far the hand is down at each point, from 0 in flight to 1 at full depth: down most
-    /// of the time, up where the surface jumps or ends.
+    /// The press at each point, from 0 in flight to 1 at full depth: down most of the time, up
+    /// where the surface jumps or ends.
     fn presses(&self, sights: &[Sight<D>], step: f64, window: usize) -> Vec<f64> {
         let last = sights.len() - 1;
         let jumps = |i: usize| match (&sights[i].seen, &sights[(i + 1).min(last)].seen) {
@@ -409,8 +413,8 @@ impl<const D: usize> Tour<D> {
     }
 }
 
-/// Positions of the hand, and the way to each [m], with ways in flight counted as shorter as the
-/// hand is faster there.
+/// Positions of the hand, and the length of the path to each [m]; lengths in flight count less,
+/// because the hand is faster there.
 struct Route<const D: usize> {
     positions: Vec<Point<D>>,
     passed: Vec<f64>,
@@ -422,8 +426,8 @@ impl<const D: usize> Route<D> {
     }
 }
 
-/// What is seen from a point of the orbit: the foot of the ray, its direction upwards, a height
-/// above which it is free [m], and the surface if it meets one, at that height.
+/// A ray from a point of the orbit: its foot, its direction upwards, the height above which it
+/// is free [m], and the surface at that height, if it meets one.
 struct Sight<const D: usize> {
     foot: Point<D>,
     up: Vector<f64, D>,
@@ -437,8 +441,8 @@ struct Seen<const D: usize> {
     normal: Vector<f64, D>,
 }
 
-/// Gives the rays that meet nothing the heights of a straight line over the gap, so that the
-/// hand need not go down and up again.
+/// Gives rays that meet no surface the heights of a straight line over the gap, so that the
+/// hand does not go down and up again.
 fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
     let seen: Vec<usize> = (0..sights.len()).filter(|&i| sights[i].seen.is_some()).collect();
     let (Some(&first), Some(&last)) = (seen.first(), seen.last()) else { return };
@@ -454,7 +458,8 @@ fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
     }
 }
 
-/// The way to each point [m], with ways in flight counted as shorter as the hand is faster there.
+/// The length of the path to each point [m]; lengths in flight count less, because the hand is
+/// faster there.
 fn passed<const D: usize>(
     positions: &[Point<D>],
     press: &[f64],
@@ -462,7 +467,7 @@ fn passed<const D: usize>(
 ) -> Vec<f64> {
     let last = positions.len() - 2;
     let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
-    // Where the hand turns back, it goes little way, but takes its time.
+    // Where the hand reverses, the path is short, but the hand needs time.
     let steady = smoothed(&ways, 2 * window);
     let ways =
         ways.iter().zip(steady).zip(press).enumerate().map(|(i, ((way, steady), press))| {
@@ -478,12 +483,12 @@ fn passed<const D: usize>(
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// A rise from 0 to 1 with no slope at either end: `3u² − 2u³`.
+/// A rise from 0 to 1 with zero slope at both ends: `3u² − 2u³`.
 fn ease(u: f64) -> f64 {
     u * u * (3.0 - 2.0 * u)
 }
 
-/// How far the hand is down at a part of a press: up at both ends, down in between.
+/// The depth over a press: 0 at both ends, 1 in between.
 fn envelope(phase: f64) -> f64 {
     let from_end = phase.min(1.0 - phase) * 2.0;
     ease((from_end / (1.0 - DOWN)).clamp(0.0, 1.0))

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How a device in a hand turns while the torque on it is held.
+//! The rotation of a device in a hand while the servo's torque is held.
 //!
-//! Its moment of inertia `I` is the same about every axis, so that no axis turns another: about
-//! each, what turns moves as [`motion`](crate::motion) says, with angles for lengths. The stretch
-//! of the hand's spring is the turn that leads from the device to where the hand wants it. Between
-//! two reads the three angles move on their own, by `Δθ`, and the device turns by the vector of
-//! the three: so the work of the torque held is `τ·Δθ` exactly, and what is read tells `Δθ`.
+//! The moment of inertia `I` is the same about every axis, so the axes are independent: each
+//! follows [`motion`](crate::motion), with angles for lengths. The stretch of the hand's spring
+//! is the rotation vector from the device to the hand's target. Between two reads the three
+//! angles change independently, by `Δθ`, and the device rotates by the vector `Δθ`: so the work
+//! of the held torque is `τ·Δθ` exactly, and the readings give `Δθ`.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -20,7 +20,7 @@ use palpate_haptics::{
 use crate::hand::{Hand, Wrist};
 use crate::motion::{Axis, Body, Energies, Load, Parts};
 
-/// The turning part of a simulated device.
+/// The rotational part of a simulated device.
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<const D: usize> {
     wrist: Wrist,
@@ -28,13 +28,13 @@ pub(crate) struct Turning<const D: usize> {
     max_torque: f64,
     encoder_step: f64,
     orientation: Rotation<D>,
-    /// [rad/s].
+    /// The angular velocity [rad/s].
     spin: Vector<f64, 3>,
-    /// The torque held [N·m].
+    /// The held torque [N·m].
     torque: Vector<f64, 3>,
-    /// What was read last.
+    /// The last reading.
     reading: TurnState<D>,
-    /// Where the hand wanted it then.
+    /// The hand's target orientation at the last read.
     target: Rotation<D>,
     energies: Energies,
 }
@@ -42,9 +42,9 @@ pub(crate) struct Turning<const D: usize> {
 impl<const D: usize> Turning<D> {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the profile's inertia, least damping, friction or encoder step
-    /// is negative or not finite, its largest torque negative or NaN, nothing has an inertia, or
-    /// device and hand are too fast to be followed.
+    /// [`HapticsError::Number`] if the profile's inertia, least damping, friction or encoder
+    /// step is negative or not finite, its largest torque is negative or NaN, the total inertia
+    /// is zero, or the motion of device and hand is too fast to be integrated.
     pub(crate) fn new(profile: &TurningProfile, hand: &Hand<D>) -> Result<Self, HapticsError> {
         let wrist = hand.wrist().clone();
         not_negative("inertia", profile.inertia, "kg·m²")?;
@@ -56,7 +56,8 @@ impl<const D: usize> Turning<D> {
             not_negative("max_torque", profile.max_torque, "N·m")?;
         }
         let body = Body::new(&Parts {
-            masses: (profile.inertia, wrist.inertia),
+            device_mass: profile.inertia,
+            hand_mass: wrist.inertia,
             damping: profile.least_damping,
             friction: profile.friction,
             grip_stiffness: wrist.stiffness,
@@ -77,12 +78,12 @@ impl<const D: usize> Turning<D> {
         })
     }
 
-    /// What was read last.
+    /// The last reading.
     pub(crate) fn reading(&self) -> TurnState<D> {
         self.reading
     }
 
-    /// How it is turned, as no encoder sees it.
+    /// The true orientation and angular velocity, without encoder steps.
     pub(crate) fn state(&self) -> TurnState<D> {
         TurnState { orientation: self.orientation, angular_velocity: self.spin }
     }
@@ -100,14 +101,14 @@ impl<const D: usize> Turning<D> {
         0.5 * self.body.mass() * self.spin.dot(self.spin)
     }
 
-    /// Holds a torque from now on [N·m]; in the plane, what of it is about z.
+    /// Holds a torque from now on [N·m]; in the plane only its z part.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn write(&mut self, torque: Vector<f64, 3>) {
         self.torque = limited(about_axes::<D>(torque), self.max_torque);
     }
 
-    /// Turns the device to where the hand wants it.
+    /// Turns the device to the hand's target.
     pub(crate) fn start(&mut self, time: f64) {
         self.target = self.wanted(time);
         (self.orientation, self.spin) = (self.target, Vector::ZERO);
@@ -141,7 +142,7 @@ impl<const D: usize> Turning<D> {
         self.reading = TurnState { orientation, angular_velocity };
     }
 
-    /// How the hand wants the device to be turned.
+    /// The hand's target orientation.
     fn wanted(&self, time: f64) -> Rotation<D> {
         let path = self.wrist.path.as_ref();
         let turn = path.map_or(Vector::ZERO, |path| path.state_at(time).position);
@@ -161,13 +162,13 @@ impl<const D: usize> Turning<D> {
     }
 }
 
-/// What of a vector is about axes that there are.
+/// The part of a rotation vector about axes that exist: z alone in the plane.
 fn about_axes<const D: usize>(mut turn: Vector<f64, 3>) -> Vector<f64, 3> {
     turn.0.iter_mut().take(fixed::<D>()).for_each(|x| *x = 0.0);
     turn
 }
 
-/// The axes about which nothing turns: the first two in the plane.
+/// The number of leading axes without rotation: two in the plane.
 fn fixed<const D: usize>() -> usize {
     if D < 3 { 2 } else { 0 }
 }

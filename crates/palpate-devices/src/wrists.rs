@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What known devices can do about their axes: of each, the numbers of the worst axis.
+//! Rotational profiles of known devices: the numbers of the worst axis of each.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use palpate_haptics::TurningProfile;
 
 use crate::profiles::{FORCE_RISES, Origin};
 
-/// What is known of a device about its axes, but for the numbers that are assumed of all.
+/// The rotational numbers of a device, without those that are assumed for all devices.
 pub(crate) struct Torques {
     torque: f64,
     continuous_torque: f64,
@@ -21,13 +21,14 @@ pub(crate) struct Torques {
     origin: Origin,
 }
 
-/// The least damping of what senses turns and gives no torque [N·m·s/rad]; nothing depends on it.
+/// The least damping of a wrist that senses its orientation but gives no torque [N·m·s/rad]; no
+/// limit depends on it.
 const FREE_WRIST: f64 = 1e-3;
 
 const DRIVERS: &str =
     "largest torque, stiffness and damping: drivers of CHAI3D 3.3.0 (Conti et al., 2024)";
 
-/// What is assumed where the drivers say the largest torque, stiffness and damping.
+/// Names of the assumed numbers if the drivers state the largest torque, stiffness and damping.
 const BUT_LARGEST: &[&str] = &[
     "continuous_torque",
     "max_torque_rate",

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Bodies as a device can render them.
+//! Bodies with stiffness and damping that a device can render.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,22 +9,23 @@ use crate::bodies::Bodies;
 use crate::tool::Coupling;
 use palpate_safety::Accepted;
 
-/// Bodies as a device can render them, and the coupling of a tool that touches them likewise.
+/// Bodies, and the virtual coupling of a tool, with stiffness and damping that a device can
+/// render.
 ///
-/// Made by [`Servo::accept`](crate::Servo::accept), for the same servo's
-/// [`replace_bodies`](crate::Servo::replace_bodies).
+/// [`Servo::accept`](crate::Servo::accept) makes them for
+/// [`replace_bodies`](crate::Servo::replace_bodies) of the same servo.
 #[derive(Clone, Debug)]
 pub struct AcceptedBodies<const D: usize> {
     pub(crate) bodies: Bodies<D>,
-    /// `None` for contact points.
+    /// The accepted coupling of the tool; `None` if the servo renders contact points.
     pub(crate) coupling: Option<Coupling>,
-    /// Contact points: one entry per body. Tool: along axes and, where the device gives a torque,
-    /// about them. Empty without protection.
+    /// Contact points: one entry per body. Tool: the translational entry, then the rotational
+    /// one if the device gives a torque. Empty without protection.
     pub(crate) accepted: Vec<Accepted>,
 }
 
 impl<const D: usize> AcceptedBodies<D> {
-    /// Bodies as they are, for a servo without protection.
+    /// Unchanged bodies, for a servo without protection.
     pub(crate) fn unchanged(bodies: Bodies<D>) -> Self {
         Self { bodies, coupling: None, accepted: Vec::new() }
     }
@@ -35,13 +36,14 @@ impl<const D: usize> AcceptedBodies<D> {
         &self.bodies
     }
 
-    /// What became of the stiffness and damping; as [`Servo::accepted`](crate::Servo::accepted).
+    /// The stiffness and damping that the device renders, as in
+    /// [`Servo::accepted`](crate::Servo::accepted).
     #[must_use]
     pub fn accepted(&self) -> &[Accepted] {
         &self.accepted
     }
 
-    /// The stiffest that is felt along axes; `None` without protection.
+    /// The stiffest translational entry; `None` without protection.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn along(&self) -> Option<&Accepted> {
@@ -52,7 +54,7 @@ impl<const D: usize> AcceptedBodies<D> {
         self.accepted.iter().max_by(|a, b| stiffness(a).total_cmp(&stiffness(b)))
     }
 
-    /// For a tool on a device that gives a torque: along axes and about them.
+    /// The translational and the rotational entry of a tool on a device that gives a torque.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn wrench(&self) -> Option<(&Accepted, &Accepted)> {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What is touched: bodies that may move, each with a surface of its own.
+//! Bodies that can be touched: each has a surface, and each may move.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -14,30 +14,33 @@ use crate::event::Reaction;
 use crate::nearby::Nearby;
 use crate::surface::Surface;
 
-/// Roundings of a point's way into a body's coordinates, for each metre from the origins.
+/// Rounding errors of mapping a point into body coordinates, in units of rounding per metre
+/// from the origins.
 const PLACE_ROUNDINGS: f64 = 8.0;
 
-/// A shape, where it is, and what it feels like.
+/// A shape with a pose and a surface.
 #[derive(Clone, Debug)]
 pub struct Body<const D: usize> {
     shape: Shape<D>,
     surface: Surface<D>,
     world_from_body: Pose<D>,
     body_from_world: Pose<D>,
-    /// Where it was in the tick before; where it is, if it did not move.
+    /// The pose in the tick before; the present pose if the body did not move.
     world_from_before: Pose<D>,
     has_moved: bool,
-    /// Whether its coordinates are not those of the world.
+    /// Whether the pose differs from the identity.
     is_placed: bool,
-    /// A ball of the world that holds it; none if it has no bounds.
+    /// The bounding ball in world coordinates; `None` for an unbounded shape.
     pub(crate) ball: Option<BoundingBall<D>>,
-    /// Whether its field may be less than the distance to that ball.
+    /// Whether the field may be less than the distance to the bounding ball.
     pub(crate) is_below_ball: bool,
-    /// Where something is proven of its field, in the world; everywhere if none.
+    /// The region in which the field's promise holds, in world coordinates; `None` means
+    /// everywhere.
     pub(crate) region: Option<BoundingBall<D>>,
-    /// The error of its distances in the world.
+    /// The rounding error of the body's distances at points of the world.
     rounding: Rounding,
-    /// How far the ball is from the origin [m]; negative if it holds it, or there is none.
+    /// The distance from the world's origin to the bounding ball [m]; negative if the ball
+    /// contains the origin or the shape is unbounded.
     off_origin: f64,
 }
 
@@ -57,7 +60,7 @@ impl<const D: usize> Body<D> {
         Ok(Self::of(shape, surface))
     }
 
-    /// A body whose texture is in the shape already.
+    /// A body whose shape already includes the texture.
     fn of(shape: Shape<D>, surface: Surface<D>) -> Self {
         let identity = Pose::identity();
         let is_below_ball = !shape.promise().above_bounds;
@@ -80,7 +83,7 @@ impl<const D: usize> Body<D> {
         body
     }
 
-    /// The same at `world_from_body`.
+    /// This body at the pose `world_from_body`.
     ///
     /// # Errors
     ///
@@ -100,19 +103,19 @@ impl<const D: usize> Body<D> {
         &self.shape
     }
 
-    /// What it feels like.
+    /// The surface: what the body feels like.
     #[must_use]
     pub fn surface(&self) -> &Surface<D> {
         &self.surface
     }
 
-    /// Where it is.
+    /// The pose.
     #[must_use]
     pub fn world_from_body(&self) -> &Pose<D> {
         &self.world_from_body
     }
 
-    /// Makes stiffness and damping `factor` times as large.
+    /// Multiplies stiffness and damping by `factor`.
     pub(crate) fn scale_surface(&mut self, factor: f64) {
         self.surface = self.surface.scaled(factor);
     }
@@ -129,26 +132,26 @@ impl<const D: usize> Body<D> {
         if self.is_placed { self.world_from_body.transform_vector(v) } else { v }
     }
 
-    /// Whether it moved in this tick.
+    /// Whether the body moved in this tick.
     pub(crate) fn has_moved(&self) -> bool {
         self.has_moved
     }
 
-    /// Where it takes a point of the world that moves with it in this tick.
+    /// Where the body's motion of this tick takes a point of the world.
     pub(crate) fn carried(&self, point: Point<D>) -> Point<D> {
         let in_body = self.world_from_before.inverse().transform_point(point);
         self.world_from_body.transform_point(in_body)
     }
 
-    /// Where it takes a pose of the world that moves with it in this tick; none if it does not
-    /// move.
+    /// Where the body's motion of this tick takes a pose of the world; `None` if the body does
+    /// not move.
     pub(crate) fn carried_pose(&self, pose: &Pose<D>) -> Option<Pose<D>> {
         let in_body = self.world_from_before.inverse() * *pose;
         self.has_moved.then(|| self.world_from_body * in_body)
     }
 
-    /// The way of a point of the world in this tick, from one place to another, as the body
-    /// sees it; none if it stays out of reach of the body by more than `margin` [m].
+    /// A point's motion in this tick in body coordinates, from one place of the world to
+    /// another; `None` if the point stays more than `margin` [m] away from the body.
     pub(crate) fn way_in_body(
         &self,
         [from, to]: [Point<D>; 2],
@@ -160,7 +163,7 @@ impl<const D: usize> Body<D> {
         let (way, to_centre) = (to - from, bounds.ball.centre - from);
         let part = (way.dot(to_centre) / way.dot(way)).clamp(0.0, 1.0);
         let nearest = if part > 0.0 { way * part } else { Vector::ZERO };
-        // Written so that NaN is swept.
+        // Written so that NaN counts as near.
         let is_far = (to_centre - nearest).norm() > bounds.ball.radius + margin;
         (!is_far).then_some([from, to])
     }
@@ -170,13 +173,15 @@ impl<const D: usize> Body<D> {
         if self.is_placed { self.body_from_world.transform_point(point) } else { point }
     }
 
-    /// How far a point of the world is from the body's ball [m]; negative in it.
+    /// The distance from a point of the world to the bounding ball [m]; negative inside the
+    /// ball.
     #[inline]
     pub(crate) fn above_ball(&self, point: Point<D>) -> f64 {
         self.ball.map_or(f64::NEG_INFINITY, |ball| (point - ball.centre).norm() - ball.radius)
     }
 
-    /// Likewise from all that the ball met on its way in this tick [m].
+    /// The distance from a point of the world to the bounding balls before and after the motion
+    /// of this tick [m].
     #[inline]
     fn above_way(&self, point: Point<D>) -> f64 {
         if self.has_moved { self.above_moved(point) } else { self.above_ball(point) }
@@ -190,13 +195,13 @@ impl<const D: usize> Body<D> {
         (point - all.centre).norm() - all.radius
     }
 
-    /// Its field at a point of the world [m].
+    /// The field at a point of the world [m].
     #[inline]
     pub(crate) fn distance(&self, p: Point<D>) -> f64 {
         self.shape.distance(self.in_body(p))
     }
 
-    /// Likewise with its gradient.
+    /// The field at a point of the world [m], and the gradient.
     #[inline]
     pub(crate) fn distance_gradient(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
         let (distance, gradient) = self.shape.distance_gradient(self.in_body(p));
@@ -211,7 +216,7 @@ impl<const D: usize> Body<D> {
         self.find_balls();
     }
 
-    /// From now on it has not moved.
+    /// Ends the motion: the pose before becomes the present pose.
     fn settle(&mut self) {
         self.world_from_before = self.world_from_body;
         self.has_moved = false;
@@ -234,15 +239,16 @@ impl<const D: usize> Body<D> {
         self.rounding = promise.rounding.at(1.0, far).plus(&Rounding::of_operations(way, far));
     }
 
-    /// The error of its distances at points at most `extent` from the origin [m]; nothing if
-    /// it is farther away than they are: what is far from it need not know how far exactly.
+    /// The rounding error of the body's distances at points at most `extent` from the origin
+    /// [m]. Zero if the body is farther away than these points: no contact depends on the error
+    /// there.
     #[inline]
     pub(crate) fn rounding_within(&self, extent: f64) -> f64 {
         if self.off_origin > 2.0 * extent { 0.0 } else { self.rounding.within(extent) }
     }
 }
 
-/// Room for a tick with so many bodies.
+/// Scratch memory of a tick for this number of bodies.
 fn scratch<const D: usize>(bodies: usize) -> (Vec<Reaction<D>>, Box<[u32]>) {
     (vec![Reaction::NONE; bodies], vec![0; bodies].into_boxed_slice())
 }
@@ -252,10 +258,10 @@ pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
     pose.is_finite() && pose.translation.0.iter().all(|x| x.abs() <= LARGEST_LENGTH)
 }
 
-/// All bodies that can be touched.
+/// All bodies that a servo renders.
 ///
-/// Their union is one field, the least of theirs. It is made anew of the bodies that are near
-/// for every tick, so that bodies may move.
+/// The field of the union is the least of the bodies' fields. Every tick builds the union anew
+/// from the bodies that are near, so that bodies may move.
 ///
 /// # Examples
 ///
@@ -275,22 +281,23 @@ pub(crate) fn is_usable<const D: usize>(pose: &Pose<D>) -> bool {
 #[derive(Clone, Debug)]
 pub struct Bodies<const D: usize> {
     bodies: Vec<Body<D>>,
-    /// The radius of the ball that held all bodies at first [m]; none if one has no bounds.
+    /// The radius of the ball around all bodies at their first poses [m]; `None` if a body is
+    /// unbounded.
     pub(crate) size: Option<f64>,
     pub(crate) lipschitz: f64,
     pub(crate) has_regions: bool,
     pub(crate) has_moved: bool,
-    /// What was done to each in the last tick.
+    /// Force and torque on each body in the last tick.
     reactions: Vec<Reaction<D>>,
-    /// The same of a tick that is only rehearsed.
+    /// Force and torque on each body in a rehearsed tick.
     rehearsed: Vec<Reaction<D>>,
-    /// Room for the numbers of those that are near: a box, as a clone of a vector has less
-    /// room than the vector.
+    /// Memory for the indices of near bodies. A box, because cloning a vector drops its spare
+    /// capacity.
     list: Box<[u32]>,
 }
 
 impl<const D: usize> Bodies<D> {
-    /// These bodies.
+    /// All bodies of `bodies`, in this order.
     ///
     /// # Errors
     ///
@@ -302,7 +309,8 @@ impl<const D: usize> Bodies<D> {
             bounds = bounds.zip(body.ball).map(|(all, ball)| all.union(&ball));
         }
         let lipschitz = bodies.iter().map(|body| body.shape.promise().lipschitz);
-        // Beyond what is near, the way there bounds the field: it has slope one.
+        // Beyond the near bodies, the distance to the horizon bounds the field; its slope is
+        // one.
         let lipschitz = lipschitz.fold(if bodies.len() > 1 { 1.0 } else { 0.0 }, f64::max);
         let size = bounds.map(|ball| ball.radius);
         let has_regions = bodies.iter().any(|body| body.region.is_some());
@@ -322,8 +330,8 @@ impl<const D: usize> Bodies<D> {
         &mut self.bodies
     }
 
-    /// Moves a body; what it touches goes with it in the next tick. A pose that is not finite,
-    /// or of a body that is not there, moves nothing.
+    /// Moves a body; in the next tick the body carries the proxies that touch it. A pose that
+    /// is not finite is ignored, and so is a body index that is out of range.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
@@ -335,34 +343,35 @@ impl<const D: usize> Bodies<D> {
         self.has_moved = true;
     }
 
-    /// What was done to each body in the last tick.
+    /// The force and torque of all contact points on each body in the last tick.
     #[must_use]
     pub fn reactions(&self) -> &[Reaction<D>] {
         &self.reactions
     }
 
-    /// Room for a tick: the numbers of what is near, and what was done to each body.
+    /// Takes the scratch memory of a tick: indices of near bodies, and the reaction of each
+    /// body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn take_scratch(&mut self) -> (Box<[u32]>, Vec<Reaction<D>>) {
         (std::mem::take(&mut self.list), std::mem::take(&mut self.reactions))
     }
 
-    /// Takes back what was [taken](Self::take_scratch).
+    /// Returns the [scratch memory](Self::take_scratch).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn put_back(&mut self, (list, reactions): (Box<[u32]>, Vec<Reaction<D>>)) {
+    pub(crate) fn put_back(&mut self, list: Box<[u32]>, reactions: Vec<Reaction<D>>) {
         (self.list, self.reactions) = (list, reactions);
     }
 
-    /// Puts what was done to each, and what was rehearsed, in the place of each other.
+    /// Swaps the reactions of the last tick with those of the rehearsed tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn swap_reactions(&mut self) {
         std::mem::swap(&mut self.reactions, &mut self.rehearsed);
     }
 
-    /// The motion of this tick is over.
+    /// Ends the motion of this tick for every body.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn settle(&mut self) {
@@ -371,26 +380,27 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// All of them, however far away.
+    /// All bodies, however far away.
     #[must_use]
     pub fn everything(&self) -> Nearby<'_, D> {
         Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
     }
 
-    /// Those within `radius` of `centre` [m], written down in `list`; bodies that find no room
-    /// there are beyond a nearer horizon.
+    /// The bodies within `radius` of `centre` [m]; `list` receives their indices. If `list` is
+    /// full, the horizon moves nearer, so that the bodies left out lie beyond it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn nearby<'a>(
         &'a self,
-        (centre, radius): (Point<D>, f64),
+        centre: Point<D>,
+        radius: f64,
         list: &'a mut [u32],
     ) -> Nearby<'a, D> {
         let (mut horizon, mut count) = (f64::INFINITY, 0);
         for (index, body) in (0..).zip(&self.bodies) {
             let away = body.above_way(centre);
-            // Written so that NaN is near.
+            // Written so that NaN counts as near.
             let is_far = away > radius;
             match list.get_mut(count) {
                 Some(place) if !is_far => {
@@ -421,7 +431,7 @@ impl<const D: usize, const N: usize> TryFrom<[Body<D>; N]> for Bodies<D> {
 }
 
 impl<const D: usize> From<Shape<D>> for Bodies<D> {
-    /// One body of the default surface, which is smooth, at the origin.
+    /// One body at the origin with the default surface, which is smooth.
     fn from(shape: Shape<D>) -> Self {
         let body = Body::of(shape, Surface::default());
         let promise = *body.shape.promise();

@@ -3,136 +3,163 @@
 
 //! One tick of a proxy at a surface: the closest point to the device that it can slide to.
 //!
-//! Every tangent plane is linear; the surface is not. So planes are learnt, the point closest
-//! to the device above them is approached and the field is asked there, until the point asked
-//! for is the point that was asked: Newton's method on the conditions of the closest point, and
-//! on creases an active-set method. Salisbury and Tarr, "Haptic rendering of surfaces defined by
-//! implicit functions" (1997), track one tangent plane in the same way. How the surface bends is
-//! learnt from the turns of its normal and kept, so that a goal is on the bend, and mostly right.
+//! Each evaluation gives a tangent plane. The proxy moves towards the point above all known
+//! planes that is closest to the device, evaluates the field there, and repeats until the point
+//! does not change. This is Newton's method on the conditions of the closest point, and an
+//! active-set method at creases. Salisbury and Tarr, "Haptic rendering of surfaces defined by
+//! implicit functions" (1997), track one tangent plane in the same way. The curvature is learnt
+//! from changes of the normal and kept between ticks, so that most goals are right at the first
+//! evaluation.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
 
-use crate::bend::Bend;
+use crate::curvature::Curvature;
 use crate::half_spaces::HalfSpace;
 use crate::planes::Planes;
 use crate::sampler::{Sample, Sampler};
 
-/// The proxy rests when its next move would change the stretch, and so the force, by less than
-/// this part: 0.002 degrees, far less than a hand can tell.
+/// The proxy rests when its next move would change the stretch between device and proxy, and so
+/// the force, by less than this relative amount: 0.002 degrees, far less than a hand can feel.
 const AT_REST: f64 = 3e-5;
 
-/// It rests when that move is less than this part of the hand's own, too. What is left of it
-/// points against the motion, and slow rounds would gain up to 3e-8 J of it; now it is that
-/// part of what holding a force for a tick errs by.
+/// The proxy also rests only when that move is less than this part of the device's motion. The
+/// remaining error points against the motion, so a hand that circles slowly would gain energy
+/// from it (up to 3e-8 J). This bound makes the gain a thousandth of the energy that holding
+/// the force for a tick adds.
 const LEFT_TO_GO: f64 = 1e-3;
 
-/// A move longer than this many times what is certain from the surface is made through the
-/// air: up, along and down again.
+/// A move longer than this multiple of the safe radius goes through the air: up, along and down
+/// again.
 const WORTH_LIFTING: f64 = 3.0;
 
-/// A goal farther away than this many times the device's own motion is not where the device
-/// went: the surface bends away or ends, and is followed step by step instead.
+/// A goal farther away than this multiple of the device's motion is not trusted: the surface
+/// curves away or ends. The proxy then follows the surface step by step.
 const WORTH_FOLLOWING: f64 = 8.0;
 
-/// How high a move through the air goes, as a multiple of its length. Twice lands within a
-/// tenth of the goal; more gains little and meets the ceiling sooner.
+/// Height of a move through the air, as a multiple of its length. A height of twice the length
+/// lands within a tenth of the goal; more gains little and meets a ceiling sooner.
 const LIFT: f64 = 2.0;
 
-/// The most samples on the way up. In a crease of a right angle eight leave a 20 000th of it.
+/// The most samples on the way up. In a right-angled crease, eight samples leave a 20 000th of
+/// the way unproven.
 const LIFT_SAMPLES: u32 = 8;
 
-/// A sample on the way up that covers less than this part of it is beside a wall.
+/// A sample that covers less than this part of the way up is beside a wall.
 const LEAST_COVERED: f64 = 0.3;
 
-/// Lifts that may fail in a tick: each tells of another wall, and the fourth of a ceiling.
+/// The most failed lifts in a tick: the first three each reveal a wall, the fourth a ceiling.
 const MOST_FAILED_LIFTS: u8 = 3;
 
-/// The first move of a tick is tried as far as this many times the device's motion: what it
-/// takes on a flat wall, and as much again for one that bends.
+/// Length of the first move of a tick, as a multiple of the device's motion: once for a flat
+/// wall, and as much again for a curved one.
 const FIRST_TRUST: f64 = 2.0;
 
-/// The part of a skin that is tried in any case: the device may rest while its proxy does not.
+/// The least length of a move, as a part of a skin: the proxy may have to move while the device
+/// rests.
 const LEAST_TRUST: f64 = 1.0 / 64.0;
 
-/// Where a plane that was moved down is forgotten, the next move is this many times as long as
-/// it was moved: to where its wall is seen again, but not far beyond.
-const NEAR_SUNK: f64 = 4.0;
+/// After a lowered plane is dropped, the next move is this multiple of the amount it was
+/// lowered by: far enough to see its wall again, but not far beyond.
+const NEAR_LOWERED: f64 = 4.0;
 
-/// The part of a skin at which a cornered proxy gives up and stays where it is.
+/// The length of a move, as a part of a skin, at which a cornered proxy stops.
 const CORNERED_TRUST: f64 = 1e-4;
 
-/// The most a step along a bent surface is lengthened: what is left of it converges by
-/// `1 − 1/8` a step at worst, and a bend that was misjudged throws the proxy no further.
+/// The most that curvature lengthens a step. Where more were needed, the error shrinks by `1 −
+/// 1/8` a step at worst; where the estimate is wrong, the proxy overshoots by no more than
+/// this.
 const MOST_GAIN: f64 = 8.0;
 
-/// The part of the fall of a bent surface that a step stays above it: below the surface it
-/// could not rest.
+/// A step along a curved surface ends this part of the surface's fall above it, because a proxy
+/// cannot rest below the surface.
 const ABOVE: f64 = 0.1;
 
-/// The sharpest bend, in turns of the normal over a skin: twice that of an edge, as the probe
-/// rounds it.
-const MOST_BEND: f64 = 2.0;
+/// The largest convex curvature kept, as the change of the normal over a skin: twice that of an
+/// edge rounded by the probe.
+const MOST_CONVEX: f64 = 2.0;
 
-/// Likewise of a hollow, which nothing rounds. What is sharper is a crease.
-const MOST_HOLLOW: f64 = 16.0;
+/// The largest concave curvature kept, as the change of the normal over a skin. The probe does
+/// not round a hollow; a sharper one is a crease.
+const MOST_CONCAVE: f64 = 16.0;
 
-/// A wall is the same if the bend tells the turn of its normal up to this part.
+/// Two tangent planes belong to one wall if the known curvature predicts the change of the
+/// normal to this relative error.
 const SAME_WALL: f64 = 0.2;
 
-/// A way shorter than this part of the hand's motion tells nothing of the bend: its ends are
-/// guesses.
+/// A displacement shorter than this part of the device's motion does not update the curvature:
+/// its end points are too uncertain.
 const LEAST_WAY: f64 = 1e-3;
 
-/// Nor does one that does not lead along the surface: the square of twice the sine of its angle
-/// to it.
+/// A displacement steeper than this does not update the curvature: the square of twice the sine
+/// of its angle to the surface.
 const ALONG: f64 = 0.01;
 
-/// What is known of the surface near a proxy.
+/// The local model of the surface near a proxy: tangent planes and curvature.
 #[derive(Clone, Debug)]
-pub(crate) struct Ground<const D: usize> {
-    /// Its tangent planes, for a tick.
+pub(crate) struct LocalSurface<const D: usize> {
+    /// The tangent planes seen in this tick.
     planes: Planes<D>,
-    /// How it bends.
-    bend: Bend<D>,
+    /// The curvature.
+    curvature: Curvature<D>,
 }
 
-impl<const D: usize> Ground<D> {
-    /// Nothing is known yet.
+impl<const D: usize> LocalSurface<D> {
+    /// A model without planes, of a flat surface.
     pub(crate) fn new() -> Self {
-        Self { planes: Planes::new(), bend: Bend::FLAT }
+        Self { planes: Planes::new(), curvature: Curvature::FLAT }
     }
 
-    /// Another surface may be there now.
+    /// Forgets the curvature, because the surface may have changed; each slide starts without
+    /// planes.
     pub(crate) fn forget(&mut self) {
-        self.bend = Bend::FLAT;
+        self.curvature = Curvature::FLAT;
     }
+}
+
+/// Where a proxy is; a slide updates both parts.
+pub(crate) struct Place<'a, const D: usize> {
+    /// The evaluated point.
+    pub(crate) here: &'a mut Sample<D>,
+    /// The unit normal of the surface last seen.
+    pub(crate) normal: &'a mut Vector<f64, D>,
+}
+
+/// Where a proxy is to go.
+#[derive(Clone, Copy)]
+pub(crate) struct Goal<const D: usize> {
+    /// The device point, or the point to which friction shifts it [m].
+    pub(crate) device: Point<D>,
+    /// How far the device point moved in this tick [m].
+    pub(crate) motion: f64,
 }
 
 /// Slides from `here`, on or above the offset surface, to the point closest to `device`, which
-/// moved by `motion` [m] in this tick. Then `here` is where the proxy rests, an evaluated point
-/// on or above the offset surface, and `normal` the unit normal of the surface last seen; `true`
-/// if that surface keeps the proxy from the device.
+/// moved by `motion` [m] in this tick. Afterwards `here` is the place where the proxy rests, an
+/// evaluated point on or above the offset surface, and `normal` is the unit normal of the
+/// surface last seen. Returns `true` if that surface keeps the proxy from the device.
 ///
-/// Each point of the way is within the reach of an evaluated one, so the way crosses nothing. If
-/// the budget ends before the search does, the proxy rests at the closest point found that is on
-/// or above the surface: later than it could, never inside.
+/// Every point of the path lies within the proven reach of an evaluated point, so the path
+/// crosses no surface. If the budget ends before the search does, the proxy rests at the
+/// closest point found on or above the surface: it lags behind, but is never inside.
 ///
-/// It works in the place where the proxy keeps its sample: a copy of a whole would wait until its
-/// parts, just found, are written.
+/// The search writes into the proxy's own sample, because copying a struct whose fields were
+/// just stored one by one stalls on store forwarding.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
 pub(crate) fn slide<const D: usize>(
     sampler: &mut Sampler<'_, D>,
-    (here, normal): (&mut Sample<D>, &mut Vector<f64, D>),
-    (device, motion): (Point<D>, f64),
-    Ground { planes, bend }: &mut Ground<D>,
+    place: Place<'_, D>,
+    goal: Goal<D>,
+    LocalSurface { planes, curvature }: &mut LocalSurface<D>,
 ) -> bool {
+    let Place { here, normal } = place;
+    let Goal { device, motion } = goal;
     planes.clear();
     let mut slide = Slide {
-        bend,
+        curvature,
         best: *here,
         last_foot: here.point,
         last_normal: *normal,
@@ -147,29 +174,30 @@ pub(crate) fn slide<const D: usize>(
         is_first: true,
     };
     if slide.here.tangent.is_none() {
-        if slide.go(sampler, slide.here.point) == Turn::Spent {
+        if slide.go(sampler, slide.here.point) == Outcome::Spent {
             return slide.rest_at_best(sampler);
         }
         slide.best = *slide.here;
     }
     loop {
-        match slide.turn(sampler) {
-            Turn::Moved => slide.trust *= 2.0,
-            Turn::Resting => {
+        match slide.advance(sampler) {
+            Outcome::Moved => slide.trust *= 2.0,
+            Outcome::Resting => {
                 return squared(slide.here.point - device) > sampler.tolerance().powi(2);
             }
-            // Between facing walls no plane leaves room: less of a step does not get there.
-            Turn::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
+            // Facing walls leave no room at full step length; a shorter step does not reach the
+            // other wall.
+            Outcome::Cornered if slide.trust > CORNERED_TRUST * sampler.skin() => {
                 slide.keep_best(sampler);
                 let gone = squared(slide.here.point - slide.best.point).sqrt();
                 slide.trust =
                     0.125 * if gone > 0.0 { slide.trust.min(gone) } else { slide.trust };
-                (*slide.bend, slide.is_first) = (Bend::FLAT, true);
+                (*slide.curvature, slide.is_first) = (Curvature::FLAT, true);
                 slide.planes.clear();
                 slide.failed_lifts = MOST_FAILED_LIFTS;
                 *slide.here = slide.best;
             }
-            Turn::Cornered | Turn::Spent => {
+            Outcome::Cornered | Outcome::Spent => {
                 slide.keep_best(sampler);
                 return slide.rest_at_best(sampler);
             }
@@ -182,65 +210,67 @@ fn squared<const D: usize>(way: Vector<f64, D>) -> f64 {
 }
 
 struct Slide<'a, const D: usize> {
-    bend: &'a mut Bend<D>,
+    curvature: &'a mut Curvature<D>,
     here: &'a mut Sample<D>,
-    /// The point closest to the device that is on or above the surface, of those that were
-    /// left again.
+    /// Of the points visited and left again, the closest to the device that is on or above the
+    /// surface.
     best: Sample<D>,
-    /// Its squared distance to the device [m²].
+    /// The squared distance from the best point to the device [m²].
     least: f64,
     normal: &'a mut Vector<f64, D>,
     device: Point<D>,
     planes: &'a mut Planes<D>,
-    /// How often the way up was not free: there is a ceiling, or a wall not yet known.
+    /// How many lifts met a ceiling or an unknown wall.
     failed_lifts: u8,
     /// How far the device point moved in this tick [m].
     motion: f64,
-    /// The longest move that is tried [m]: a crease of bent walls is known to second order in
-    /// it. It starts with the motion of the hand and doubles with each move.
+    /// The trust radius: the longest move that is tried [m]. The error at a crease of curved
+    /// walls is of second order in this length. It starts with the device's motion and doubles
+    /// with each move.
     trust: f64,
-    /// Whether there was no tangent plane yet.
+    /// Whether no tangent plane is known yet.
     is_first: bool,
-    /// Where the last tangent plane touched.
+    /// The foot of the last tangent plane.
     last_foot: Point<D>,
     last_normal: Vector<f64, D>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Turn {
+enum Outcome {
     Moved,
     Resting,
-    /// The planes leave no room.
+    /// The planes have no common point.
     Cornered,
     /// The budget is spent, or the field is not finite.
     Spent,
 }
 
 impl<const D: usize> Slide<'_, D> {
-    /// Looks around, and goes on from there.
+    /// Learns the tangent plane at the present point, then moves towards the goal.
     #[inline(always)]
-    fn turn(&mut self, sampler: &mut Sampler<'_, D>) -> Turn {
+    fn advance(&mut self, sampler: &mut Sampler<'_, D>) -> Outcome {
         let (here, device) = (self.here.point, self.device);
         let (normal, gap) = sampler.tangent(self.here, *self.normal);
         let is_new = self.is_first;
         *self.normal = normal;
         let foot = here - normal * gap;
-        self.learn_bend(sampler, (foot, normal));
+        self.learn_curvature(sampler, foot, normal);
         let wall = HalfSpace { point: foot, normal };
-        // The only one is written down where it is not the last, too.
+        // The first plane is stored even if the search ends here.
         let is_only = self.planes.is_empty();
         if !is_only {
             self.planes.learn(here, wall, gap);
         }
-        // Of one alone not from memory, which waits for what was just written.
+        // With a single plane, use the values in registers: loading what was just stored would
+        // stall.
         let is_one = is_only || self.planes.is_one();
         let goal =
             if is_one { Some(wall.closest(device)) } else { self.planes.closest(device) };
-        let Some(mut goal) = goal else { return Turn::Cornered };
+        let Some(mut goal) = goal else { return Outcome::Cornered };
 
         let is_outside = self.here.gap >= -sampler.tolerance();
-        // The point of the last tick has to be at rest exactly: what is left would never be made
-        // up for on a flat wall, which needs one evaluation and no more.
+        // At the first evaluation of a tick the proxy must be exactly at rest: on a flat wall,
+        // which needs only one evaluation a tick, a remaining error would never be corrected.
         let stretch = squared(device - here);
         let left = if is_new {
             0.0
@@ -252,22 +282,22 @@ impl<const D: usize> Slide<'_, D> {
         let is_to_go = |gain: f64| gain * gain * on_plane > at_rest;
         if !is_outside
             || is_to_go(2.0)
-            || is_to_go(MOST_GAIN) && !self.bend.at_most_doubles(stretch)
+            || is_to_go(MOST_GAIN) && !self.curvature.at_most_doubles(stretch)
         {
-            goal = self.over_the_bend((foot, normal), goal, sampler.tolerance());
+            goal = self.along_the_curvature(foot, normal, goal, sampler.tolerance());
         }
         let is_at_rest = is_outside && squared(goal - here) <= at_rest;
         if is_only {
             if is_at_rest {
-                return Turn::Resting;
+                return Outcome::Resting;
             }
             self.planes.add(wall);
         } else if is_at_rest {
-            let Some(sunk) = self.planes.forget_sunk(at_rest.sqrt()) else {
-                return Turn::Resting;
+            let Some(lowered) = self.planes.forget_lowered(at_rest.sqrt()) else {
+                return Outcome::Resting;
             };
-            // The walls that they were of are not far, or gone.
-            self.trust = self.trust.min(NEAR_SUNK * sunk);
+            // The walls of the dropped planes are near, or gone.
+            self.trust = self.trust.min(NEAR_LOWERED * lowered);
             goal = self.planes.closest(device).unwrap_or(here);
         }
         let way = goal - here;
@@ -276,8 +306,8 @@ impl<const D: usize> Slide<'_, D> {
             return self.go(sampler, goal);
         }
         if !is_outside {
-            // Straight on, the way to a far goal would stay below the surface.
-            let Some(outside) = self.planes.closest(here) else { return Turn::Cornered };
+            // A straight path to a far goal would stay below the surface.
+            let Some(outside) = self.planes.closest(here) else { return Outcome::Cornered };
             let way = outside - here;
             let part = (reach / way.norm()).min(1.0);
             return self.go(sampler, here + way * part);
@@ -290,23 +320,23 @@ impl<const D: usize> Slide<'_, D> {
             if let Some(above) = lift(sampler, self.here, up, LIFT * length) {
                 self.keep_best(sampler);
                 *self.here = above;
-                return Turn::Moved;
+                return Outcome::Moved;
             }
             self.failed_lifts += 1;
         }
         self.go(sampler, here + way * (reach / length))
     }
 
-    /// Goes to a point and asks what is there.
+    /// Moves to a point and evaluates the field there.
     #[inline(always)]
-    fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Turn {
-        let Some(sample) = sampler.gradient(point) else { return Turn::Spent };
+    fn go(&mut self, sampler: &mut Sampler<'_, D>, point: Point<D>) -> Outcome {
+        let Some(sample) = sampler.gradient(point) else { return Outcome::Spent };
         self.keep_best(sampler);
         *self.here = sample;
-        Turn::Moved
+        Outcome::Moved
     }
 
-    /// Keeps this point, which is left, if it is the best.
+    /// Remembers the present point, before it is left, if it is the best so far.
     #[inline(always)]
     fn keep_best(&mut self, sampler: &Sampler<'_, D>) {
         let distance = squared(self.here.point - self.device);
@@ -315,44 +345,49 @@ impl<const D: usize> Slide<'_, D> {
         }
     }
 
-    /// Learns how the surface bends between the last two tangent points, of which this is the
-    /// later. Where it bends as was known, it is one wall, of which this plane is the latest.
-    fn learn_bend(
+    /// Updates the curvature from the last two tangent points; `foot` is the later one. If the
+    /// known curvature explains the change of the normal, the new plane replaces those of the
+    /// same wall.
+    fn learn_curvature(
         &mut self,
         sampler: &Sampler<'_, D>,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
     ) {
         let (way, turn) = (foot - self.last_foot, normal - self.last_normal);
         let last_normal = self.last_normal;
-        // Each on its own: a copy of both waits for its parts to be written.
+        // Stored one by one: copying both as a struct would stall on store forwarding.
         self.last_foot = foot;
         self.last_normal = normal;
         if std::mem::replace(&mut self.is_first, false) {
             return;
         }
         let (length, turned) = (squared(way), squared(turn));
-        let untold = self.bend.untold(way, turn);
-        let is_told = |untold, turned| squared(untold) <= SAME_WALL * SAME_WALL * turned;
-        if is_told(untold, turned) && self.planes.is_one() {
+        let residual = self.curvature.residual(way, turn);
+        let is_explained =
+            |residual, turned| squared(residual) <= SAME_WALL * SAME_WALL * turned;
+        if is_explained(residual, turned) && self.planes.is_one() {
             self.planes.clear();
         } else {
-            let is_turn = |way, turn| is_told(self.bend.untold(way, turn), squared(turn));
-            self.planes.forget_wall((foot, normal), is_turn);
+            let is_turn =
+                |way, turn| is_explained(self.curvature.residual(way, turn), squared(turn));
+            self.planes.forget_wall(foot, normal, is_turn);
         }
-        let most = if turn.dot(way) > 0.0 { MOST_BEND } else { MOST_HOLLOW };
+        let most = if turn.dot(way) > 0.0 { MOST_CONVEX } else { MOST_CONCAVE };
         if turned * sampler.skin().powi(2) > most * most * length {
-            *self.bend = Bend::FLAT;
+            *self.curvature = Curvature::FLAT;
         } else if length > (LEAST_WAY * self.motion).powi(2)
             && (normal + last_normal).dot(way).powi(2) < length * ALONG
         {
-            self.bend.learn(way, untold, length);
+            self.curvature.learn(way, residual, length);
         }
     }
 
-    /// The goal on a tangent plane, moved on and down for the bend of the surface.
-    fn over_the_bend(
+    /// The goal on a tangent plane, corrected along and below the plane for the curvature.
+    fn along_the_curvature(
         &self,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
         goal: Point<D>,
         tolerance: f64,
     ) -> Point<D> {
@@ -363,11 +398,11 @@ impl<const D: usize> Slide<'_, D> {
         if !is_on_plane || depth <= tolerance || depth.is_nan() {
             return goal;
         }
-        match self.bend.way(side, depth) {
+        match self.curvature.way(side, depth) {
             Some(way) if squared(way) <= MOST_GAIN * MOST_GAIN * length => {
-                // wᵀ S w / 2, as the way solves (1 − d S) w = side.
+                // wᵀ S w / 2, because the displacement solves (1 − d S) w = side.
                 let fall = 0.5 * way.dot(way - side) / depth;
-                // The bend was learnt where the surface faced another way.
+                // Project on the tangent plane: the curvature was learnt at another normal.
                 let way = way - normal * normal.dot(way);
                 foot + way - normal * (fall - ABOVE * fall.abs())
             }
@@ -375,7 +410,7 @@ impl<const D: usize> Slide<'_, D> {
         }
     }
 
-    /// Goes back to the best point found; whether the device is below the surface.
+    /// Returns to the best point found; `true` if the device is below the surface.
     fn rest_at_best(&mut self, sampler: &mut Sampler<'_, D>) -> bool {
         *self.here = self.best;
         *self.normal = sampler.tangent(self.here, *self.normal).0;
@@ -385,9 +420,10 @@ impl<const D: usize> Slide<'_, D> {
 
 /// The sample `height` above `here` in the direction `up`, if the way there is free.
 ///
-/// The ball about the sample above covers the upper part of the way; a sample where it ends
-/// covers more, until the rest is within a skin of the surface. Over a plane one sample does;
-/// up the middle of a crease each covers the same part of what is left.
+/// The safe ball around the upper sample proves the upper part of the way free; a sample at the
+/// end of that part proves the next part, until the rest is within a skin of the surface. Over
+/// a plane one sample suffices; in the middle of a crease each sample proves the same fraction
+/// of the rest.
 fn lift<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     here: &Sample<D>,

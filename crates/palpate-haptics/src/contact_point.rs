@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! One contact point in a tick: its proxy, what it feels, and its way to the device.
+//! One contact point in a tick: its proxy, its force, and its port to the device.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -14,7 +14,7 @@ use crate::nearby::Nearby;
 use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::servo::ServoOptions;
-use crate::surface::Ringing;
+use crate::surface::{Press, Ringing};
 use palpate_safety::PointState;
 use palpate_safety::PortState;
 use palpate_safety::WorkspaceMap;
@@ -23,14 +23,15 @@ use palpate_safety::{limited, part_of};
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<const D: usize> {
-    /// The device point [m]; as read, even if it is not finite.
+    /// The device point (haptic interface point) [m]; as read, even if it is not finite.
     pub device: Point<D>,
-    /// How fast it moves relative to the body that it touches, or to the world [m/s].
+    /// The velocity of the device point [m/s]: relative to the touched body, or to the world in
+    /// free space.
     pub velocity: Vector<f64, D>,
-    /// The proxy [m]; the device point itself in free space.
+    /// The proxy (god-object) [m]; the device point itself in free space.
     pub proxy: Point<D>,
-    /// The force of what is touched [N], before any limit: what the hand does to the body is
-    /// its negative.
+    /// The force of the touched body on the hand [N], before any limit; the hand exerts the
+    /// opposite force on the body.
     pub wanted: Vector<f64, D>,
     /// The force on the hand [N], always finite.
     pub force: Vector<f64, D>,
@@ -38,7 +39,7 @@ pub struct Touch<const D: usize> {
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// Whose surface it is: the number of the body.
+    /// The index of the body whose surface was last seen.
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,
@@ -67,40 +68,40 @@ impl<const D: usize> Touch<D> {
     }
 }
 
-/// Events of a contact point in a tick at most: a leave, a touch or a change of its hold, and
-/// a layer that gives way.
+/// The most events of a contact point in a tick: a leave; a touch, slip or stick; and a layer
+/// that gives way.
 pub(crate) const MOST_EVENTS: usize = 3;
 
-/// A point of the hand and what it remembers from tick to tick.
+/// A contact point of the hand, with its state from tick to tick.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) proxy: Proxy<D>,
-    /// The part of the force that is given, in [0, 1].
+    /// The rendered part of the force, in [0, 1].
     rise: f64,
-    /// The force that was wanted of other bodies in the tick before [N]; infinite if they are the
+    /// The force of the replaced bodies in the tick before [N]; infinite if the bodies are the
     /// same.
     of_others: f64,
     ringing: Ringing,
     pub(crate) guides: Vec<Guide<D>>,
-    /// Its way to the device; `None` without protection.
+    /// The port to the device; `None` without protection.
     pub(crate) port: Option<Port<D>>,
 }
 
-/// How all contact points are rendered.
+/// Settings that all contact points share.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting<const D: usize> {
     pub(crate) options: ServoOptions,
     pub(crate) map: WorkspaceMap<D>,
-    /// What is added to a force's part in a tick.
+    /// The increase of [`ContactPoint::rise`] in a tick.
     pub(crate) rise_step: f64,
     pub(crate) is_late: bool,
 }
 
-/// What all contact points see in a tick.
+/// The state of a tick that all contact points share.
 pub(crate) struct Tick<'a, const D: usize> {
     nearby: &'a Nearby<'a, D>,
     setting: &'a Setting<D>,
-    /// An event of this point in this tick, to be filled in.
+    /// A template for events: tick and contact point are filled in.
     event: Event,
     events: &'a mut Vec<Event>,
 }
@@ -116,7 +117,7 @@ impl<'a, const D: usize> Tick<'a, D> {
         Self { nearby, setting, event, events }
     }
 
-    /// The same for the contact point of that number.
+    /// This tick, with events of the contact point `point`.
     pub(crate) fn of_point(&mut self, point: u32) -> &mut Self {
         self.event.point = point;
         self
@@ -124,14 +125,23 @@ impl<'a, const D: usize> Tick<'a, D> {
 
     #[inline(never)]
     fn tell(&mut self, body: u32, kind: EventKind) {
-        // There is room for all that can happen: it is set aside at the start.
+        // The capacity set aside at the start holds every event that a tick can produce.
         if self.events.len() < self.events.capacity() {
             self.events.push(Event { body, kind, ..self.event });
         }
     }
 }
 
-/// What a contact point touched in the tick before.
+/// The force in free space, of guides and magnets.
+#[derive(Clone, Copy)]
+pub(crate) struct FreeForce<const D: usize> {
+    /// The force [N].
+    pub(crate) force: Vector<f64, D>,
+    /// Whether the proxy was placed anew: then all forces rise from zero.
+    pub(crate) placed: bool,
+}
+
+/// What a contact point touched in the tick before: its contact, body and motion.
 #[derive(Clone, Copy)]
 struct Before {
     contact: bool,
@@ -153,7 +163,7 @@ impl<const D: usize> ContactPoint<D> {
         Self { proxy, rise, of_others, ringing, guides, port: None }
     }
 
-    /// A double to try a tick with, without guides: copying those would allocate.
+    /// A copy that rehearses a tick. It has no guides, because copying guides would allocate.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
@@ -162,8 +172,8 @@ impl<const D: usize> ContactPoint<D> {
         Self { proxy, rise, of_others, ringing, guides: Vec::new(), port }
     }
 
-    /// Forgets what is known of the bodies: the next tick touches other ones. Of these, `wanted`
-    /// was the last force [N].
+    /// Forgets the bodies, which are replaced before the next tick; `wanted` is their last
+    /// force [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn forget_bodies(&mut self, wanted: Vector<f64, D>) {
@@ -171,15 +181,16 @@ impl<const D: usize> ContactPoint<D> {
         self.of_others = wanted.norm();
     }
 
-    /// Lets the force rise from nothing; with a port, its chain does.
+    /// Lets the force rise from zero; with a port, the safety chain does this.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn rise_anew(&mut self) {
         self.rise = 0.0;
     }
 
-    /// One tick, from the state of the device to the force to write to it [N], in its
-    /// coordinates; `touch` is that of the tick before, and then of this one.
+    /// One tick, from the state of the device to the force to write [N], both in device
+    /// coordinates; `touch` is the touch of the tick before, and is updated to the touch of
+    /// this tick.
     ///
     /// Real-time: as [`Servo::step`](crate::Servo::step).
     pub(crate) fn tick(
@@ -190,13 +201,13 @@ impl<const D: usize> ContactPoint<D> {
     ) -> Vector<f64, D> {
         let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
         let in_world = tick.setting.map.state_to_world(at_device);
-        let (free, placed) = self.feel(tick, &in_world, touch);
-        self.give(tick.setting, at_device, touch, (free, placed))
+        let free = self.feel(tick, &in_world, touch);
+        self.give(tick.setting, at_device, touch, free)
     }
 
-    /// Fills in the force that is given to the hand; the force to write to the device [N], in
-    /// its coordinates. Of a touch with its wanted force, a force in free space, and whether the
-    /// force should rise anew.
+    /// Sets the rendered force of `touch` from its wanted force and the force in free space.
+    /// Returns the force to write [N], in device coordinates. If `placed`, the force rises from
+    /// zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(always)]
@@ -205,8 +216,9 @@ impl<const D: usize> ContactPoint<D> {
         setting: &Setting<D>,
         at_device: PointState<D>,
         touch: &mut Touch<D>,
-        (free, placed): (Vector<f64, D>, bool),
+        free: FreeForce<D>,
     ) -> Vector<f64, D> {
+        let FreeForce { force: free, placed } = free;
         let Setting { options, map, rise_step, is_late } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
@@ -225,20 +237,20 @@ impl<const D: usize> ContactPoint<D> {
         }
     }
 
-    /// What the hand feels, but for its force; the force of guides and magnets, and whether the
-    /// force should rise anew.
+    /// Updates `touch` but for its rendered force. Returns the force of guides and magnets, and
+    /// whether the force must rise from zero.
     fn feel(
         &mut self,
         tick: &mut Tick<'_, D>,
         state: &PointState<D>,
         touch: &mut Touch<D>,
-    ) -> (Vector<f64, D>, bool) {
+    ) -> FreeForce<D> {
         let device = state.position;
-        // A proxy told of a point that is not finite stays where it is.
+        // The proxy stays where it is if the device point is not finite.
         let following = self.proxy.follow(tick.nearby, device);
         let before = Before::of(touch);
         let body = tick.nearby.body(following.body);
-        // Field by field: a copy of a whole waits for its parts to be written.
+        // Field by field, because copying the whole struct would stall on store forwarding.
         touch.device = device;
         touch.velocity = state.velocity;
         touch.proxy = following.proxy;
@@ -252,7 +264,7 @@ impl<const D: usize> ContactPoint<D> {
         let Some(body) = body.filter(|_| state.is_finite()) else {
             touch.velocity = Vector::ZERO;
             self.fall_silent(tick, before);
-            return (Vector::ZERO, following.placed);
+            return FreeForce { force: Vector::ZERO, placed: following.placed };
         };
         let guides = self.guides.iter_mut();
         let mut free =
@@ -267,11 +279,11 @@ impl<const D: usize> ContactPoint<D> {
             self.fall_silent(tick, before);
         }
         free += self.pull(tick, touch);
-        (free, following.placed)
+        FreeForce { force: free, placed: following.placed }
     }
 
-    /// The part of the force from which it rises: nothing after a placement; on new bodies, as
-    /// much as was wanted of the others.
+    /// The part of the force at which the rise begins: zero after a placement; after bodies
+    /// were replaced, the part that equals the force of the old bodies.
     #[cold]
     #[inline(never)]
     fn start(&mut self, placed: bool, wanted: Vector<f64, D>) -> f64 {
@@ -279,7 +291,7 @@ impl<const D: usize> ContactPoint<D> {
         if placed { 0.0 } else { part_of(others, wanted.norm()) }
     }
 
-    /// Nothing is touched any more.
+    /// Ends the contact of the tick before and its ringing.
     fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: Before) {
         self.ringing = Ringing::SILENT;
         if before.contact {
@@ -287,7 +299,7 @@ impl<const D: usize> ContactPoint<D> {
         }
     }
 
-    /// The part of the force that is given, which rises from its `start`.
+    /// The rendered part of the force, which rises from `start`.
     fn rise(&mut self, start: f64, contact: bool, step: f64) -> f64 {
         self.rise = match (start < 1.0, contact) {
             (true, _) => self.rise * start,
@@ -297,7 +309,7 @@ impl<const D: usize> ContactPoint<D> {
         self.rise
     }
 
-    /// Tells of what is new since the last tick, and starts what rings because of it.
+    /// Emits the events of this tick and starts the ringing that they cause.
     fn tell_changes(
         &mut self,
         tick: &mut Tick<'_, D>,
@@ -318,7 +330,7 @@ impl<const D: usize> ContactPoint<D> {
         }
     }
 
-    /// The force of the body that is touched [N].
+    /// The force of the touched body [N].
     fn force(
         &mut self,
         tick: &mut Tick<'_, D>,
@@ -338,21 +350,22 @@ impl<const D: usize> ContactPoint<D> {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let force = surface.force(level, pull, velocity, (in_body, turn));
+        let press = Press { stretch: pull, velocity, proxy: in_body };
+        let force = surface.force(level, press, turn);
         let force = body.vector_in_world(force);
         if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
             let held = surface.strata.force(level, stretch.norm());
-            if held > pop.force && self.proxy.pierce(touch.body) {
+            if held > pop.force && self.proxy.puncture(touch.body) {
                 tick.tell(touch.body, EventKind::Pop { force: held });
             }
         }
-        // A ring shakes the hand, but does not pull it in.
+        // Ringing shakes the hand, but never pulls it into the body.
         let ring = self.ringing.step().max(-force.dot(touch.normal).max(0.0));
         force + touch.normal * ring
     }
 
-    /// The pull of magnets, but that of the body that is touched, which is zero at its surface
-    /// [N]: down the gradients of their fields, and so that of a potential.
+    /// The force of all magnets but the touched body's, which is zero at its own surface [N].
+    /// Each acts down the gradient of its field, so the sum is the force of a potential.
     fn pull(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>) -> Vector<f64, D> {
         let mut force = Vector::ZERO;
         for (index, body) in tick.nearby.all() {

@@ -7,10 +7,11 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Energy {
-    /// What the forces took from the hand.
+    /// Energy that the rendered forces took from the hand.
     pub taken: f64,
-    /// What they gave to it.
+    /// Energy that the rendered forces gave to the hand.
     pub given: f64,
-    /// What the wanted forces would have given, but those written did not.
+    /// Energy that the wanted forces would have given, but the rendered forces did not: what
+    /// the passivity controller held back.
     pub kept: f64,
 }

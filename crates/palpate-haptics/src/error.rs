@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a material, a hand path or a servo.
+//! Errors of materials, hand paths, tools and servos.
 
 use std::convert::Infallible;
 
 use palpate_safety::{NumberError, SafetyError};
 
-/// Why something cannot be touched as asked. Every variant carries the offending numbers.
+/// Why a material, hand path, tool or servo is refused. Every variant carries the offending
+/// numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HapticsError {
@@ -20,21 +21,21 @@ pub enum HapticsError {
     /// A hand path needs a beginning and an end.
     #[error("a hand path needs at least 2 samples, got {count}")]
     TooFewSamples {
-        /// How many there were.
+        /// The number of samples.
         count: usize,
     },
-    /// The times of a hand path and its positions are not pairs.
+    /// A hand path has not as many times as positions.
     #[error("a hand path has {times} times but {positions} positions")]
     UnpairedSamples {
-        /// How many times.
+        /// The number of times.
         times: usize,
-        /// How many positions.
+        /// The number of positions.
         positions: usize,
     },
-    /// A time or coordinate of a hand path is NaN, infinite or beyond any scene.
+    /// A time or coordinate of a hand path is not finite or exceeds 1e15.
     #[error("sample {index} of the hand path must be finite and at most 1e15, got {value}")]
     SampleNotFinite {
-        /// Which sample, from 0.
+        /// The index of the sample, from 0.
         index: usize,
         /// The time [s] or coordinate [m].
         value: f64,
@@ -44,7 +45,7 @@ pub enum HapticsError {
         "sample {index} of the hand path is at {time} s, which must be later than {previous} s"
     )]
     TimeNotIncreasing {
-        /// Which sample, from 0.
+        /// The index of the sample, from 0.
         index: usize,
         /// The time of the sample before [s].
         previous: f64,
@@ -62,47 +63,47 @@ pub enum HapticsError {
         /// Contact points of the device.
         device: usize,
     },
-    /// There is nothing to touch.
+    /// The list of bodies is empty.
     #[error("there must be at least one body to touch")]
     NoBody,
-    /// There is no body of that number.
+    /// No body has this index.
     #[error("there is no body {body}; there are {bodies}, counted from 0")]
     NoSuchBody {
-        /// The number asked for.
+        /// The index that was asked for.
         body: usize,
-        /// How many bodies there are.
+        /// The number of bodies.
         bodies: usize,
     },
-    /// A hand-off has no room for so many bodies.
+    /// A hand-off has fewer places than there are bodies.
     #[error("the hand-off has room for {most} bodies, got {bodies}")]
     TooManyBodies {
-        /// How many bodies there are.
+        /// The number of bodies.
         bodies: usize,
-        /// How many it has room for.
+        /// The capacity.
         most: usize,
     },
     /// A thread for the servo could not be started.
     #[error("the servo's thread did not start: {reason}")]
     ThreadNotStarted {
-        /// What the system said.
+        /// The error of the operating system.
         reason: String,
     },
-    /// A pose has numbers that are not finite or beyond any scene.
+    /// A number of a pose is not finite or exceeds 1e15.
     #[error("the numbers of a pose must be finite and at most 1e15")]
     Pose,
-    /// A shape cannot be what a surface asks for.
+    /// A shape cannot carry the texture of a surface.
     #[error(transparent)]
     Shape(#[from] palpate_field::ShapeError),
-    /// A guide leads to one target.
+    /// A guide must have exactly one target.
     #[error("a guide needs one target, got {count}")]
     GuideTargets {
-        /// How many it has.
+        /// The number of targets.
         count: usize,
     },
-    /// A tool has no surface to sample.
+    /// The shape of a tool has no bounded surface.
     #[error("a tool needs a bounded surface, and none was found")]
     NothingToTouchWith,
-    /// A tour finds nothing to touch in its box.
+    /// The box of a tour contains no surface.
     #[error("no surface was found in the box of a hand path over a shape")]
     NothingToTouch,
 }

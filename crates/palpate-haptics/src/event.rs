@@ -1,63 +1,63 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What happened at a contact point, and what it did to a body.
+//! Events at contact points, and reactions of bodies.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
 
-/// Something that happened at a contact point.
+/// An event at a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Event {
-    /// In which tick, from 0.
+    /// The tick, counted from 0.
     pub tick: u64,
-    /// At which contact point.
+    /// The index of the contact point.
     pub point: u32,
-    /// On which body.
+    /// The index of the body.
     pub body: u32,
-    /// What it was.
+    /// The kind of the event.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub kind: EventKind,
 }
 
-/// What can happen at a contact point.
+/// The kinds of events at a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum EventKind {
-    /// It touches a body that it did not touch before.
+    /// The contact point begins to touch the body.
     Touch {
-        /// How fast it came, along the normal and relative to the body [m/s].
+        /// The approach speed, along the normal and relative to the body [m/s].
         speed: f64,
     },
-    /// It touches it no more.
+    /// The contact point no longer touches the body.
     Leave,
-    /// It sticks no more, but slips.
+    /// The proxy begins to slip.
     Slip,
-    /// It slips no more, but sticks.
+    /// The proxy begins to stick.
     Stick,
-    /// A layer gave way.
+    /// A layer of a material gave way.
     Pop {
-        /// The force that it did not hold [N].
+        /// The force that broke the layer [N].
         force: f64,
     },
 }
 
-/// How many events of each kind there were.
+/// The number of events of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EventCounts {
-    /// A contact point touched a body that it did not touch before.
+    /// Contacts that began.
     pub touches: u64,
-    /// It touched it no more.
+    /// Contacts that ended.
     pub leaves: u64,
-    /// It began to slip.
+    /// Proxies that began to slip.
     pub slips: u64,
-    /// It stuck again.
+    /// Proxies that began to stick.
     pub sticks: u64,
-    /// A layer gave way.
+    /// A layer of a material gave way.
     pub pops: u64,
 }
 
@@ -76,8 +76,8 @@ impl EventCounts {
     }
 }
 
-/// What all contact points together did to a body in a tick: for a physics engine that moves
-/// it. World coordinates.
+/// Force and torque of all contact points on a body in a tick, in world coordinates: input for
+/// a physics engine that moves the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction<const D: usize> {
     /// The force [N].
@@ -89,7 +89,7 @@ pub struct Reaction<const D: usize> {
 impl<const D: usize> Reaction<D> {
     pub(crate) const NONE: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
 
-    /// Adds a force at a place `arm` from the body's origin, if the sum is finite.
+    /// Adds a force that acts at `arm` from the body's origin, if the sum is finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
@@ -109,7 +109,7 @@ impl<const D: usize> Reaction<D> {
 mod tests {
     use super::*;
 
-    /// The sum of forces that were finite each was not. Found by fuzzing.
+    /// The sum of finite forces may overflow. Found by fuzzing.
     #[test]
     fn a_reaction_is_finite_whatever_is_added() {
         let mut reaction = Reaction::NONE;

@@ -4,14 +4,15 @@
 //! The closest point in the intersection of a few half-spaces.
 //!
 //! The god-object of Zilles and Salisbury (1995), section 4, is the point closest to the device
-//! point under at most three plane constraints; with inequalities instead of equations, the
-//! active ones must be found as well. There are so few that all subsets are tried.
+//! point under at most three plane constraints. With inequalities instead of equations, the
+//! active constraints must be found as well; they are so few that all subsets are tried.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
 
-/// The most half-spaces kept: three make a corner, one more replaces the one left behind.
+/// The most half-spaces kept: three make a corner, and a fourth lets the proxy leave one of
+/// them.
 pub(crate) const CAPACITY: usize = 4;
 
 /// How far a point may lie outside a half-space and still count as in it, as a part of the
@@ -19,8 +20,8 @@ pub(crate) const CAPACITY: usize = 4;
 /// [`LEAST_DETERMINANT`], below what a contact tolerates.
 const FEASIBLE: f64 = 1e-10;
 
-/// Planes whose normals span a (squared) volume below this are taken as parallel: their
-/// intersection would be known to fewer than four digits.
+/// Planes whose normals span a squared volume below this count as parallel: their intersection
+/// would be known to fewer than four digits.
 const LEAST_DETERMINANT: f64 = 1e-12;
 
 /// All points `q` with `normal·(q − point) ≥ 0`.
@@ -39,7 +40,7 @@ impl<const D: usize> HalfSpace<D> {
         self.normal.dot(q - self.point)
     }
 
-    /// The point of it closest to `x`.
+    /// The point of the half-space closest to `x`.
     #[inline]
     pub(crate) fn closest(&self, x: Point<D>) -> Point<D> {
         let depth = -self.height(x);
@@ -47,8 +48,8 @@ impl<const D: usize> HalfSpace<D> {
     }
 }
 
-/// The point closest to `x` in all of `half_spaces`; `None` if they have no point in common
-/// that can be told.
+/// The point closest to `x` that lies in all of `half_spaces`; `None` if no common point can be
+/// computed.
 ///
 /// # Derivation
 ///

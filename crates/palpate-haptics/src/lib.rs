@@ -3,41 +3,43 @@
 
 //! Touching signed distance fields: the haptic proxy, its force and the servo.
 //!
-//! A [`Proxy`] follows a device point but cannot enter the shape; a [`Material`] turns the
-//! distance between the two into a force; a [`Servo`] does both for every contact point of a
-//! [`Device`], a thousand times a second and more. Through a [`handoff`](handoff()), another
-//! thread changes what is touched and sees what happens, and never makes the servo wait.
+//! A [`Proxy`] (a god-object with a radius) follows a device point but cannot enter the shape.
+//! A [`Material`] turns the distance between proxy and device point into a force. A [`Servo`]
+//! does both for every contact point of a [`Device`], a thousand times a second and more.
+//! Through a [`handoff`](handoff()), another thread replaces bodies and reads snapshots without
+//! ever making the servo wait.
 //!
-//! The loop around a servo, which paces, counts, records and reports, is in `palpate-loop`.
+//! The crate `palpate-loop` runs a servo: it paces, counts, records and reports.
 //!
-//! A rigid [`Tool`] with a shape is felt as a whole, with force and torque: it is coupled to the hand
-//! by a spring, and bodies stop it. A servo renders it [instead](Servo::for_tool) of contact
-//! points; on a device that turns, with six degrees of freedom, it turns with the hand and gives
-//! it a torque.
+//! A rigid [`Tool`] renders contact of a whole shape, with force and torque: a virtual coupling
+//! connects it to the hand, and bodies stop it. A servo renders a tool
+//! [instead](Servo::for_tool) of contact points. On a device with six degrees of freedom the
+//! tool turns with the hand and gives a torque.
 //!
-//! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or draws it into a
-//! well or down a field.
+//! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or pulls it into
+//! a well or down a field.
 //!
-//! Devices to touch with, simulated, recorded or made up, are in `palpate-devices`; vibration for
-//! devices that shake instead of push is in `palpate-vibration`.
+//! Simulated and recorded devices are in `palpate-devices`; vibration for devices that shake
+//! instead of push is in `palpate-vibration`.
 //!
 //! # What is promised
 //!
-//! - *Nothing is crossed.* The proxy moves only where an evaluation and the field's Lipschitz
-//!   constant prove the way free, at any speed of the hand.
+//! - *The proxy crosses no surface.* It moves only where an evaluation and the field's
+//!   Lipschitz constant prove the path free, at any speed of the hand.
 //! - *The step is total.* [`Servo::step`] allocates nothing, takes no lock, does not panic and
-//!   evaluates the shape at most [`Probe::budget`] times a point. Out of budget, a proxy lags
-//!   behind; it never ends up inside.
-//! - *The force never pulls*, is finite, and no larger than the device's largest.
-//! - *No lengths are built in.* Every tolerance follows from the shape's size, the probe and the
-//!   motion, so scenes of a micrometre and of a kilometre feel alike.
+//!   evaluates the shape at most [`Probe::budget`] times a point. A proxy that runs out of
+//!   budget lags behind; it never ends up inside.
+//! - *The force of contact never pulls*, is finite, and is no larger than the device's largest
+//!   force.
+//! - *No lengths are built in.* Every tolerance follows from the size of the shape, the probe
+//!   and the motion, so scenes of a micrometre and of a kilometre feel alike.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod accepted_bodies;
-mod bend;
 mod bodies;
 mod contact;
 mod contact_point;
+mod curvature;
 mod energy;
 mod error;
 mod event;

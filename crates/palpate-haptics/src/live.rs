@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What another thread may see of a running servo.
+//! What another thread can read of a running servo.
 
 use crate::contact_point::Touch;
 use crate::event::Reaction;
 use crate::tool::HeldTool;
 
-/// A running servo, some ticks ago.
+/// The progress of a running servo, as of a recent tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Ticks done.
@@ -18,24 +18,24 @@ pub struct Progress {
     pub force: f64,
     /// The largest depth a contact point is pressed to [m].
     pub depth: f64,
-    /// How many points are in contact.
+    /// The number of contact points in contact.
     pub contacts: u64,
     /// Evaluations of the shape in the last tick.
     pub evaluations: u64,
-    /// What the last tick cost [ns].
+    /// The duration of the last tick [ns].
     pub cost_ns: u64,
 }
 
-/// A servo after a tick, all of it after the same one.
+/// The state of a servo after one tick: all parts are of the same tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot<const D: usize> {
-    /// How far it is.
+    /// Counts and largest values.
     pub progress: Progress,
     /// Every contact point.
     pub touches: Vec<Touch<D>>,
-    /// The tool with a shape; none of contact points.
+    /// The tool; `None` if the servo renders contact points.
     pub tool: Option<HeldTool<D>>,
-    /// What was done to each body.
+    /// Force and torque on each body.
     pub reactions: Vec<Reaction<D>>,
     /// Events so far for which the queue had no room.
     pub events_lost: u64,

@@ -9,19 +9,19 @@ use palpate_field::{Point, Vector};
 
 use crate::bodies::{Bodies, Body};
 
-/// Which layers of which bodies a hand went through: they hold it no more.
+/// The punctured layers of bodies, which no longer constrain the proxy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Pierced {
+pub(crate) struct Punctured {
     bodies: [u32; Self::CAPACITY],
-    /// How many layers of each; zero where there is no body.
+    /// The number of punctured layers of each body; zero marks a free entry.
     levels: [u8; Self::CAPACITY],
 }
 
-impl Pierced {
-    /// Bodies that a hand is through at a time.
+impl Punctured {
+    /// The most bodies with punctured layers at a time.
     const CAPACITY: usize = 4;
 
-    /// Whether all layers hold.
+    /// Whether no layer is punctured.
     #[inline]
     pub(crate) fn is_empty(&self) -> bool {
         self.levels == [0; Self::CAPACITY]
@@ -31,21 +31,21 @@ impl Pierced {
         self.bodies.iter_mut().zip(&mut self.levels)
     }
 
-    /// How many layers of a body the hand went through.
+    /// The number of punctured layers of a body.
     #[inline]
     pub(crate) fn level(&self, body: u32) -> usize {
         if self.is_empty() {
             return 0;
         }
         let mut entries = self.bodies.iter().zip(&self.levels);
-        let found = entries.find(|(pierced, level)| **pierced == body && **level > 0);
+        let found = entries.find(|(punctured, level)| **punctured == body && **level > 0);
         found.map_or(0, |(_, level)| usize::from(*level))
     }
 
-    /// Notes that the hand went through one more layer of a body; `false` if it is through as
-    /// many as there is room for.
-    pub(crate) fn pierce(&mut self, body: u32) -> bool {
-        let known = self.entries().find(|(pierced, level)| **pierced == body && **level > 0);
+    /// Records one more punctured layer of a body; `false` if the table is full.
+    pub(crate) fn puncture(&mut self, body: u32) -> bool {
+        let known =
+            self.entries().find(|(punctured, level)| **punctured == body && **level > 0);
         if let Some((_, level)) = known {
             *level = level.saturating_add(1);
             return true;
@@ -54,8 +54,8 @@ impl Pierced {
         room.map(|(place, level)| (*place, *level) = (body, 1)).is_some()
     }
 
-    /// Lets those layers hold again that `is_away` says the hand is away from.
-    pub(crate) fn heal(&mut self, mut is_away: impl FnMut(u32, usize) -> bool) {
+    /// Restores the layers for which `is_away` says that the hand has left them.
+    pub(crate) fn restore(&mut self, mut is_away: impl FnMut(u32, usize) -> bool) {
         for (body, level) in self.entries() {
             if *level > 0 && is_away(*body, usize::from(*level)) {
                 *level = 0;
@@ -64,31 +64,31 @@ impl Pierced {
     }
 }
 
-/// What is known of a place.
+/// The field at a place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen<const D: usize> {
     /// The field [m].
     pub(crate) distance: f64,
-    /// Its gradient.
+    /// The gradient of the field.
     pub(crate) gradient: Vector<f64, D>,
-    /// Whose field it is.
+    /// The index of the body whose field is least.
     pub(crate) body: u32,
 }
 
-/// The bodies near a place, as one field: the least of theirs, and of the way to the horizon,
-/// beyond which the others are.
+/// The bodies near a place, as one field: the least of their fields and of the distance to the
+/// horizon. All other bodies lie beyond the horizon.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearby<'a, const D: usize> {
     pub(crate) bodies: &'a Bodies<D>,
-    /// Which; all if none.
+    /// Indices of the near bodies; `None` means all bodies.
     pub(crate) list: Option<&'a [u32]>,
     pub(crate) centre: Point<D>,
-    /// No other body is within this of the centre [m].
+    /// The radius of the horizon about the centre [m]: bodies not in the list are farther away.
     pub(crate) horizon: f64,
 }
 
 impl<'a, const D: usize> Nearby<'a, D> {
-    /// The body of that number.
+    /// The body with this index.
     pub(crate) fn body(&self, body: u32) -> Option<&'a Body<D>> {
         self.bodies.bodies().get(body as usize)
     }
@@ -96,7 +96,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// The field at a point and its gradient.
     #[must_use]
     pub fn look(&self, p: Point<D>) -> (f64, Vector<f64, D>) {
-        let seen = self.gradient(p, &Pierced::default());
+        let seen = self.gradient(p, &Punctured::default());
         (seen.distance, seen.gradient)
     }
 
@@ -128,21 +128,21 @@ impl<'a, const D: usize> Nearby<'a, D> {
         self.bodies.has_moved
     }
 
-    /// The field at a point, and whose it is.
+    /// The field at a point, and the body whose field is least there.
     #[inline]
-    pub(crate) fn distance(&self, p: Point<D>, pierced: &Pierced) -> (f64, u32) {
-        if let ([body], true) = (self.bodies.bodies(), pierced.is_empty()) {
+    pub(crate) fn distance(&self, p: Point<D>, punctured: &Punctured) -> (f64, u32) {
+        if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             return (body.distance(p), 0);
         }
         let mut least = (self.horizon - (p - self.centre).norm(), 0);
         for (index, body) in self.all() {
             let above = body.above_ball(p);
-            // Written so that NaN is looked at.
+            // Written so that NaN is evaluated.
             if above >= least.0 {
                 continue;
             }
-            let Some(sunk) = sunk(body, pierced.level(index)) else { continue };
-            let mut distance = body.distance(p) + sunk;
+            let Some(layer_depth) = layer_depth(body, punctured.level(index)) else { continue };
+            let mut distance = body.distance(p) + layer_depth;
             if body.is_below_ball {
                 distance = distance.max(above);
             }
@@ -156,10 +156,10 @@ impl<'a, const D: usize> Nearby<'a, D> {
         least
     }
 
-    /// The field at a point with its gradient, and whose it is.
+    /// The field and its gradient at a point, and the body whose field is least there.
     #[inline]
-    pub(crate) fn gradient(&self, p: Point<D>, pierced: &Pierced) -> Seen<D> {
-        if let ([body], true) = (self.bodies.bodies(), pierced.is_empty()) {
+    pub(crate) fn gradient(&self, p: Point<D>, punctured: &Punctured) -> Seen<D> {
+        if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);
             return Seen { distance, gradient, body: 0 };
         }
@@ -172,9 +172,9 @@ impl<'a, const D: usize> Nearby<'a, D> {
             if above >= least.distance {
                 continue;
             }
-            let Some(sunk) = sunk(body, pierced.level(index)) else { continue };
+            let Some(layer_depth) = layer_depth(body, punctured.level(index)) else { continue };
             let (distance, gradient) = body.distance_gradient(p);
-            let mut seen = Seen { distance: distance + sunk, gradient, body: index };
+            let mut seen = Seen { distance: distance + layer_depth, gradient, body: index };
             if body.is_below_ball
                 && above > seen.distance
                 && let Some(ball) = body.ball
@@ -192,7 +192,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
         least
     }
 
-    /// `true` if all that is near is proven at a point.
+    /// `true` if the promise of every near body holds at a point.
     pub(crate) fn is_proven(&self, p: Point<D>) -> bool {
         if !self.bodies.has_regions {
             return true;
@@ -202,8 +202,8 @@ impl<'a, const D: usize> Nearby<'a, D> {
         regions.into_iter().all(|region| (p - region.centre).norm() <= region.radius)
     }
 
-    /// The point closest to `goal` of which something is proven: in one region; in several,
-    /// a point near it.
+    /// The point closest to `goal` at which the promises hold. With several regions, `goal` is
+    /// projected on one after another, which gives a nearby point.
     pub(crate) fn within_regions(&self, goal: Point<D>, edge: f64) -> Point<D> {
         if !self.bodies.has_regions {
             return goal;
@@ -220,9 +220,9 @@ impl<'a, const D: usize> Nearby<'a, D> {
     }
 }
 
-/// How deep the surface lies that holds a hand which went through `level` layers [m]; none
-/// if nothing does.
+/// The depth of the layer that constrains the proxy after `level` layers were punctured [m];
+/// `None` if no layer is left.
 #[inline]
-fn sunk<const D: usize>(body: &Body<D>, level: usize) -> Option<f64> {
+fn layer_depth<const D: usize>(body: &Body<D>, level: usize) -> Option<f64> {
     if level == 0 { Some(0.0) } else { body.surface().strata.top(level).map(|top| top.depth) }
 }

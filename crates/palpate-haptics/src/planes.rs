@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The tangent planes that hold a proxy, learnt one evaluation at a time.
+//! The tangent planes that constrain a proxy, learnt one evaluation at a time.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,12 +9,13 @@ use palpate_field::{Point, Vector};
 
 use crate::half_spaces::{CAPACITY, HalfSpace, closest_point};
 
-/// Normals closer than this [rad] are one plane: two would meet in a line that rounding places.
+/// Normals closer than this [rad] count as one plane: rounding would decide where two such
+/// planes meet.
 const SAME_NORMAL: f64 = 1e-6;
 
-/// A plane is left behind if the surface fell away from it by more than this part of what its
-/// turn explains. On a circular arc the part is 1/2, past a sharp edge about 1, at a crease of
-/// two rounded walls it vanishes with the length of the step.
+/// A plane is dropped if the surface falls below it by more than this part of `‖displacement‖ ×
+/// angle between normals`. The ratio is 1/2 on a circular arc, about 1 beyond a sharp edge, and
+/// vanishes with the step length at a crease of two rounded walls.
 const LEFT_BEHIND: f64 = 0.25;
 
 /// A plane and the point of the surface at which it was tangent.
@@ -22,15 +23,15 @@ const LEFT_BEHIND: f64 = 0.25;
 struct Wall<const D: usize> {
     half_space: HalfSpace<D>,
     foot: Point<D>,
-    /// How far it was moved down since [m].
-    sunk: f64,
+    /// How far the plane was lowered since it was learnt [m].
+    lowered: f64,
 }
 
 /// Up to [`CAPACITY`] tangent planes of the offset surface about one place.
 ///
-/// A crease of a concave shape is where several planes hold the proxy, but a field shows one at
-/// a time; so planes are remembered over the evaluations of one tick. A remembered plane of a
-/// convex neighbour would be no constraint any more and is dropped.
+/// At a concave crease several planes constrain the proxy, but an evaluation shows only one; so
+/// the planes of one tick are kept. A plane of a convex neighbour no longer constrains the
+/// proxy and is dropped.
 #[derive(Clone, Debug)]
 pub(crate) struct Planes<const D: usize> {
     walls: [Wall<D>; CAPACITY],
@@ -40,30 +41,32 @@ pub(crate) struct Planes<const D: usize> {
 impl<const D: usize> Planes<D> {
     pub(crate) fn new() -> Self {
         let half_space = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
-        let none = Wall { half_space, foot: Vector::ZERO, sunk: 0.0 };
+        let none = Wall { half_space, foot: Vector::ZERO, lowered: 0.0 };
         Self { walls: [none; CAPACITY], count: 0 }
     }
 
-    /// Forgets all.
+    /// Forgets all planes.
     pub(crate) fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Whether there is one alone.
+    /// Whether exactly one plane is known.
     pub(crate) fn is_one(&self) -> bool {
         self.count == 1
     }
 
-    /// Whether there is none.
+    /// Whether no plane is known.
     pub(crate) fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Forgets the planes of one wall: those from whose foot to `foot` the normal turned to
-    /// `normal` as `is_turn` says it does along the wall.
+    /// Forgets the planes of the wall that has the unit normal `normal` at `foot`. A plane
+    /// belongs to that wall if `is_turn` accepts the displacement and the change of the normal
+    /// between the two feet.
     pub(crate) fn forget_wall(
         &mut self,
-        (foot, normal): (Point<D>, Vector<f64, D>),
+        foot: Point<D>,
+        normal: Vector<f64, D>,
         is_turn: impl Fn(Vector<f64, D>, Vector<f64, D>) -> bool,
     ) {
         self.retain(|wall| !is_turn(foot - wall.foot, normal - wall.half_space.normal));
@@ -73,7 +76,8 @@ impl<const D: usize> Planes<D> {
         self.walls.get(..self.count).unwrap_or(&[])
     }
 
-    /// Changes each plane, and keeps those of which `keep` says so.
+    /// Passes each plane to `keep`, which may change it, and drops the planes for which `keep`
+    /// returns `false`.
     fn retain(&mut self, mut keep: impl FnMut(&mut Wall<D>) -> bool) {
         let mut kept = 0;
         for i in 0..self.count {
@@ -91,11 +95,11 @@ impl<const D: usize> Planes<D> {
 
     /// Learns the tangent plane of the offset surface, which is `gap` [m] below `seen_from`.
     ///
-    /// Older planes are revised first. Where several walls meet in a crease, `f` is the least
-    /// of theirs, so a wall whose plane lies `h` below `seen_from` implies `gap ≤ h`. A larger
-    /// gap contradicts the plane by `gap − h`: it was that of a face left behind, and is
-    /// dropped, or a rounded wall's, and is moved down by the contradiction. Which one is told
-    /// by the angle between the normals (see [`LEFT_BEHIND`]).
+    /// Older planes are revised first. Where walls meet in a crease, `f` is the least of their
+    /// fields, so a wall whose plane lies `h` below `seen_from` implies `gap ≤ h`. A larger gap
+    /// contradicts the plane by `gap − h`. Either the plane belongs to a face left behind, and
+    /// is dropped, or its wall is rounded, and the plane is lowered by the contradiction. The
+    /// angle between the normals decides (see [`LEFT_BEHIND`]).
     #[inline(always)]
     pub(crate) fn learn(&mut self, seen_from: Point<D>, half_space: HalfSpace<D>, gap: f64) {
         let HalfSpace { point: foot, normal } = half_space;
@@ -108,31 +112,31 @@ impl<const D: usize> Planes<D> {
             // Written so that NaN drops the plane.
             let stays = turn > SAME_NORMAL * SAME_NORMAL && !is_behind && !excess.is_nan();
             if stays {
-                let sunk = excess.max(0.0);
-                wall.half_space.point -= wall.half_space.normal * sunk;
-                wall.sunk += sunk;
+                let lowered = excess.max(0.0);
+                wall.half_space.point -= wall.half_space.normal * lowered;
+                wall.lowered += lowered;
             }
             stays
         });
         if !self.add(half_space) {
-            self.replace_loosest(Wall { half_space, foot, sunk: 0.0 });
+            self.replace_loosest(Wall { half_space, foot, lowered: 0.0 });
         }
     }
 
-    /// Adds a plane to those that are known, as they are; `false` if there is no room.
+    /// Adds a plane without revising the older ones; `false` if there is no room.
     #[inline(always)]
     pub(crate) fn add(&mut self, HalfSpace { point: foot, normal }: HalfSpace<D>) -> bool {
         let Some(place) = self.walls.get_mut(self.count) else { return false };
-        // Field by field: a copy of a whole waits for its parts to be written.
+        // Field by field, because copying the whole struct would stall on store forwarding.
         place.half_space.point = foot;
         place.half_space.normal = normal;
         place.foot = foot;
-        place.sunk = 0.0;
+        place.lowered = 0.0;
         self.count += 1;
         true
     }
 
-    /// Puts `wall` in the place of the plane farthest below its foot.
+    /// Replaces the plane that lies farthest below the foot of `wall`.
     fn replace_loosest(&mut self, wall: Wall<D>) {
         let height = |t: &Wall<D>| t.half_space.height(wall.foot);
         let loosest = self.walls.iter_mut().max_by(|a, b| height(a).total_cmp(&height(b)));
@@ -141,30 +145,30 @@ impl<const D: usize> Planes<D> {
         }
     }
 
-    /// Drops the planes that were moved down by more than `limit` [m]. By how much they were at
-    /// most; none if there were none.
+    /// Drops the planes that were lowered by more than `limit` [m]. Returns the largest such
+    /// amount; `None` if no plane was dropped.
     ///
-    /// They are guesses: good enough to go by, not to rest on.
-    pub(crate) fn forget_sunk(&mut self, limit: f64) -> Option<f64> {
+    /// A lowered plane is an estimate: it may guide a move, but a proxy must not rest on it.
+    pub(crate) fn forget_lowered(&mut self, limit: f64) -> Option<f64> {
         let mut most = None;
         self.retain(|wall| {
-            let stays = wall.sunk <= limit;
+            let stays = wall.lowered <= limit;
             if !stays {
-                most = Some(wall.sunk.max(most.unwrap_or(0.0)));
+                most = Some(wall.lowered.max(most.unwrap_or(0.0)));
             }
             stays
         });
         most
     }
 
-    /// The unit vector that leads away from all planes, the mean of their normals; `None` if
-    /// they face each other.
+    /// The unit vector away from all planes, along the mean of their normals; `None` if the
+    /// planes face each other.
     pub(crate) fn up(&self) -> Option<Vector<f64, D>> {
         let normals = self.known().iter().map(|t| t.half_space.normal);
         normals.fold(Vector::ZERO, |sum, normal| sum + normal).normalized()
     }
 
-    /// The point closest to `x` above all planes; `None` if they leave no room.
+    /// The point closest to `x` above all planes; `None` if the planes have no common point.
     pub(crate) fn closest(&self, x: Point<D>) -> Option<Point<D>> {
         let none = HalfSpace { point: Vector::ZERO, normal: Vector::ZERO };
         let mut half_spaces = [none; CAPACITY];

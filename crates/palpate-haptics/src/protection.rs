@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A servo behind a device: where its workspace lies, what the device can render, and the
-//! safety chain of every contact point.
+//! Protection of a servo: the workspace map, what the device can render, and the safety chain
+//! of every contact point.
 
 use palpate_field::{Rotation, Vector};
 
@@ -16,8 +16,8 @@ use palpate_safety::VelocityEstimator;
 use palpate_safety::WorkspaceMap;
 use palpate_safety::turn_between;
 use palpate_safety::{
-    Acceptance, Accepted, Limits, PassivityReport, PortState, SafetyChain, SafetyOptions,
-    SafetyReport, WrenchChain,
+    Acceptance, Accepted, Limits, PassivityReport, PerMotion, PortState, SafetyChain,
+    SafetyOptions, SafetyReport, WrenchChain,
 };
 use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
 
@@ -40,21 +40,22 @@ use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Protection<const D: usize> {
-    /// The device.
+    /// The limits and properties of the device.
     pub profile: DeviceProfile,
-    /// Where its workspace lies.
+    /// The map between device and world coordinates.
     pub map: WorkspaceMap<D>,
-    /// What is done with bodies that the device cannot render.
+    /// How bodies that the device cannot render are treated.
     pub acceptance: Acceptance,
-    /// Whether the passivity controller acts; it observes anyway.
+    /// Whether the passivity controller acts; the passivity observer always runs.
     pub has_passivity_control: bool,
-    /// The time over which the force rises after the start and after placements [s].
+    /// The time over which the force rises after the start and after a proxy is placed anew
+    /// [s].
     pub rise_time: f64,
 }
 
 impl<const D: usize> Protection<D> {
-    /// For a device in the world as it is: all stages on, bodies scaled where they must be,
-    /// forces that rise in 0.1 s.
+    /// Protection with every stage on and the identity map. Bodies that the device cannot
+    /// render are made softer; forces rise within 0.1 s.
     #[must_use]
     pub fn new(profile: DeviceProfile) -> Self {
         Self {
@@ -66,12 +67,12 @@ impl<const D: usize> Protection<D> {
         }
     }
 
-    /// The bodies as the device renders them at `rate` [Hz]: stiffness and damping of each made
-    /// smaller by what its worst layer needs.
+    /// The bodies as the device renders them at `rate` [Hz]: the stiffness and damping of each
+    /// body are scaled by the factor that its worst layer needs.
     ///
     /// # Errors
     ///
-    /// As [`Accepted::new`] or, where refused, [`Accepted::strict`].
+    /// As [`Accepted::new`], or [`Accepted::strict`] with [`Acceptance::Strict`].
     pub fn accept(
         &self,
         mut bodies: Bodies<D>,
@@ -95,8 +96,8 @@ impl<const D: usize> Protection<D> {
         Ok((bodies, all))
     }
 
-    /// The same for all that a servo renders: its bodies alone, or with the coupling that is
-    /// requested of its tool.
+    /// Accepts everything that a servo renders: its bodies, and with a tool the requested
+    /// virtual coupling.
     pub(crate) fn accepted_bodies(
         &self,
         bodies: Bodies<D>,
@@ -110,9 +111,9 @@ impl<const D: usize> Protection<D> {
         Ok(AcceptedBodies { bodies, coupling: None, accepted })
     }
 
-    /// The same for bodies and a tool together: what the worst layer through the coupling needs
-    /// makes all of them softer. Where the device gives a torque, the second entry says what
-    /// became of the coupling's angular stiffness and damping.
+    /// Accepts bodies and the coupling of a tool together: the factor that the worst layer in
+    /// series with the coupling needs scales all of them. If the device gives a torque, a
+    /// second entry holds the accepted angular stiffness and damping.
     fn accept_tool(
         &self,
         mut bodies: Bodies<D>,
@@ -132,26 +133,26 @@ impl<const D: usize> Protection<D> {
         }
         let mut accepted: Vec<_> = worst.into_iter().collect();
         if let Some(turning) = self.torques() {
-            let turning =
-                self.accept_turning(&layers(&bodies)?, &mut coupling, (turning, rate));
+            let turning = self.accept_turning(&layers(&bodies)?, &mut coupling, turning, rate);
             accepted.push(turning?);
         }
         Ok(AcceptedBodies { bodies, coupling: Some(coupling), accepted })
     }
 
-    /// What the device can do about its axes, if it gives a torque.
+    /// The rotational properties of a device that gives a torque.
     fn torques(&self) -> Option<&TurningProfile> {
-        // Written so that NaN gives none.
+        // Written so that NaN gives `None`.
         self.profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0)
     }
 
-    /// Makes a tool's coupling turn as the device can, on the stiffest of the bodies' layers; what
-    /// that leaves of the device's damping bears the bodies' dampers, on arms as long as it can.
+    /// Scales the angular coupling to what the device can render on the stiffest layer. The
+    /// device damping that remains limits the lever arms on which the bodies' dampers act.
     fn accept_turning(
         &self,
         layers: &[Impedance],
         coupling: &mut Coupling,
-        (turning, rate): (&TurningProfile, f64),
+        turning: &TurningProfile,
+        rate: f64,
     ) -> Result<Accepted, HapticsError> {
         let (mut part, mut damping) = (0.0_f64, 0.0_f64);
         for layer in layers {
@@ -159,7 +160,7 @@ impl<const D: usize> Protection<D> {
             damping = damping.max(layer.damping());
         }
         let limits = Limits::about(turning);
-        // Torques of the world are so many times those at the device.
+        // A torque at the device is this multiple of the torque in the world.
         let scale = 1.0 / self.map.scale();
         let of =
             |impedance, acceptance| Accepted::of(impedance, scale, &limits, acceptance, rate);
@@ -185,7 +186,7 @@ impl<const D: usize> Protection<D> {
         Ok(Accepted::of(impedance, scale, &limits, self.acceptance, rate)?)
     }
 
-    /// The port of one contact point.
+    /// Makes the port of one contact point.
     pub(crate) fn port(
         &self,
         bodies: &AcceptedBodies<D>,
@@ -200,7 +201,7 @@ impl<const D: usize> Protection<D> {
         })
     }
 
-    /// What is between a tool and a device that turns; none of a device that does not.
+    /// Makes the port between a tool and a device with rotation; `None` for other devices.
     pub(crate) fn turning(
         &self,
         bodies: &AcceptedBodies<D>,
@@ -208,9 +209,11 @@ impl<const D: usize> Protection<D> {
     ) -> Result<Option<TurningPort<D>>, HapticsError> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
         let chain = if let Some((along, about)) = bodies.wrench() {
-            let limits = [&Limits::along(&self.profile), &Limits::about(turning)];
+            let (along_limits, about_limits) =
+                (Limits::along(&self.profile), Limits::about(turning));
+            let limits = PerMotion { along: &along_limits, about: &about_limits };
             let options = self.safety_options(along.impedance);
-            let accepted = [along.clone(), about.clone()];
+            let accepted = PerMotion { along: along.clone(), about: about.clone() };
             Some(WrenchChain::new(limits, accepted, &options, rate)?)
         } else {
             None
@@ -224,7 +227,7 @@ impl<const D: usize> Protection<D> {
         }))
     }
 
-    /// For what was accepted already.
+    /// The options of a safety chain for an impedance that was already accepted.
     fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
         SafetyOptions {
             scale: self.map.scale(),
@@ -236,23 +239,23 @@ impl<const D: usize> Protection<D> {
     }
 }
 
-/// The layers of all bodies.
+/// Stiffness and damping of every layer of every body.
 fn layers<const D: usize>(bodies: &Bodies<D>) -> Result<Vec<Impedance>, HapticsError> {
     bodies.bodies().iter().flat_map(|body| body.surface().impedances()).collect()
 }
 
-/// What is between one contact point and the device.
+/// The port between one contact point and the device.
 #[derive(Clone, Debug)]
 pub(crate) struct Port<const D: usize> {
     chain: SafetyChain<D>,
     estimator: VelocityEstimator<D>,
-    /// Whether the device sees its position in steps, so that its velocity is estimated.
+    /// Whether encoder steps make it necessary to estimate the velocity.
     has_steps: bool,
 }
 
 impl<const D: usize> Port<D> {
-    /// The state of the device with the best velocity that is known: the estimate, where the
-    /// device sees steps, or its own.
+    /// The state of the device. Its velocity is estimated from positions if the device has
+    /// encoder steps, and is the device's own otherwise.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn state(&mut self, state: PointState<D>) -> PointState<D> {
@@ -273,7 +276,7 @@ impl<const D: usize> Port<D> {
         self.chain.step(wanted, state)
     }
 
-    /// Renders what was accepted anew.
+    /// Replaces the accepted impedance.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn renew(&mut self, accepted: &Accepted) {
@@ -304,23 +307,23 @@ impl<const D: usize> Port<D> {
     }
 }
 
-/// What is between a tool and a device that turns, beside the [`Port`] of its contact point.
+/// The rotational port between a tool and a device, beside the [`Port`] of its contact point.
 #[derive(Clone, Debug)]
 pub(crate) struct TurningPort<const D: usize> {
-    /// The chain of force and torque, in place of the port's; none of a device that gives no
-    /// torque.
+    /// The safety chain of force and torque, which replaces the chain of the [`Port`]; `None`
+    /// for a device that gives no torque.
     pub(crate) chain: Option<WrenchChain<D>>,
     estimator: VelocityEstimator<3>,
-    /// Whether the device sees how it is turned in steps.
+    /// Whether the orientation has encoder steps.
     has_steps: bool,
     last: Option<Rotation<D>>,
-    /// The sum of all turns so far [rad].
+    /// The sum of all rotation vectors so far [rad].
     angle: Vector<f64, 3>,
 }
 
 impl<const D: usize> TurningPort<D> {
-    /// How the device is turned, with the best angular velocity that is known, as
-    /// [`Port::state`]; and the sum of all turns so far [rad].
+    /// Orientation and angular velocity of the device, the latter estimated as in
+    /// [`Port::state`], and the sum of all rotation vectors so far [rad].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn state(

@@ -3,13 +3,14 @@
 
 //! The proxy: a ball that follows the device point but cannot enter the bodies.
 //!
-//! Zilles and Salisbury, "A constraint-based god-object method for haptic display" (1995);
-//! Ruspini, Kolarov and Khatib, "The haptic display of complex graphical environments" (1997),
-//! who gave it a radius; Salisbury and Tarr, "Haptic rendering of surfaces defined by implicit
-//! functions" (1997), who slid it over `f = 0`. The sweep and the certified slide are ours.
+//! Sources: Zilles and Salisbury, "A constraint-based god-object method for haptic display"
+//! (1995); Ruspini, Kolarov and Khatib, "The haptic display of complex graphical environments"
+//! (1997), for the radius; Salisbury and Tarr, "Haptic rendering of surfaces defined by
+//! implicit functions" (1997), for the slide over `f = 0`. The swept motion and the certified
+//! slide are our own.
 //!
-//! A body that moves carries the proxy that touches it, and pushes one that it meets: the way
-//! of the proxy as the body sees it is swept like any other.
+//! A moving body carries a proxy that touches it and pushes a proxy that it meets. To find the
+//! meeting point, the proxy's motion in body coordinates is swept.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -17,36 +18,37 @@ use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::bodies::Body;
 
-use crate::contact::{Ground, slide};
+use crate::contact::{Goal, LocalSurface, Place, slide};
 use crate::error::HapticsError;
-use crate::friction::{Hold, drag};
-use crate::nearby::{Nearby, Pierced};
+use crate::friction::{Held, Hold, drag};
+use crate::nearby::{Nearby, Punctured};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
 use palpate_safety::{NumberError, not_negative};
 
-/// The evaluations a tick may cost, unless asked otherwise. Sliding takes one to three, a corner
-/// up to eight, a strike about ten; the rest is for grazing flights, slots and fast hands.
+/// The default budget of evaluations in a tick. Sliding takes one to three, a corner up to
+/// eight, an impact about ten; the rest is for grazing motions, slots and fast hands.
 pub const DEFAULT_BUDGET: u32 = 64;
 
-/// The fewest evaluations a tick can work with: two to see a surface, one to leave it.
+/// The least budget: two evaluations to find a surface, one to leave it, one in reserve.
 const LEAST_BUDGET: u32 = 4;
 
-/// A flight whose next safe step is below this part of the way left goes on along the surface it
-/// meets: steps along a line that grazes or hits it would shrink without end.
+/// When the next safe step is below this part of the remaining path, the proxy stops advancing
+/// on a straight line and slides: steps on a line that grazes or hits the surface would shrink
+/// without end.
 const WORTH_FLYING: f64 = 0.1;
 
-/// A body is met where its next safe step is below this part of a skin.
+/// A moving body meets the proxy where the next safe step is below this part of a skin.
 const WORTH_ADVANCING: f64 = 0.01;
 
-/// A body that would carry the proxy to a place this many times as far from the origin leaves
-/// it behind: so far away, rounding would hide the walls that are here.
+/// A body does not carry the proxy to a place this many times as far from the origin as proxy,
+/// device and bodies are: so far away, rounding would hide their walls.
 const FARTHEST_CARRIED: f64 = 1e3;
 
-/// The ball that touches: the proxy's radius, and what a tick may cost.
+/// The ball that touches: the radius of the proxy and the budget of a tick.
 ///
-/// The force stays continuous over a convex edge if the radius is at least the depth pressed to;
-/// a radius of `max_force / stiffness` is enough for every force a device can give.
+/// The force stays continuous over a convex edge if the radius is at least the depth. A radius
+/// of `max_force / stiffness` suffices for every force that a device can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
     radius: f64,
@@ -54,10 +56,10 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// A ball of `radius` [m]; a point if it is zero.
+    /// A ball of `radius` [m]; a radius of zero makes a point.
     ///
-    /// A point is held by walls thicker than 1e-4 of the radius of the shape's bounding ball; a ball by any
-    /// wall.
+    /// A point does not cross walls thicker than 1e-4 of the radius of the shape's bounding
+    /// ball; a ball crosses no wall.
     ///
     /// # Errors
     ///
@@ -67,10 +69,10 @@ impl Probe {
         Ok(Self { radius, budget: DEFAULT_BUDGET })
     }
 
-    /// The same, with at most `budget` evaluations of the shape a tick.
+    /// This probe with at most `budget` evaluations of the shape in a tick.
     ///
-    /// A tick that would need more leaves its proxy behind, outside the shape, to catch up in
-    /// the next ones.
+    /// When a tick needs more, the proxy lags behind, outside the shape, and catches up in
+    /// later ticks.
     ///
     /// # Errors
     ///
@@ -90,7 +92,7 @@ impl Probe {
         self.radius
     }
 
-    /// The most evaluations a tick may cost.
+    /// The most evaluations in a tick.
     #[must_use]
     pub fn budget(&self) -> u32 {
         self.budget
@@ -98,29 +100,29 @@ impl Probe {
 }
 
 impl Default for Probe {
-    /// A ball of 2 mm: wide enough for 1 N at 500 N/m to pass every edge smoothly.
+    /// A ball of 2 mm radius: at 500 N/m the force stays continuous over every edge up to 1 N.
     fn default() -> Self {
         Self { radius: 0.002, budget: DEFAULT_BUDGET }
     }
 }
 
-/// Where a proxy is after a tick. World coordinates.
+/// The state of a proxy after a tick, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following<const D: usize> {
-    /// The proxy: on or outside the surface offset by the probe's radius; the device point
-    /// itself where nothing is touched, as far as the field's promise goes [m].
+    /// The proxy [m], on or outside the surface offset by the probe's radius. Without contact
+    /// it is the device point, unless the device point lies outside the region of the field's
+    /// promise.
     pub proxy: Point<D>,
     /// The unit normal of the surface last seen, pointing out.
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// Whose surface was last seen: the number of the body.
+    /// The index of the body whose surface was last seen.
     pub body: u32,
-    /// `true` if friction lets the proxy move along the surface; `false` if it holds it, or
-    /// there is none.
+    /// `true` if the proxy slips; `false` if it sticks, or if there is no friction.
     pub is_slipping: bool,
-    /// `true` if the force should rise gently: the proxy was placed anew because a body
-    /// covered it, in the first tick or after a change, or a body moved onto it.
+    /// `true` if the force must rise gently, because the proxy was placed anew: a body covered
+    /// the proxy (in the first tick or after bodies were replaced) or moved onto it.
     pub placed: bool,
     /// Evaluations of the field in this tick.
     pub evaluations: u32,
@@ -151,22 +153,22 @@ pub struct Following<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct Proxy<const D: usize> {
     probe: Probe,
-    /// The last point found on or outside the offset surface; none before the first tick.
+    /// The last point found on or outside the offset surface; `None` before the first tick.
     at: Option<Sample<D>>,
-    /// Whether what is known of that point is of another field.
+    /// Whether the sample in `at` was taken from a field that has changed since.
     is_stale: bool,
     /// The device point of the last tick [m].
     device: Point<D>,
     normal: Vector<f64, D>,
     contact: bool,
     hold: Hold,
-    /// What is known of the surface where it last was.
-    ground: Ground<D>,
-    pierced: Pierced,
+    /// The local model of the surface near the proxy.
+    local: LocalSurface<D>,
+    punctured: Punctured,
 }
 
 impl<const D: usize> Proxy<D> {
-    /// A proxy that starts where the device point first is.
+    /// A proxy that starts at the first device point.
     #[must_use]
     pub fn new(probe: Probe) -> Self {
         // Up: y in the plane and in space.
@@ -179,8 +181,8 @@ impl<const D: usize> Proxy<D> {
             normal,
             contact: false,
             hold: Hold::None,
-            ground: Ground::new(),
-            pierced: Pierced::default(),
+            local: LocalSurface::new(),
+            punctured: Punctured::default(),
         }
     }
 
@@ -190,42 +192,45 @@ impl<const D: usize> Proxy<D> {
         self.probe
     }
 
-    /// Forgets what is known of the bodies: they changed.
+    /// Forgets the bodies, because they were replaced.
     ///
-    /// The next tick looks again where the proxy is, and places it anew if it is covered.
+    /// The next tick evaluates the new bodies at the proxy, and places the proxy anew if a body
+    /// covers it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
         self.is_stale = true;
-        self.pierced = Pierced::default();
+        self.punctured = Punctured::default();
     }
 
-    /// Goes through the layer of a body that holds the proxy; `false` if it is through as many
-    /// bodies as there is room for.
+    /// Punctures the layer of a body that constrains the proxy; `false` if no more bodies can
+    /// be recorded.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn pierce(&mut self, body: u32) -> bool {
+    pub(crate) fn puncture(&mut self, body: u32) -> bool {
         self.is_stale = true;
-        self.pierced.pierce(body)
+        self.punctured.puncture(body)
     }
 
-    /// How many layers of a body it went through.
+    /// The number of punctured layers of a body.
     pub(crate) fn level(&self, body: u32) -> usize {
-        self.pierced.level(body)
+        self.punctured.level(body)
     }
 
     /// Follows the device point to `device` [m] as far as the bodies let it.
     ///
-    /// One evaluation in free space. The proxy moves only along ways that are proven free, so
-    /// it crosses no wall at any speed; it rests at points with `f ≥ r − 1e-9` of the size of
-    /// the ball around all bodies, with the field's value `f` and the probe's radius `r`.
+    /// Free space costs one evaluation. The proxy moves only along paths that are proven free,
+    /// so it crosses no wall at any speed. It rests at points with `f ≥ r − 1e-9 R`, with the
+    /// field's value `f`, the probe's radius `r` and the radius `R` of the ball around all
+    /// bodies.
     ///
-    /// Of a field that outside its surface promises a Lipschitz constant in a region only
-    /// ([`Promise::region`](palpate_field::Promise::region)), nothing is known beyond: the proxy
-    /// stays in the region, at the point of it closest to the device where that is free. A device
-    /// point that starts outside has no proxy, and touches nothing, until it enters.
+    /// Some fields promise a Lipschitz constant outside their surface only in a region
+    /// ([`Promise::region`](palpate_field::Promise::region)). The proxy then stays in the
+    /// region, at the free point closest to the device. A device point that starts outside the
+    /// region touches nothing until it enters.
     ///
-    /// A device point that is not finite, or beyond 1e15 m, moves nothing and touches nothing.
+    /// If a coordinate of the device point is not finite or exceeds 1e15 m, the proxy stays in
+    /// place and there is no contact.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; evaluates the field at most
     /// [`Probe::budget`] times.
@@ -233,10 +238,10 @@ impl<const D: usize> Proxy<D> {
         let last = self.at.as_ref().map_or(device, |at| at.point);
         // Written so that NaN fails.
         if !device.0.iter().all(|x| x.abs() <= LARGEST_LENGTH) {
-            // What moves meanwhile is not where it was when the hand comes back.
+            // Bodies that move in this tick make the sample stale.
             self.is_stale |= nearby.has_moved();
             let following = self.following(last, false, 0);
-            // Of bodies that were replaced, the number may be gone.
+            // After a replacement the body index may be out of range.
             let body = nearby.body(following.body).map_or(0, |_| following.body);
             return Following { contact: false, body, ..following };
         }
@@ -249,10 +254,10 @@ impl<const D: usize> Proxy<D> {
         self.device = device;
         let moved = moved.max(squared(carried - last)).sqrt();
         let Probe { radius, budget } = self.probe;
-        let mut sampler = Sampler::new((nearby, self.pierced), radius, budget, extent);
+        let mut sampler = Sampler::new(nearby, self.punctured, radius, budget, extent);
 
-        if !self.pierced.is_empty() {
-            self.heal(&mut sampler);
+        if !self.punctured.is_empty() {
+            self.restore(&mut sampler);
         }
         let mut is_pushed = false;
         if nearby.has_moved() && self.at.is_some() {
@@ -264,7 +269,7 @@ impl<const D: usize> Proxy<D> {
             self.at = self.look_again(&mut sampler, last);
         }
         if self.is_stale || nearby.has_moved() {
-            self.ground.forget();
+            self.local.forget();
         }
         self.is_stale = false;
         let is_known = self.at.as_ref().is_some_and(|at| at.gap >= -sampler.tolerance());
@@ -276,7 +281,7 @@ impl<const D: usize> Proxy<D> {
             placed |= is_moved;
         }
         let goal = sampler.within_region(device);
-        self.pursue(&mut sampler, (goal, moved));
+        self.pursue(&mut sampler, Goal { device: goal, motion: moved });
         let proxy = self.at.as_ref().map_or(device, |at| at.point);
         self.following(proxy, placed, sampler.evaluations())
     }
@@ -293,8 +298,8 @@ impl<const D: usize> Proxy<D> {
         }
     }
 
-    /// Where the body that is touched carries the proxy: away from `last`, but not out of the
-    /// neighbourhood of it, the device and the bodies.
+    /// Where the touched body carries the proxy from `last`; at most [`FARTHEST_CARRIED`] times
+    /// as far from the origin as proxy, device and bodies.
     #[inline(never)]
     fn carried(&mut self, nearby: &Nearby<'_, D>, [last, device]: [Point<D>; 2]) -> Point<D> {
         let touched = self.at.filter(|_| self.contact).and_then(|at| nearby.body(at.body));
@@ -308,7 +313,7 @@ impl<const D: usize> Proxy<D> {
         carried
     }
 
-    /// What is there at the proxy, of which nothing is known any more.
+    /// Evaluates the field at `at` again, because the old sample is stale.
     #[inline(never)]
     fn look_again(&self, sampler: &mut Sampler<'_, D>, at: Point<D>) -> Option<Sample<D>> {
         let body = self.at.map_or(0, |at| at.body);
@@ -316,25 +321,25 @@ impl<const D: usize> Proxy<D> {
         Some(sampler.gradient(at).unwrap_or(unknown))
     }
 
-    /// Lets layers hold again that the hand is away from.
+    /// Restores the punctured layers that the hand has left.
     #[inline(never)]
-    fn heal(&mut self, sampler: &mut Sampler<'_, D>) {
+    fn restore(&mut self, sampler: &mut Sampler<'_, D>) {
         let (device, radius) = (self.device, self.probe.radius);
-        let before = self.pierced;
-        self.pierced.heal(|index, level| {
+        let before = self.punctured;
+        self.punctured.restore(|index, level| {
             let Some(body) = sampler.nearby().body(index) else { return true };
             let pop = level.checked_sub(1).and_then(|top| body.surface().strata.top(top));
             let away = pop.and_then(|top| top.pop_through).map_or(0.0, |pop| pop.distance);
             sampler.spend(device).is_some() && body.distance(device) - radius > away
         });
-        if self.pierced != before {
+        if self.punctured != before {
             self.is_stale = true;
-            sampler.pierce(self.pierced);
+            sampler.puncture(self.punctured);
         }
     }
 
-    /// Where other bodies stop a proxy that its body carries from one place to another, or
-    /// push it to; none if it meets none.
+    /// Where other bodies stop or push a proxy that its own body carries from one place to
+    /// another; `None` if the proxy meets no other body.
     #[inline(never)]
     fn pushed(
         &self,
@@ -357,9 +362,9 @@ impl<const D: usize> Proxy<D> {
         pushed
     }
 
-    /// A point on or outside the offset surface near `from`, and whether it had to be moved
-    /// there: up the gradient by `(r − f) / ‖∇f‖` until it is out. None if half the budget does
-    /// not lead out.
+    /// A point on or outside the offset surface near `from`, and whether it differs from
+    /// `from`. The point moves up the gradient by `(r − f) / ‖∇f‖` until it is outside; `None`
+    /// if half the budget does not suffice.
     #[inline(never)]
     fn place(
         &mut self,
@@ -379,34 +384,34 @@ impl<const D: usize> Proxy<D> {
         (None, false)
     }
 
-    /// Flies straight to the device where that is free, and slides from where it is not. A proxy
-    /// that has no place touches nothing.
-    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, (device, moved): (Point<D>, f64)) {
-        let Self { at, normal, contact, hold, ground, pierced, .. } = self;
+    /// Moves the proxy straight to the device while the path is free, then slides. A proxy
+    /// without a place touches nothing.
+    fn pursue(&mut self, sampler: &mut Sampler<'_, D>, goal: Goal<D>) {
+        let Self { at, normal, contact, hold, local, punctured, .. } = self;
         let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
         loop {
-            let way = device - here.point;
+            let way = goal.device - here.point;
             let squared = way.dot(way);
             let free = sampler.free_radius(here);
             let is_free = free > 0.0 && free * free > squared;
             let next = if is_free {
-                device
+                goal.device
             } else if free > 0.0 && free * free > WORTH_FLYING * WORTH_FLYING * squared {
-                // Conservative advancement (Mirtich 1996): nothing is within `free`.
+                // Conservative advancement (Mirtich 1996): no surface is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let place = (&mut *here, &mut *normal);
-                let friction = friction(sampler, place.0, (squared.sqrt(), pierced));
+                let friction = friction(sampler, here, squared.sqrt(), punctured);
                 match friction.filter(|_| was_held) {
                     Some(friction) => {
-                        let held = (friction, how);
-                        (*contact, *hold) = drag(sampler, place, (device, moved), held, ground);
+                        let held = Held { friction, hold: how };
+                        (*contact, *hold) =
+                            drag(sampler, Place { here, normal }, goal, held, local);
                     }
-                    None => *contact = slide(sampler, place, (device, moved), ground),
+                    None => *contact = slide(sampler, Place { here, normal }, goal, local),
                 }
                 *contact =
-                    *contact || was_held && is_held_still(sampler, (here, normal), device);
+                    *contact || was_held && is_held_still(sampler, here, normal, goal.device);
                 if !*contact {
                     *hold = Hold::None;
                 }
@@ -424,38 +429,42 @@ impl<const D: usize> Proxy<D> {
     }
 }
 
-/// Whether a surface that held a proxy still does where it may have run out of budget on its way:
-/// the hand is below its tangent plane. Beyond a thin wall a hand is outside the body again.
+/// Whether the surface still constrains a proxy whose search may have run out of budget: the
+/// device is below the tangent plane. Beyond a thin wall the device point is outside the body
+/// again, so the field's sign alone does not decide.
 ///
-/// A proxy that is at the device is no lower than two tolerances.
+/// The device point counts as below only beyond two tolerances, so that a proxy at the device
+/// point is not in contact.
 #[cold]
 #[inline(never)]
 fn is_held_still<const D: usize>(
     sampler: &Sampler<'_, D>,
-    (here, normal): (&Sample<D>, &Vector<f64, D>),
+    here: &Sample<D>,
+    normal: &Vector<f64, D>,
     device: Point<D>,
 ) -> bool {
     let (normal, gap) = sampler.tangent(here, *normal);
     normal.dot(device - here.point) + gap < -2.0 * sampler.tolerance()
 }
 
-/// The friction of the surface at a sample that the device is `depth` from [m].
+/// The friction of the surface at a sample; the device is at distance `depth` [m] from the
+/// sample.
 fn friction<const D: usize>(
     sampler: &Sampler<'_, D>,
     at: &Sample<D>,
-    (depth, pierced): (f64, &Pierced),
+    depth: f64,
+    punctured: &Punctured,
 ) -> Option<Friction> {
     let strata = &sampler.nearby().body(at.body)?.surface().strata;
-    Some(strata.at(pierced.level(at.body), depth).friction)
+    Some(strata.at(punctured.level(at.body), depth).friction)
 }
 
-/// Where a body meets a proxy on its way in this tick, and takes it to; none if it does not
-/// meet it.
+/// Where a moving body takes a proxy that it meets in this tick; `None` if they do not meet.
 ///
-/// As the body sees it, the proxy moves along a straight line. Conservative advancement along
-/// it (Mirtich 1996) misses nothing; it ends, and the body takes the proxy along, where it is
-/// nearly there. What stays beside the ball around a body costs no evaluation: twenty bodies
-/// that move would leave none for the one that is touched.
+/// In body coordinates the proxy moves along a straight line. Conservative advancement along
+/// this line (Mirtich 1996) misses no surface; where it nearly reaches the surface, the body
+/// takes the proxy along. A proxy that misses the body's bounding ball costs no evaluation:
+/// otherwise twenty moving bodies would use up the budget.
 fn met<const D: usize>(
     sampler: &mut Sampler<'_, D>,
     body: &Body<D>,
@@ -476,7 +485,7 @@ fn met<const D: usize>(
         let (value, gradient) = body.shape().distance_gradient(at);
         let free = (value - sampler.radius() - sampler.tolerance()) / lipschitz;
         if free <= WORTH_ADVANCING * sampler.skin() {
-            // What it touches and leaves, it does not push.
+            // A body that touches the proxy and moves away does not push it.
             return (way.dot(gradient) < 0.0).then_some(taken);
         }
         gone += free;

@@ -1,76 +1,77 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Metered evaluation of what is near, and how far a probe may move after it.
+//! Evaluation of near bodies within a budget, and the safe motion that each evaluation proves.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
 
-use crate::nearby::{Nearby, Pierced};
+use crate::nearby::{Nearby, Punctured};
 
-/// How deep the proxy's offset may be violated at rest, as a part of the size of the scene.
-/// Far above the rounding of a kernel, far below what a hand can feel (0.1 nm at 1 m).
+/// How far below the offset surface a proxy may rest, as a part of the size of the scene. Far
+/// above the rounding of a kernel, far below what a hand can feel (0.1 nm at 1 m).
 const TOLERANCE: f64 = 2.5e-10;
 
 /// Evaluations may err by this multiple of the promised rounding before a point counts as
 /// inside: once for the value, once for the point it is compared with, doubled.
 const ROUNDINGS: f64 = 4.0;
 
-/// The skin of a probe without a radius, as a part of the size of the scene. Larger slides
-/// faster along creases; walls thinner than two skins would not hold it.
+/// The skin of a probe without a radius, as a part of the size of the scene. A larger skin
+/// speeds up slides along creases, but such a probe crosses walls thinner than two skins.
 const POINT_SKIN: f64 = 5e-5;
 
-/// A probe smaller than this part of the scene is treated as a point: its own radius would make
-/// it crawl.
+/// A probe smaller than this part of the scene is treated as a point: a skin as small as its
+/// radius would allow only tiny steps.
 const POINT_RADIUS: f64 = 1e-6;
 
-/// Below this part of the Lipschitz constant a gradient says nothing about the surface: it is
-/// that of a ridge, a blend or a centre.
+/// A gradient shorter than this part of the Lipschitz constant says nothing about the surface:
+/// it belongs to a ridge, a blend or a centre.
 const LEAST_SLOPE: f64 = 0.01;
 
-/// A goal beyond the region of the field's promise is sought this part of its radius within it:
-/// far more than rounding can carry it out again.
+/// A goal beyond the region of the field's promise is moved this part of the radius inside the
+/// region, so that rounding cannot carry it out again.
 const REGION_EDGE: f64 = 1e-9;
 
-/// Evaluations that are kept for the end of a tick that spent its budget.
+/// Evaluations reserved for the end of a tick that used up its budget.
 const IN_RESERVE: u32 = 1;
 
 /// An evaluated point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample<const D: usize> {
-    /// Where [m].
+    /// The place [m].
     pub(crate) point: Point<D>,
     /// The field's value minus the probe's radius [m]: zero on the offset surface.
     pub(crate) gap: f64,
-    /// The plane that the offset surface lies along; none if no gradient was asked for.
+    /// The tangent plane; `None` if no gradient was evaluated.
     pub(crate) tangent: Option<Tangent<D>>,
-    /// Whose surface is nearest, as far as the field says.
+    /// The index of the body whose field is least.
     pub(crate) body: u32,
 }
 
-/// The plane that the offset surface lies along, to first order.
+/// The tangent plane of the offset surface, to first order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent<const D: usize> {
     /// The unit normal; zero if the gradient is too small to have a direction.
     pub(crate) normal: Vector<f64, D>,
-    /// How far the plane is below the point, along its normal [m].
+    /// How far the plane lies below the point, along the normal [m].
     pub(crate) gap: f64,
 }
 
-/// Bodies with a budget of evaluations and the lengths that follow from them and the probe.
+/// Bodies with a budget of evaluations, and the lengths that follow from bodies and probe.
 ///
 /// The *offset surface* is `f = r` with the probe's radius `r`. The centre of the probe may dip
 /// below it during a move, by less than a *skin*, and never rests there. With a radius the skin
 /// is the radius: the centre never enters the shape itself.
 ///
-/// Of a field that outside its surface promises a Lipschitz constant in a region only, points
-/// beyond the region are not evaluated: nothing is proven there. A ball is convex, so straight
-/// moves between evaluated points stay in the region, and the constant holds all along them.
+/// If a field promises its Lipschitz constant outside the surface only in a region, points
+/// beyond the region are not evaluated: no bound holds there. The region is a ball and so
+/// convex: straight moves between evaluated points stay inside, and the constant holds along
+/// them.
 #[derive(Debug)]
 pub(crate) struct Sampler<'a, const D: usize> {
     nearby: &'a Nearby<'a, D>,
-    pierced: Pierced,
+    punctured: Punctured,
     radius: f64,
     skin: f64,
     tolerance: f64,
@@ -81,15 +82,16 @@ pub(crate) struct Sampler<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Sampler<'a, D> {
-    /// For a probe of `radius` [m] that moves between points at most `extent` [m] from the
-    /// origin.
+    /// A sampler for a probe of `radius` [m] that moves between points at most `extent` [m]
+    /// from the origin.
     pub(crate) fn new(
-        (nearby, pierced): (&'a Nearby<'a, D>, Pierced),
+        nearby: &'a Nearby<'a, D>,
+        punctured: Punctured,
         radius: f64,
         budget: u32,
         extent: f64,
     ) -> Self {
-        // Bodies without bounds have no size; the place where they are touched has.
+        // Unbounded bodies have no size, so the extent of the motion takes its place.
         let size = nearby.size().unwrap_or(extent);
         let rounding = ROUNDINGS * nearby.rounding_within(extent);
         let tolerance = f64::max(TOLERANCE * size, rounding);
@@ -97,17 +99,17 @@ impl<'a, const D: usize> Sampler<'a, D> {
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
         let skin = skin.max(4.0 * tolerance);
         let per_slope = 1.0 / nearby.lipschitz();
-        Self { nearby, pierced, radius, skin, tolerance, per_slope, budget, evaluations: 0 }
+        Self { nearby, punctured, radius, skin, tolerance, per_slope, budget, evaluations: 0 }
     }
 
-    /// What is near.
+    /// The near bodies.
     pub(crate) fn nearby(&self) -> &'a Nearby<'a, D> {
         self.nearby
     }
 
-    /// From now on a hand is through these layers.
-    pub(crate) fn pierce(&mut self, pierced: Pierced) {
-        self.pierced = pierced;
+    /// Sets the punctured layers.
+    pub(crate) fn puncture(&mut self, punctured: Punctured) {
+        self.punctured = punctured;
     }
 
     /// The probe's radius [m].
@@ -130,37 +132,38 @@ impl<'a, const D: usize> Sampler<'a, D> {
         0.25 * self.skin
     }
 
-    /// How often the field was evaluated.
+    /// The number of evaluations so far.
     pub(crate) fn evaluations(&self) -> u32 {
         self.evaluations
     }
 
-    /// The point closest to `goal` of which something is proven.
+    /// The point closest to `goal` at which the promises of the near bodies hold.
     pub(crate) fn within_region(&self, goal: Point<D>) -> Point<D> {
         self.nearby.within_regions(goal, REGION_EDGE)
     }
 
-    /// The value at `point`; `None` if the budget is spent, the field is not finite there, or
-    /// nothing is proven of it.
+    /// The value at `point`; `None` if the budget is spent, the value is not finite, or no
+    /// promise holds there.
     pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let (value, body) = self.nearby.distance(point, &self.pierced);
+        let (value, body) = self.nearby.distance(point, &self.punctured);
         let gap = value - self.radius;
         gap.is_finite().then_some(Sample { point, gap, tangent: None, body })
     }
 
-    /// The value and gradient at `point`, likewise.
+    /// The value and the gradient at `point`; `None` in the cases of
+    /// [`distance`](Self::distance).
     #[inline(always)]
     pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let seen = self.nearby.gradient(point, &self.pierced);
+        let seen = self.nearby.gradient(point, &self.punctured);
         let gap = seen.distance - self.radius;
         let slope = seen.gradient.norm();
         // Written so that NaN is refused.
         if !(gap + slope).is_finite() {
             return None;
         }
-        // Dividing by less would throw the proxy far away.
+        // Dividing by a smaller slope would throw the proxy far away.
         let tangent = if slope * self.per_slope > LEAST_SLOPE {
             let per_slope = 1.0 / slope;
             Tangent { normal: seen.gradient * per_slope, gap: gap * per_slope }
@@ -170,7 +173,8 @@ impl<'a, const D: usize> Sampler<'a, D> {
         Some(Sample { point, gap, tangent: Some(tangent), body: seen.body })
     }
 
-    /// Counts an evaluation at `point`, if there is one left and something is proven there.
+    /// Counts an evaluation at `point`; `None` if the budget is spent or no promise holds
+    /// there.
     pub(crate) fn spend(&mut self, point: Point<D>) -> Option<()> {
         if self.evaluations + IN_RESERVE >= self.budget || !self.nearby.is_proven(point) {
             return None;
@@ -179,26 +183,27 @@ impl<'a, const D: usize> Sampler<'a, D> {
         Some(())
     }
 
-    /// Whether a point is below the offset surface, as the evaluation in reserve tells, which
-    /// is for this alone; none if nothing is proven there.
+    /// Whether a point is below the offset surface. This uses the evaluation in reserve, which
+    /// serves no other purpose; `None` if no promise holds there.
     pub(crate) fn is_below(&mut self, point: Point<D>) -> Option<bool> {
         if !self.nearby.is_proven(point) {
             return None;
         }
         self.evaluations += 1;
-        let (value, _) = self.nearby.distance(point, &self.pierced);
+        let (value, _) = self.nearby.distance(point, &self.punctured);
         Some(value < self.radius - self.tolerance)
     }
 
-    /// How far any straight move in the region is sure not to reach the offset surface [m].
+    /// The safe radius [m]: a straight move in the region by less than this does not reach the
+    /// offset surface.
     ///
     /// `(f − r − ε) / L` with the rounding `ε`.
     pub(crate) fn free_radius(&self, sample: &Sample<D>) -> f64 {
         (sample.gap - self.tolerance) * self.per_slope
     }
 
-    /// How far the probe's centre may move from the sample in any direction [m], so that it
-    /// can return to the offset surface afterwards without having crossed the shape.
+    /// How far the probe's centre may move from the sample in any direction [m] and still
+    /// return to the offset surface without having crossed the shape.
     ///
     /// Far from the surface: down to half a skin below it. From below: half of the way to a
     /// whole skin, so that repeated moves never arrive there.
@@ -208,14 +213,14 @@ impl<'a, const D: usize> Sampler<'a, D> {
         to_half.max(half_way) * self.per_slope
     }
 
-    /// How far any straight move in the region is sure to be less than a skin deep [m].
+    /// A straight move in the region by less than this length stays less than a skin deep [m].
     pub(crate) fn clear_radius(&self, sample: &Sample<D>) -> f64 {
         ((sample.gap + self.skin) * self.per_slope).max(0.0)
     }
 
     /// The unit normal and the signed distance to the offset surface along it [m], to first
-    /// order: `(f − r) / ‖∇f‖`. `previous` replaces the direction of a gradient too small to
-    /// have one, and of one that was not asked for.
+    /// order: `(f − r) / ‖∇f‖`. `previous` replaces the normal if the gradient is too small or
+    /// was not evaluated.
     #[inline]
     pub(crate) fn tangent(
         &self,

@@ -1,31 +1,31 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What time it is, and waiting for a later one.
+//! Clocks: reading the time and waiting for a deadline.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::priority::Priority;
 
-/// Time that only moves on.
+/// A monotonic clock.
 ///
-/// The servo loop asks it twice a tick. A test gives one that it moves itself, as a
-/// [`VirtualClock`] is.
+/// The servo loop reads the clock twice a tick. A test can pass a [`VirtualClock`] and advance
+/// it.
 pub trait Clock {
-    /// The time since some moment before the run.
+    /// The time since a fixed moment before the run.
     fn now(&mut self) -> Duration;
 
-    /// Returns at `deadline`, or at once if that has passed.
+    /// Returns at `deadline`, or at once if `deadline` has passed.
     fn wait_until(&mut self, deadline: Duration);
 }
 
-/// How long before a deadline the wall clock stops sleeping and starts to spin. Sleeping
-/// oversleeps by 0.1 ms on an idle desktop system; spinning longer would heat a core in vain.
+/// How long before a deadline the wall clock stops sleeping and starts to spin. A sleep
+/// overruns by 0.1 ms on an idle desktop system; spinning longer would only heat a core.
 const SPIN: Duration = Duration::from_micros(200);
 
-/// Likewise with a raised priority, which wakes sooner. Shorter than a period at 10 kHz: Linux
-/// takes the processor for 50 ms from a raised thread that did not sleep for 950 ms.
+/// The same for a thread of raised priority, which wakes sooner. Shorter than a period at 10
+/// kHz: Linux suspends a raised thread for 50 ms if it did not sleep for 950 ms.
 const RAISED_SPIN: Duration = Duration::from_micros(70);
 
 /// The monotonic clock of the machine; sleeps, then spins up to the deadline.
@@ -42,15 +42,15 @@ impl WallClock {
         Self::spinning_for(SPIN)
     }
 
-    /// A clock for a thread of this priority: a raised one wakes sooner and spins for the last
-    /// 0.07 ms alone.
+    /// A clock for a thread of this priority: a thread of raised priority wakes sooner and
+    /// spins only for the last 0.07 ms.
     #[must_use]
     pub fn suited_to(priority: &Priority) -> Self {
         Self::spinning_for(if *priority == Priority::Raised { RAISED_SPIN } else { SPIN })
     }
 
-    /// A clock that starts at zero now, and spins for as long as this before a deadline: not at
-    /// all, and it sleeps alone; for longer than any wait, and it does not sleep.
+    /// A clock that starts at zero now, and spins for the last `spin` before a deadline. With
+    /// zero it only sleeps; with a time longer than any wait it never sleeps.
     ///
     /// ```
     /// use std::time::Duration;
@@ -88,8 +88,8 @@ impl Clock for WallClock {
     }
 }
 
-/// A clock on which waiting takes no time, or as much as a [driver](ClockDriver) gives: what
-/// happens on it does not depend on the machine.
+/// A clock on which waiting takes no real time, or ends when a [driver](ClockDriver) advances
+/// the clock; runs do not depend on the machine's speed.
 ///
 /// ```
 /// use std::time::Duration;
@@ -106,14 +106,14 @@ pub struct VirtualClock {
 }
 
 impl VirtualClock {
-    /// A clock at zero that is at every deadline at once.
+    /// A clock at zero that jumps to every deadline at once.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A clock at zero that another thread moves on. Without its driver it is at every deadline
-    /// at once.
+    /// A clock at zero that another thread advances. When its driver is dropped, the clock
+    /// jumps to every deadline at once.
     ///
     /// ```
     /// use std::time::Duration;
@@ -161,15 +161,15 @@ impl Drop for VirtualClock {
     }
 }
 
-/// Moves a [`VirtualClock`] on that another thread waits on.
+/// Advances a [`VirtualClock`] on which another thread waits.
 #[derive(Debug)]
 pub struct ClockDriver {
     gate: Arc<Gate>,
 }
 
 impl ClockDriver {
-    /// Moves the clock on by `time`. Returns when all that was to happen until then has: the
-    /// other thread waits for a later time, or has dropped the clock.
+    /// Advances the clock by `time`. Returns when the other thread has reached that time: it
+    /// waits for a later deadline, or has dropped the clock.
     pub fn advance(&mut self, time: Duration) {
         let mut state = self.gate.state();
         state.allowed += time;
@@ -191,7 +191,7 @@ impl Drop for ClockDriver {
     }
 }
 
-/// Where the thread of a virtual clock and its driver wait for one another.
+/// The state on which the thread of a virtual clock and its driver wait for each other.
 #[derive(Debug, Default)]
 struct Gate {
     state: Mutex<GateState>,
@@ -200,7 +200,7 @@ struct Gate {
 
 #[derive(Debug, Default)]
 struct GateState {
-    /// Up to when the clock may go.
+    /// The latest time that the clock may show.
     allowed: Duration,
     waits_for: Option<Duration>,
     has_lost_clock: bool,
@@ -208,7 +208,7 @@ struct GateState {
 }
 
 impl Gate {
-    // Its numbers are whole whatever thread panicked.
+    // The state is valid even if a thread panicked while it held the lock.
     fn state(&self) -> MutexGuard<'_, GateState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

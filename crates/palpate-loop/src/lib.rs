@@ -3,14 +3,14 @@
 
 //! The loop around a servo and its device: it paces, counts, records and reports.
 //!
-//! [`run`] is the loop in a call; a [`ServoThread`] runs the same loop beside a program, whose
-//! [`Control`](palpate_haptics::Control) changes what is touched and sees what happens, and never
-//! makes the servo wait. Both run a [`Servo`](palpate_haptics::Servo) alone, which is protected,
-//! and write zero forces last whatever ends them.
+//! [`run`] runs the loop in a call. A [`ServoThread`] runs the same loop in a thread; its
+//! [`Control`](palpate_haptics::Control) replaces bodies and reads snapshots without ever
+//! making the servo wait. Both accept only a [`Servo`](palpate_haptics::Servo), which has a
+//! safety chain, and write zero forces last, however they end.
 //!
-//! The loop runs on the clock of the machine, a [`WallClock`], or on one of a test, a
-//! [`VirtualClock`]. A [`Recorder`] keeps every tick, a [`RunReport`] says what happened, and
-//! [`Lateness`] measures how late a machine wakes up.
+//! The loop runs on the machine's clock, a [`WallClock`], or in tests on a [`VirtualClock`]. A
+//! [`Recorder`] keeps every tick, a [`RunReport`] summarises a run, and [`Lateness`] measures
+//! how late a machine wakes up.
 //!
 //! # Examples
 //!

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A deadline each period, and how late it was met.
+//! Deadlines at a fixed period, and how late each was met.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -12,7 +12,7 @@ use crate::clock::Clock;
 use crate::run::ticks;
 use crate::statistics::{Distribution, Times};
 
-/// Warm-ups before a deadline: on a clock that stands still, they would never end.
+/// The most warm-ups before a deadline: on a clock that stands still, they would never end.
 const MOST_WARM_UPS: u32 = 64;
 
 /// Waits for deadlines a period apart.
@@ -26,19 +26,19 @@ pub(crate) struct Pacer {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Late {
     pub(crate) ns: u64,
-    /// By more than a period.
+    /// Whether the deadline was missed by more than a period.
     pub(crate) is_missed: bool,
 }
 
 impl Pacer {
-    /// The first deadline is now.
+    /// A pacer whose first deadline is now.
     pub(crate) fn new(clock: &mut dyn Clock, rate: f64) -> Self {
         Self { period: Duration::from_secs_f64(1.0 / rate), deadline: clock.now() }
     }
 
-    /// Waits as [`wait`](Self::wait). From `ahead` of the deadline on, `warm_up` is called again
-    /// and again, as often as there is time for, but at most [`MOST_WARM_UPS`] times; and once even
-    /// if it is late, which costs no more than what follows would cost for being cold.
+    /// Waits as [`wait`](Self::wait), and calls `warm_up` repeatedly from the time `ahead`
+    /// before the deadline, at most [`MOST_WARM_UPS`] times. A late tick is warmed up once,
+    /// which costs no more than running it with cold caches.
     pub(crate) fn wait_warm(
         &mut self,
         clock: &mut dyn Clock,
@@ -57,8 +57,8 @@ impl Pacer {
         self.wait(clock)
     }
 
-    /// Waits for the next deadline. A deadline met more than a period late moves all later ones,
-    /// so that nothing hurries after lost time.
+    /// Waits for the next deadline. A deadline met more than a period late shifts all later
+    /// ones, so that the loop does not hurry to catch up.
     pub(crate) fn wait(&mut self, clock: &mut dyn Clock) -> Late {
         clock.wait_until(self.deadline);
         let late = clock.now().saturating_sub(self.deadline);
@@ -75,18 +75,18 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// How late a loop without work wakes.
+/// How late an idle loop wakes.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lateness {
-    /// By how much; `None` if the loop had no tick.
+    /// The distribution of lateness; `None` if the loop had no tick.
     pub times: Option<Distribution>,
     /// Ticks more than a period late.
     pub missed: u64,
 }
 
 impl Lateness {
-    /// Lets a loop without work run on `clock` at `rate` [Hz] for `duration` [s].
+    /// Runs an idle loop on `clock` at `rate` [Hz] for `duration` [s].
     ///
     /// # Errors
     ///

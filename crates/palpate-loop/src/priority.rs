@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Being scheduled before other threads.
+//! The scheduling priority of a thread.
 
 use thread_priority::{ThreadPriority, thread_native_id};
 
-/// The real-time priority asked for, in percent of the range: below what systems keep for
-/// their own watchdogs, above what they run interrupts at.
+/// The requested real-time priority, in percent of the range: below the system's own watchdogs,
+/// above its interrupt threads.
 #[cfg(unix)]
 const PERCENT: u8 = 70;
 
@@ -15,22 +15,22 @@ const PERCENT: u8 = 70;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Priority {
-    /// It was not asked for.
+    /// The normal priority; no other was requested.
     Normal,
-    /// It is.
+    /// A raised priority.
     Raised,
-    /// It was asked for, but the system does not allow it.
+    /// The system refused a raised priority.
     Refused {
-        /// What the system said.
+        /// The error of the operating system.
         reason: String,
     },
 }
 
-/// Asks the system to schedule this thread before others: first in, first out where there are
-/// POSIX policies, the highest priority of its class elsewhere.
+/// Requests that the system schedules this thread before others: with the POSIX policy first
+/// in, first out where it exists, with the highest priority of the thread's class elsewhere.
 ///
-/// Linux allows it to those with the capability `CAP_SYS_NICE` or a limit `rtprio` (in
-/// `/etc/security/limits.conf`).
+/// Linux grants the request to processes with the capability `CAP_SYS_NICE` or a limit `rtprio`
+/// (in `/etc/security/limits.conf`).
 #[must_use]
 pub fn raise_priority() -> Priority {
     match ask() {
@@ -49,7 +49,7 @@ fn ask() -> Result<(), thread_priority::Error> {
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let thread = thread_native_id();
     set_thread_priority_and_policy(thread, ThreadPriority::Crossplatform(percent), policy)
-        // Where the range is shorter.
+        // Some systems have a shorter range.
         .or_else(|_| set_thread_priority_and_policy(thread, ThreadPriority::Max, policy))
 }
 

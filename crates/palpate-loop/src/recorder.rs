@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A recording of every tick, into memory set aside beforehand.
+//! A recording of every tick in preallocated memory.
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{Energy, HeldTool, Servo};
@@ -11,13 +11,13 @@ use palpate_haptics::{Energy, HeldTool, Servo};
 pub struct TraceRow<const D: usize> {
     /// The time of the tick since the servo started [s].
     pub time_s: f64,
-    /// Which contact point, from 0.
+    /// The index of the contact point, from 0.
     pub point: u32,
     /// The device point [m].
     pub device: Point<D>,
     /// The proxy [m]; the device point itself in free space.
     pub proxy: Point<D>,
-    /// The force of what is touched, before any limit [N].
+    /// The force of the touched body, before any limit [N].
     pub wanted: Vector<f64, D>,
     /// The force on the hand [N].
     pub force: Vector<f64, D>,
@@ -25,24 +25,24 @@ pub struct TraceRow<const D: usize> {
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// Whose surface it is: the number of the body.
+    /// The index of the body whose surface was last seen.
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,
-    /// Energy that the hand gave to the device and got from it so far, and what the safety
-    /// chain kept back [J].
+    /// Energy that the forces took from the hand and gave to it so far, and what the safety
+    /// chain held back [J].
     pub energy: Energy,
-    /// The tool with a shape that is coupled to the point; `None` for a contact point.
+    /// The tool coupled to the point; `None` for a contact point.
     pub tool: Option<HeldTool<D>>,
     /// Evaluations of the shape for this point in this tick.
     pub evaluations: u32,
-    /// What the whole tick cost, all points together [ns].
+    /// The duration of the tick, for all points together [ns].
     pub cost_ns: u64,
-    /// How late the tick started [ns]; zero where it is not paced.
+    /// How late the tick started [ns]; zero in a run without pacing.
     pub lateness_ns: u64,
 }
 
-/// What the loop knows about a tick beside its touches.
+/// Times of a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TickTimes {
     pub(crate) time_s: f64,
@@ -59,7 +59,7 @@ pub struct Recorder<const D: usize> {
 }
 
 impl<const D: usize> Recorder<D> {
-    /// Sets memory aside for `capacity` rows: one for each tick and contact point.
+    /// A recorder with memory for `capacity` rows, one for each tick and contact point.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
         Self { rows: Vec::with_capacity(capacity), capacity, dropped: 0 }
@@ -71,7 +71,7 @@ impl<const D: usize> Recorder<D> {
         &self.rows
     }
 
-    /// How many rows found no room.
+    /// The number of rows dropped because the recorder was full.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.dropped

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What happened in a run of the servo.
+//! The report of a run.
 
 use crate::recorder::TickTimes;
 use crate::statistics::{Distribution, Times};
 use crate::tool_report::{ToolReport, ToolTally};
 use palpate_haptics::{EventCounts, Progress, SafetyReport, Servo};
 
-/// A run of the servo in numbers.
+/// The report of a run of a servo.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RunReport {
-    /// How it ended.
+    /// Why the run ended.
     pub ending: Ending,
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -26,25 +26,25 @@ pub struct RunReport {
     pub contact_time: f64,
     /// The largest force on a contact point [N].
     pub largest_force: f64,
-    /// The largest depth a contact point was pressed to [m]; of a tool with a shape, how far
-    /// bodies held its origin from the hand.
+    /// The largest depth of a contact point [m]; for a tool, the largest distance of its origin
+    /// from the device point.
     pub largest_depth: f64,
     /// Evaluations of the shape a tick, all points together.
     pub evaluations: Evaluations,
-    /// What the servo's step cost a tick, all points together, without the device; `None` if
-    /// there was no tick.
+    /// The duration of the servo's step in a tick, for all points together, without the device;
+    /// `None` if there was no tick.
     pub cost: Option<Distribution>,
-    /// How late ticks started; `None` where they were not paced.
+    /// How late ticks started; `None` in a run without pacing.
     pub lateness: Option<Distribution>,
     /// Ticks that started more than a period late.
     pub missed_deadlines: u64,
-    /// Rows that the recorder had no room for.
+    /// Rows dropped because the recorder was full.
     pub rows_dropped: u64,
-    /// What happened at the contact points.
+    /// Counts of events at the contact points.
     pub events: EventCounts,
-    /// What the safety chain of each contact point did; empty on a device that gives no force.
+    /// The report of each contact point's safety chain; empty for a device that gives no force.
     pub safety: Vec<SafetyReport>,
-    /// What a tool with a shape felt; none of contact points.
+    /// The report of the tool; `None` if the servo renders contact points.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
 }
@@ -53,13 +53,13 @@ pub struct RunReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Evaluations {
-    /// In all ticks together.
+    /// In all ticks.
     pub total: u64,
-    /// In a tick, on average.
+    /// The mean of a tick.
     pub mean: f64,
-    /// In the tick that needed most.
+    /// The most in a tick.
     pub max: u64,
-    /// Ticks in which a point, or a tool with a shape, spent its whole budget.
+    /// Ticks in which a contact point or a tool used up its budget.
     pub budget_spent: u64,
 }
 
@@ -68,23 +68,23 @@ pub struct Evaluations {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Ending {
-    /// Its time was over.
+    /// The duration was over.
     Finished,
-    /// The caller asked it to end before its time was over.
+    /// The caller ended the run before its duration was over.
     Interrupted,
-    /// The device no longer answered.
+    /// The device was lost.
     DeviceLost {
-        /// What its transport said.
+        /// The message of the transport.
         reason: String,
     },
-    /// Something in the loop panicked, which is a defect; the forces were set to zero.
+    /// The loop panicked, which is a defect; the forces were set to zero.
     Panicked {
         /// The panic's message.
         message: String,
     },
 }
 
-/// Counts while a run runs, in memory set aside beforehand.
+/// Counts during a run, in preallocated memory.
 #[derive(Debug)]
 pub(crate) struct Tally {
     points: usize,
@@ -131,7 +131,7 @@ impl Tally {
         self.missed_deadlines += u64::from(missed);
     }
 
-    /// Counts a tick; returns it as others may see it.
+    /// Counts a tick, and returns the progress for other threads.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn tick<const D: usize>(

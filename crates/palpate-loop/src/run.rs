@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Running a servo with a device for a while, and a report.
+//! Running a servo with a device for a time.
 
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, Progress, Servo, handoff, not_negative,
@@ -14,39 +14,40 @@ use crate::recorder::Recorder;
 use crate::report::RunReport;
 use crate::servo_loop::{Schedule, ServoLoop};
 
-/// When the ticks of a run happen.
+/// The pace of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// At the servo's rate on the clock.
+    /// In real time, at the servo's rate on the clock.
     #[default]
     RealTime,
-    /// One after the other, without waiting; the servo's time is the same.
+    /// Without waiting between ticks; the servo's time advances by a period a tick as in real
+    /// time.
     AsFastAsPossible,
 }
 
-/// A closure that shows a run while it runs.
+/// A closure that receives the progress of a run.
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) + Send);
 
-/// What to run, and what to do with it beside the report.
+/// Options of a run.
 pub struct RunOptions<'a, const D: usize> {
     /// The time the servo runs [s].
     pub duration: f64,
-    /// When the ticks happen.
+    /// The pace.
     pub pace: Pace,
-    /// Whether each tick is rehearsed up to the moment at which it begins, so that it finds its
-    /// code and data in the caches: ticks vary less, and fields are asked up to 64 times more
-    /// often. In real time alone.
+    /// Whether each tick is rehearsed until it begins, so that its code and data are in the
+    /// caches: durations of ticks vary less, but fields are evaluated up to 64 times more
+    /// often. Only in real time.
     pub rehearses: bool,
-    /// Keeps every tick, as long as it has room.
+    /// Keeps every tick until its memory is full.
     pub recorder: Option<&'a mut Recorder<D>>,
-    /// Called from a thread of its own every so often, and once at the end.
+    /// A closure that a separate thread calls at this interval, and once at the end.
     pub watch: Option<(Duration, Watch<'a>)>,
-    /// Ends the run before its next tick once it is `true`, as a signal handler may set it.
+    /// Ends the run before its next tick once the flag is `true`; a signal handler may set it.
     pub interrupt: Option<&'a AtomicBool>,
 }
 
 impl<const D: usize> RunOptions<'_, D> {
-    /// Runs for `duration` [s] in real time; rehearses, keeps and shows nothing.
+    /// A run of `duration` [s] in real time, without rehearsals, recorder and watch.
     #[must_use]
     pub fn new(duration: f64) -> Self {
         Self {
@@ -77,9 +78,9 @@ impl<const D: usize> From<Seconds> for RunOptions<'_, D> {
     }
 }
 
-/// Runs a servo; implemented by [`Servo`] alone, which is protected.
+/// Adds [`run`] as a method to [`Servo`]; no other type implements it.
 pub trait Run<const D: usize> {
-    /// Runs the servo with `device` as [`run`] does, for a time or with options.
+    /// Runs the servo with `device` as [`run`] does; `options` may be a time, [`Seconds`].
     ///
     /// # Errors
     ///
@@ -132,17 +133,18 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
     }
 }
 
-/// Runs `servo` with `device` and reports what happened.
+/// Runs `servo` with `device` and returns a report.
 ///
-/// Tick `k` is at `k / rate` of the servo's time. In real time the loop sleeps between ticks; a tick
-/// that comes more than a period late moves all later ones, so that the servo never hurries after
-/// lost time.
-/// Whatever ends the run, the last forces written are zero.
+/// Tick `k` is at the servo's time `k / rate`. In real time the loop sleeps between ticks; a
+/// tick that starts more than a period late shifts all later ones, so that the loop does not
+/// hurry to catch up. However the run ends, the last forces written are zero.
 ///
 /// # Errors
 ///
-/// If the duration is negative or not finite, servo and device have different numbers of contact
-/// points, or the device bears less than the one that the servo was made for. What goes wrong during the run is in the report.
+/// [`HapticsError::Number`] if the duration is negative or not finite;
+/// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
+/// points; [`HapticsError::OtherDevice`] if the device has tighter limits than the one that the
+/// servo was made for. Failures during the run are in the report.
 ///
 /// # Examples
 ///
@@ -189,7 +191,7 @@ pub fn run<const D: usize>(
     run_on(&mut WallClock::new(), servo, device, options)
 }
 
-/// As [`run`], on a clock of the caller's.
+/// As [`run`], on the caller's clock.
 ///
 /// # Errors
 ///
@@ -222,12 +224,13 @@ pub fn run_on<const D: usize>(
     })
 }
 
-/// The ticks of a time [s]; rounded, so that 10 s at 1 kHz are 10 000 whatever the last bit.
+/// The number of ticks in `duration` [s], rounded, so that 10 s at 1 kHz are 10 000 ticks in
+/// spite of rounding.
 pub(crate) fn ticks(duration: f64, rate: f64) -> u64 {
     (duration * rate).round() as u64
 }
 
-/// Works while another thread shows what the servo does.
+/// Runs `work` while another thread calls the watch.
 fn watched<T, const D: usize>(
     mut control: Control<D>,
     every: Duration,
@@ -237,7 +240,7 @@ fn watched<T, const D: usize>(
     std::thread::scope(|scope| {
         let watcher = scope.spawn(move || {
             loop {
-                // Asked first, so that the last look is at the last tick.
+                // Read before the snapshot, so that the last snapshot is that of the last tick.
                 let is_last = control.has_ended();
                 if let Some(snapshot) = control.latest() {
                     watch(&snapshot.progress);

@@ -19,11 +19,11 @@ use crate::recorder::{Recorder, TickTimes};
 use crate::report::{Ending, RunReport, Tally};
 use crate::run::Pace;
 
-/// How long before a tick it is rehearsed, again and again: the first time loads what is cold,
-/// the others teach predictors.
+/// How long before a tick its rehearsals begin: the first loads the caches, the others train
+/// the branch predictors.
 const REHEARSAL: Duration = Duration::from_micros(60);
 
-/// A servo and a device, and what goes on beside them.
+/// A servo with its device, recorder and hand-off.
 pub(crate) struct ServoLoop<'a, const D: usize> {
     servo: &'a mut Servo<D>,
     device: &'a mut dyn Device<D>,
@@ -31,18 +31,18 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     end: Option<&'a mut ServoEnd<D>>,
     interrupt: Option<&'a AtomicBool>,
     states: Vec<PointState<D>>,
-    /// What the next tick may read.
+    /// The states with which the next tick is rehearsed.
     expected: Vec<PointState<D>>,
-    /// The forces of the end.
+    /// Zero forces, written at the end.
     no_forces: Vec<Vector<f64, D>>,
-    /// The device said how it is turned: it is written a torque.
+    /// Whether the device has rotation, and so takes a torque.
     is_turned: bool,
     tally: Tally,
 }
 
-/// When ticks happen, and how many.
+/// The pace and the number of ticks.
 pub(crate) struct Schedule {
-    /// Unless the other end of the hand-off ends the loop before.
+    /// The number of ticks, unless the other end of the hand-off ends the loop before.
     pub(crate) ticks: u64,
     pub(crate) pace: Pace,
     /// Whether ticks are rehearsed.
@@ -83,7 +83,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
-    /// Runs, and whatever ends it, writes zero forces and no torque last.
+    /// Runs the loop. However it ends, zero forces and a zero torque are written last.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
@@ -91,8 +91,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
             Err(panic) => Ending::Panicked { message: message_of(&*panic) },
         };
-        // A device that is lost takes no force, one that panics must not take the servo with
-        // it; nothing is left to do about either.
+        // A lost device ignores the force, and a panic of the device must not unwind through
+        // the servo; neither can be handled here.
         let zero = AssertUnwindSafe(|| self.device.write(&self.no_forces));
         let _ = catch_unwind(zero);
         let zero = AssertUnwindSafe(|| self.device.write_torque(Vector::ZERO));
@@ -136,8 +136,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         Ok(Ending::Finished)
     }
 
-    /// Tries the tick to come: the sleep between ticks has let caches and predictors go cold,
-    /// and the tick finds them warm again.
+    /// Rehearses the next tick, because the sleep between ticks lets caches and branch
+    /// predictors go cold.
     fn rehearse(&mut self) {
         let period = 1.0 / self.servo.options().rate;
         for (expected, PointState { position, velocity }) in
@@ -149,8 +149,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self.servo.rehearse(&self.expected);
     }
 
-    /// One tick, from reading to writing. Returns what the servo's step cost [ns]; the device's
-    /// transport is not part of it.
+    /// One tick, from reading to writing. Returns the duration of the servo's step [ns],
+    /// without the device's transport.
     fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
         if let Some(end) = &mut self.end {
             end.receive(self.servo);
@@ -169,7 +169,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         Ok(nanoseconds(cost))
     }
 
-    /// Everything that is not part of a tick: it may make the next one late, but not wrong.
+    /// Records and publishes a tick after its forces were written: this may delay the next
+    /// tick, but not change it.
     fn account(&mut self, times: TickTimes) {
         let progress = self.tally.tick(times, self.servo);
         if let Some(end) = &mut self.end {

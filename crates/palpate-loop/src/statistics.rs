@@ -1,31 +1,31 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How long ticks take and how late they start, as distributions.
+//! Distributions of durations and lateness.
 
 use hdrhistogram::Histogram;
 
-/// The longest time told apart [ns]: ten seconds. Longer ones count as this.
+/// The longest time that is resolved [ns]: ten seconds. Longer times count as this.
 const LONGEST_NS: u64 = 10_000_000_000;
 
-/// Decimal digits a quantile is exact to: more than a shared machine repeats.
+/// Decimal digits of a quantile: more than a shared machine reproduces.
 const DIGITS: u8 = 3;
 
 /// A distribution of times.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Distribution {
-    /// How many times were measured.
+    /// The number of measured times.
     pub count: u64,
-    /// Their mean [ns].
+    /// The mean [ns].
     pub mean_ns: f64,
-    /// Half are at most this [ns].
+    /// The median: half of the times are at most this [ns].
     pub p50_ns: u64,
-    /// 99 % are at most this [ns].
+    /// 99 % of the times are at most this [ns].
     pub p99_ns: u64,
-    /// 99.9 % are at most this [ns].
+    /// 99.9 % of the times are at most this [ns].
     pub p999_ns: u64,
-    /// All are at most this [ns].
+    /// The largest time [ns].
     pub max_ns: u64,
     /// A histogram: times up to 1, 2, 4, 8 … µs, up to the longest.
     pub buckets: Vec<Bucket>,
@@ -37,11 +37,11 @@ pub struct Distribution {
 pub struct Bucket {
     /// The largest time of the bucket [ns].
     pub up_to_ns: u64,
-    /// How many there are.
+    /// The number of times in the bucket.
     pub count: u64,
 }
 
-/// Collects times into memory set aside beforehand.
+/// Collects times in preallocated memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Times(Histogram<u64>);
 
@@ -56,7 +56,7 @@ impl Times {
         self.0.saturating_record(ns);
     }
 
-    /// What was collected; `None` if nothing was.
+    /// The distribution of the collected times; `None` if there are none.
     pub(crate) fn distribution(&self) -> Option<Distribution> {
         let times = &self.0;
         if times.is_empty() {

@@ -20,22 +20,21 @@ use crate::servo_loop::{Schedule, ServoLoop};
 /// How a thread runs a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreadOptions {
-    /// The time the servo runs [s]; until it is [ended](ServoThread::end) if none.
+    /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
-    /// Whether the thread asks to be scheduled before others.
+    /// Whether the thread requests a raised priority.
     pub raises_priority: bool,
     /// Whether ticks are rehearsed, as by [`RunOptions::rehearses`](crate::RunOptions::rehearses).
     pub rehearses: bool,
-    /// Rows that a [`Recorder`] has room for, one for each tick and contact point; none are kept
-    /// without.
+    /// The capacity of a [`Recorder`], one row for each tick and contact point; `None` for no
+    /// recorder.
     pub rows: Option<usize>,
-    /// What the hand-off has room for.
+    /// The capacities of the hand-off.
     pub handoff: HandoffOptions,
 }
 
 impl Default for ThreadOptions {
-    /// Until it is ended, with a raised priority and the hand-off's default; without rehearsals
-    /// and rows.
+    /// No end, raised priority, default hand-off, no rehearsals, no recorder.
     fn default() -> Self {
         Self {
             duration: None,
@@ -47,11 +46,11 @@ impl Default for ThreadOptions {
     }
 }
 
-/// A running servo thread, and the way to and from it.
+/// A servo that runs with its device in a thread.
 ///
-/// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`; a panic in a tick ends
-/// it; and whatever ends it, the last forces written are zero. Dropping this ends the loop too,
-/// without waiting for it.
+/// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`, a panic in a tick ends
+/// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the
+/// loop without waiting for it.
 ///
 /// # Examples
 ///
@@ -85,7 +84,7 @@ impl Default for ThreadOptions {
 /// let snapshot = thread.control().latest().ok_or("tick 1 is over")?;
 /// assert_eq!((snapshot.progress.ticks, snapshot.touches[0].contact), (2, true));
 ///
-/// drop(driver); // which nobody waits for any more
+/// drop(driver); // the clock then runs freely
 /// let ended = thread.end();
 /// assert!(ended.report.ticks >= 2);
 /// # Ok(())
@@ -96,27 +95,27 @@ pub struct ServoThread<const D: usize> {
     thread: JoinHandle<Left<D>>,
 }
 
-/// What a servo thread leaves.
+/// What remains of a servo thread that has ended.
 pub struct EndedThread<const D: usize> {
-    /// The servo, as after its last tick.
+    /// The servo after its last tick.
     pub servo: Servo<D>,
     /// The device; zero was written to it.
     pub device: Box<dyn Device<D> + Send>,
     /// The hand-off, with the last snapshot and the events not taken yet.
     pub control: Control<D>,
-    /// What happened.
+    /// The report of the run.
     pub report: RunReport,
-    /// Every tick, if rows were to be kept.
+    /// The recorded ticks, if a recorder was requested.
     pub recorder: Option<Recorder<D>>,
-    /// Whether the thread was scheduled before others.
+    /// The priority that the thread had.
     pub priority: Priority,
 }
 
-/// What comes out of the thread itself.
+/// The results that the thread returns.
 struct Left<const D: usize> {
     servo: Servo<D>,
     device: Box<dyn Device<D> + Send>,
-    /// Kept so that what is left in it is not freed in the thread.
+    /// Returned so that its content is not freed in the servo's thread.
     _end: ServoEnd<D>,
     report: RunReport,
     recorder: Option<Recorder<D>>,
@@ -128,7 +127,7 @@ impl<const D: usize> ServoThread<D> {
     ///
     /// # Errors
     ///
-    /// As [`run`](crate::run()), and if the system gives no thread.
+    /// As [`run`](crate::run()), and if the thread cannot be started.
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
@@ -137,7 +136,7 @@ impl<const D: usize> ServoThread<D> {
         Self::start_with(WallClock::suited_to, servo, device, options)
     }
 
-    /// As [`start`](Self::start), on a clock of the caller's.
+    /// As [`start`](Self::start), on the caller's clock.
     ///
     /// # Errors
     ///
@@ -184,13 +183,13 @@ impl<const D: usize> ServoThread<D> {
         Ok(Self { control, thread })
     }
 
-    /// Changes what is rendered, and sees what is done.
+    /// The hand-off to the servo: edits what is rendered, and reads its state.
     #[must_use]
     pub fn control(&mut self) -> &mut Control<D> {
         &mut self.control
     }
 
-    /// Whether the loop has ended: its time is over, or something went wrong.
+    /// Whether the loop has ended, by its duration or by a failure.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         self.control.has_ended()
@@ -203,9 +202,9 @@ impl<const D: usize> ServoThread<D> {
         self.join()
     }
 
-    /// Waits until the loop has ended: its time is over, or something went wrong. Without a
-    /// duration that may be never. A [driven](crate::VirtualClock::driven) clock must have
-    /// come to its end, or lost its driver.
+    /// Waits until the loop has ended, by its duration or by a failure. Without a duration this
+    /// may be never. A [driven](crate::VirtualClock::driven) clock must have been advanced to
+    /// the end, or its driver dropped.
     #[must_use]
     pub fn join(self) -> EndedThread<D> {
         // Panics in the loop are part of the report.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a tool felt in a run.
+//! The report of a tool in a run.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,13 +9,13 @@ use palpate_field::Vector;
 
 use palpate_haptics::Tool;
 
-/// A tool with a shape in a run.
+/// The report of a rigid tool in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ToolReport {
     /// Points of its shell.
     pub points: u32,
-    /// How far the tool's surface may be from the balls of the whole shell [m].
+    /// The largest distance of the tool's surface from the balls of the whole shell [m].
     pub resolution: f64,
     /// The coupling's stiffness [N/m].
     pub stiffness: f64,
@@ -23,24 +23,24 @@ pub struct ToolReport {
     pub damping: f64,
     /// The largest torque that was wanted on the hand [N·m].
     pub largest_torque: f64,
-    /// The largest torque that was written to a device that turns [N·m], in its coordinates; none
-    /// of another.
+    /// The largest torque written to a device with rotation [N·m], in device coordinates;
+    /// `None` for other devices.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub largest_torque_written: Option<f64>,
     /// The most contacts that pushed in a tick.
     pub most_contacts: u32,
-    /// How many pushed on average in the ticks with a contact.
+    /// The mean number of pushing contacts in ticks with contact.
     pub mean_contacts: f64,
     /// Ticks whose budget did not allow all levels of the shell.
     pub degraded_ticks: u64,
-    /// How far the tool's surface may have been from balls that were known to be outside, in the
+    /// The largest distance of the tool's surface from balls that were proven outside, in the
     /// worst tick in which the tool was not covered [m].
     pub coarsest_resolution: f64,
     /// Ticks in which bodies covered the tool.
     pub covered_ticks: u64,
 }
 
-/// Counts while a run runs.
+/// Counts during a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ToolTally {
     report: ToolReport,
@@ -49,7 +49,7 @@ pub(crate) struct ToolTally {
 }
 
 impl ToolTally {
-    /// Counts a tick with the torque written to a device that turns.
+    /// Counts a tick with the torque written to a device with rotation.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn tick<const D: usize>(

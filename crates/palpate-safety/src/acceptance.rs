@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Which materials a device renders without becoming active, and what becomes of others.
+//! Which materials a device renders passively, and how others are scaled.
 //!
+//! The rules bound the Z-width of a device, the range of impedances that it renders passively.
 //! J. E. Colgate, G. G. Schenkel, "Passivity of a class of sampled-data systems: application to
 //! haptic interfaces" (1997): `b > K T / 2 + |B|`. J. J. Abbott, A. M. Okamura, "Effects of
-//! position quantization and sampling rate on virtual-wall passivity" (2005):
-//! `K ≤ min(2 b / T, 2 f_c / Δ)`.
+//! position quantization and sampling rate on virtual-wall passivity" (2005): `K ≤ min(2 b / T,
+//! 2 f_c / Δ)`.
 
 use std::borrow::Cow;
 
@@ -15,17 +16,17 @@ use crate::error::{SafetyError, positive};
 use crate::impedance::Impedance;
 use crate::limits::Limits;
 
-/// What is done with a material that a device cannot render.
+/// How a material that a device cannot render is treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Acceptance {
-    /// Stiffness and damping are made smaller by the same factor.
+    /// Stiffness and damping are scaled down by the same factor.
     #[default]
     Scaled,
-    /// It is an error.
+    /// The material is refused with an error.
     Strict,
-    /// Nothing: the passivity controller alone keeps the hand safe.
+    /// The material stays as it is: the passivity controller alone keeps the hand safe.
     AsItIs,
 }
 
@@ -42,9 +43,9 @@ pub enum Rule {
     MaxStiffness,
     /// The device's largest damping.
     MaxDamping,
-    /// `κ ≤ 2 (b − |β|) / T`: passivity about axes.
+    /// `κ ≤ 2 (b − |β|) / T`: passivity of rotation.
     AngularPassivity,
-    /// `κ ≤ 2 f_c / Δ`: quantisation about axes.
+    /// `κ ≤ 2 f_c / Δ`: quantisation of rotation.
     AngularQuantisation,
     /// The device's largest angular stiffness.
     MaxAngularStiffness,
@@ -53,7 +54,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// The rule as a condition.
+    /// The rule as a formula or sentence.
     #[must_use]
     pub fn condition(self) -> &'static str {
         match self {
@@ -78,19 +79,19 @@ impl Rule {
 /// K ≤ min(2 (b − |B|) / T, 2 f_c / Δ),  K ≤ K_max,  B ≤ B_max
 /// ```
 ///
-/// Otherwise both are made smaller by the largest common factor `s` that satisfies all:
+/// Otherwise both are multiplied by the largest factor `s` that satisfies every rule:
 ///
 /// ```text
 /// s = min(b / (K T / 2 + B), 2 f_c / (Δ K), K_max / K, B_max / B)
 /// ```
 ///
-/// The second clause does not bind without steps, or where the friction is infinite. What is
-/// promised is worth no more than the profile's numbers: see [`assumed`](Self::assumed). The
-/// largest stiffness and damping of a profile are those at 1 kHz, and taken as they stand at any
-/// rate.
+/// The rule with `f_c` does not apply without encoder steps or with infinite friction.
+/// Passivity depends on the numbers of the profile, some of which may be
+/// [`assumed`](Self::assumed). A profile states its largest stiffness and damping for 1 kHz;
+/// the same numbers are used at any rate.
 ///
-/// What a device that turns renders about its axes follows the same rules, with the numbers of
-/// its [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
+/// Rotation follows the same rules, with the numbers of the
+/// [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
 /// the angular damping `β` [N·m·s/rad] for `B`.
 ///
 /// # Examples
@@ -110,30 +111,30 @@ impl Rule {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Accepted {
-    /// The material to render, in the world; about axes, angular numbers.
+    /// The stiffness and damping to render, in the world; angular for a rotational entry.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub impedance: Impedance,
-    /// Its stiffness at the device [N/m]; about axes [N·m/rad].
+    /// The stiffness at the device [N/m]; [N·m/rad] for a rotational entry.
     pub device_stiffness: f64,
-    /// Its damping at the device [N·s/m]; about axes [N·m·s/rad].
+    /// The damping at the device [N·s/m]; [N·m·s/rad] for a rotational entry.
     pub device_damping: f64,
-    /// What stiffness and damping were multiplied by, in (0, 1].
+    /// The factor that stiffness and damping were multiplied by, in (0, 1].
     pub factor: f64,
-    /// The rule that bound them; `None` if the material is as it was wanted.
+    /// The rule that determined the factor; `None` if the factor is one.
     pub rule: Option<Rule>,
-    /// Which of the device's numbers are assumed.
+    /// Names of the device's numbers that are assumed.
     pub assumed: Cow<'static, [&'static str]>,
 }
 
 impl Accepted {
-    /// What `device` renders of `impedance` at `rate` [Hz], if lengths in the world are `scale`
-    /// times those at the device: [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
+    /// The part of `impedance` that `device` renders at `rate` [Hz]; lengths in the world are
+    /// `scale` times those at the device ([`WorkspaceMap::scale`](crate::WorkspaceMap::scale)).
     ///
     /// # Errors
     ///
     /// [`SafetyError::Number`] if rate or scale is not positive and finite, if a number of the
-    /// device's profile that a rule needs is not positive, as nothing can be rendered then, or
-    /// if nothing is left of the stiffness.
+    /// profile that a rule needs is not positive, or if the scaled stiffness is zero: such a
+    /// device renders no wall.
     pub fn new(
         impedance: Impedance,
         scale: f64,
@@ -143,7 +144,7 @@ impl Accepted {
         Self::of(impedance, scale, &Limits::along(device), Acceptance::Scaled, rate)
     }
 
-    /// As [`new`](Self::new), but refuses what would have to be scaled.
+    /// As [`new`](Self::new), but refuses an impedance that would have to be scaled.
     ///
     /// # Errors
     ///
@@ -172,12 +173,12 @@ impl Accepted {
         Self::of(impedance, scale, &Limits::along(device), Acceptance::Strict, rate)
     }
 
-    /// What becomes of `impedance`, if lengths in the world, or torques, are `scale` times those
-    /// at a device of these limits.
+    /// The part of `impedance` that a device with these limits renders; lengths in the world,
+    /// or torques, are `scale` times those at the device.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new) or, where refused, [`strict`](Self::strict).
+    /// As [`new`](Self::new), or [`strict`](Self::strict) with [`Acceptance::Strict`].
     pub fn of(
         impedance: Impedance,
         scale: f64,
@@ -209,7 +210,7 @@ impl Accepted {
         Ok(Self { impedance, device_stiffness, device_damping, factor, rule, assumed })
     }
 
-    /// Becomes `other`, of the same device: what is assumed is so of both.
+    /// Copies `other`, except the names of assumed numbers: both belong to the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn renew(&mut self, other: &Self) {
@@ -219,8 +220,8 @@ impl Accepted {
     }
 }
 
-/// Stiffness [N/m] and damping [N·s/m] at the device: forces are those of the world, ways and
-/// velocities `scale` times as small.
+/// Stiffness [N/m] and damping [N·s/m] at the device, where forces equal those of the world and
+/// displacements are `scale` times smaller.
 fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), SafetyError> {
     let scale = positive("scale", scale, "(world per device)")?;
     Ok((scale * impedance.stiffness(), scale * impedance.damping()))
@@ -230,7 +231,7 @@ fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, Safet
     Impedance::new(factor * impedance.stiffness(), factor * impedance.damping())
 }
 
-/// The largest factor that each rule allows. Infinite where it does not bind.
+/// The largest factor that each rule allows; infinite where a rule does not apply.
 fn factors(
     stiffness: f64,
     damping: f64,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The safety chain of one contact point, from the wanted force to the one that is written.
+//! The safety chain between a wanted force and a hand.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -10,7 +10,7 @@ use std::num::NonZeroU32;
 use palpate_field::{Point, Vector};
 
 use crate::acceptance::{Acceptance, Accepted};
-use crate::channel::{Channel, Moment};
+use crate::channel::{Channel, TickInput};
 use crate::device::DeviceProfile;
 use crate::error::{SafetyError, not_negative, positive};
 use crate::finite;
@@ -19,29 +19,29 @@ use crate::limits::Limits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, Seen};
 use crate::report::SafetyReport;
 
-/// One contact point in a tick, as its safety chain sees it. Device coordinates, as it is the
-/// device that has limits: [`WorkspaceMap`](crate::WorkspaceMap) gives them.
+/// The input of a contact point's safety chain in a tick, beside the wanted force. In device
+/// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PortState<const D: usize> {
-    /// Where the hand holds the device [m], unfiltered.
+    /// The device point [m], unfiltered.
     pub position: Point<D>,
-    /// How fast it moves [m/s], as by [`VelocityEstimator`](crate::VelocityEstimator).
+    /// The velocity of the device point [m/s], for example from a
+    /// [`VelocityEstimator`](crate::VelocityEstimator).
     pub velocity: Vector<f64, D>,
-    /// A force on the hand that is added to the wanted one and is not observed for passivity
-    /// [N]: that of guides and magnets, which is a function of the place and gives back what
-    /// it takes.
+    /// A force on the hand that is added to the wanted force but not observed for passivity
+    /// [N]: the force of guides and magnets, which is conservative.
     pub free_force: Vector<f64, D>,
-    /// The tick began too late.
+    /// Whether the tick began too late.
     pub is_late: bool,
-    /// The part of the force that is given in this tick, from which it rises to all of it: 1 as
-    /// a rule; 0 if the point was placed inside a shape, or a shape was moved onto it; less than
-    /// one if a stiffer material took the place of another. In one tick; in each of many, the
-    /// force stays down.
+    /// The part of the force to render in this tick, from which the force rises again. Normally
+    /// 1; 0 after the proxy was placed anew or a body moved onto it; between 0 and 1 after a
+    /// body was replaced by a stiffer one. Set it below 1 in one tick only: while it stays
+    /// below 1, the force cannot rise.
     pub start: f64,
 }
 
 impl<const D: usize> PortState<D> {
-    /// A point at rest at the origin, in time.
+    /// A point at rest at the origin, in a tick that is not late.
     #[must_use]
     pub fn at_rest() -> Self {
         let still = Vector::ZERO;
@@ -50,35 +50,38 @@ impl<const D: usize> PortState<D> {
     }
 }
 
-/// What a safety chain protects from, beside the limits of the device.
+/// Options of a safety chain, beside the limits of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SafetyOptions {
-    /// What is to be rendered, in the world.
+    /// The stiffness and damping to render, in the world.
     pub impedance: Impedance,
     /// Lengths in the world over lengths at the device:
     /// [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
     pub scale: f64,
-    /// What is done with a material that the device cannot render.
+    /// How a material that the device cannot render is treated.
     pub acceptance: Acceptance,
-    /// Whether the passivity controller acts. It observes anyway. Forces that are to do work on
-    /// the hand, such as attractions, are incompatible with it.
+    /// Whether the passivity controller acts; the observer always runs. A force that must do
+    /// work on the hand is incompatible with the controller.
     pub has_passivity_control: bool,
-    /// Energy that may be given out before any was taken in [J].
+    /// Energy that the controller lets out before the hand has put any in [J].
     pub reserve: f64,
     /// The time constant with which the motors cool [s]. Makers do not state it.
     pub cooling_time: f64,
-    /// The time over which the force rises after the start, a placement or an emergency [s].
+    /// The time over which the force rises after the start, a placement or an emergency stop
+    /// [s].
     pub rise_time: f64,
-    /// So many late ticks in a row lower the force to zero; as many in time raise it again.
+    /// The number of consecutive late ticks after which the force falls to zero; after as many
+    /// ticks in time it rises again.
     pub late_ticks: NonZeroU32,
     /// The time over which late ticks lower the force to zero [s].
     pub fall_time: f64,
 }
 
 impl SafetyOptions {
-    /// For `impedance` in a world as large as the device's: scaled where it must be, passivity
-    /// controlled with a reserve of 0.1 mJ, which the hand does not feel; motors that cool in
-    /// 2 s; forces that rise in 0.2 s; and fall in 0.02 s after 5 late ticks.
+    /// Options for `impedance` in a world of the device's scale. The impedance is scaled down
+    /// if necessary; passivity is controlled with a reserve of 0.1 mJ, which a hand does not
+    /// feel; motors cool within 2 s; forces rise within 0.2 s, and fall within 0.02 s after 5
+    /// late ticks.
     #[must_use]
     pub fn new(impedance: Impedance) -> Self {
         Self {
@@ -95,29 +98,31 @@ impl SafetyOptions {
     }
 }
 
-/// The safety chain of one contact point: from the wanted force to the one that is written.
+/// The safety chain of one contact point, from the wanted force to the written force.
 ///
-/// In this order: the material and the device's stiffness and damping ([`Accepted`], at
-/// set-up), passivity, the fastest change of force, the largest force, the continuous force,
-/// the guard against what is not a number, and the factors of ramp, deadline watchdog and
-/// emergency stop. Where nothing is wrong, the force written is the wanted one, bit for bit.
+/// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), passivity, slew
+/// limit, force limit, continuous limit, guard against numbers that are not finite, and the
+/// factors of ramp, deadline watchdog and emergency stop. If no stage has to act, the written
+/// force equals the wanted force bit for bit.
 ///
 /// # What is promised
 ///
-/// Whatever comes in, in any tick:
+/// For any input, in any tick:
 ///
 /// - The force is finite and no larger than [`DeviceProfile::max_force`].
-/// - It changes by no more than [`DeviceProfile::max_force_rate`] a second. The exceptions fall
-///   to zero in one tick: an input that is not a number, and the emergency stop.
-/// - With passivity control, a wall of up to `2 b / T` is never changed, as the device's damping
-///   eats what it leaks. A stiffer one gives out little more than it took in: three times as
-///   stiff, on 0.05 to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with
-///   1 N for 10 s, from up to 50 mm away and in encoder steps of up to 30 µm, at most 1 mJ
-///   (`tests/safety.rs`). The force must be allowed to change as fast as it does on the way out
-///   of the wall, `K v`: a slower [`DeviceProfile::max_force_rate`] holds forces that the
-///   controller would take back, and after strikes more is given out.
+/// - The force changes by no more than [`DeviceProfile::max_force_rate`] a second. There are
+///   two exceptions, which fall to zero in one tick: an input that is not finite, and the
+///   emergency stop.
+/// - With passivity control, the force of a wall up to `2 b / T` is never changed, because the
+///   device's damping dissipates the energy that the wall leaks. A stiffer wall gives out
+///   little more energy than it took in: at most 1 mJ for a wall three times as stiff, on 0.05
+///   to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with 1 N for 10 s,
+///   from up to 50 mm away and in encoder steps of up to 30 µm (`tests/safety.rs`). This needs
+///   a [`DeviceProfile::max_force_rate`] of at least `K v`, the rate at which the force falls
+///   when the device leaves the wall; a slower limit holds forces that the controller would
+///   remove, and impacts give out more.
 ///
-/// The least damping of the device's profile is what the promise of passivity stands on, and is
+/// The promise of passivity depends on the least damping of the device's profile, which is
 /// often [assumed](DeviceProfile::assumed); the report says so.
 ///
 /// # Examples
@@ -154,9 +159,9 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// # Errors
     ///
-    /// As [`Accepted::new`] or, where the options say so, [`Accepted::strict`];
-    /// [`SafetyError::Number`] if a limit of the device is not positive, its mass negative, or
-    /// an energy or a time of the options negative or not finite.
+    /// As [`Accepted::new`], or [`Accepted::strict`] with [`Acceptance::Strict`].
+    /// [`SafetyError::Number`] if a limit of the device is not positive, its mass is negative,
+    /// or an energy or a time of the options is negative or not finite.
     pub fn new(
         device: &DeviceProfile,
         rate: f64,
@@ -168,7 +173,7 @@ impl<const D: usize> SafetyChain<D> {
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
         let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {
-            // A device that loses any energy at once is passive whatever it renders.
+            // A device with infinite damping is passive whatever it renders.
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness: accepted.device_stiffness,
             damping,
@@ -184,13 +189,14 @@ impl<const D: usize> SafetyChain<D> {
         })
     }
 
-    /// The material as the device renders it: what the wanted forces are to be made with.
+    /// The stiffness and damping that the device renders; wanted forces must be computed with
+    /// them.
     #[must_use]
     pub fn accepted(&self) -> &Accepted {
         &self.accepted
     }
 
-    /// Renders another material from now on, accepted for the same device.
+    /// Replaces the accepted stiffness and damping by others for the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn renew(&mut self, accepted: &Accepted) {
@@ -200,31 +206,32 @@ impl<const D: usize> SafetyChain<D> {
         self.passivity.renew(options);
     }
 
-    /// The force to write [N] where `wanted` [N] is wanted, at the device, in one tick.
+    /// One tick: the force to write [N] for the force `wanted` [N], both in device coordinates.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
-        // What is not a number reaches no stage that remembers; the guard answers for it.
+        // Stages with a state never see numbers that are not finite; the guard then writes
+        // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, is_late, start, .. } = *state;
         let seen = Seen { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
-        let moment = Moment { is_sound, is_late, start };
-        let (force, left) = self.channel.step((observed, state.free_force), &moment);
+        let input = TickInput { is_sound, is_late, start };
+        let (force, left) = self.channel.step(observed, state.free_force, &input);
         self.passivity.written(left);
         force
     }
 
-    /// Lowers the largest force to `max_force` [N]; never raises it. What is written falls to it
-    /// as fast as forces may change.
+    /// Lowers the force limit to `max_force` [N]; never raises it. The written force falls to
+    /// the limit at the largest rate.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         self.channel.lower_limit(max_force);
     }
 
-    /// Stops: no force until [`release`](Self::release).
+    /// Begins an emergency stop: the force is zero until [`release`](Self::release).
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn stop(&mut self) {
@@ -244,7 +251,7 @@ impl<const D: usize> SafetyChain<D> {
         self.channel.is_stopped()
     }
 
-    /// What the passivity stage saw and did so far.
+    /// The report of the passivity stage so far.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -252,7 +259,7 @@ impl<const D: usize> SafetyChain<D> {
         self.passivity.report()
     }
 
-    /// What every stage did so far.
+    /// The report of every stage so far.
     #[must_use]
     pub fn report(&self) -> SafetyReport {
         SafetyReport::of(&self.accepted, self.passivity.report(), &self.channel)

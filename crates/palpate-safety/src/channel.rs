@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The stages that forces and torques pass alike, each in a chain of its own.
+//! The stages that forces and torques share; each has a channel of its own.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -18,19 +18,19 @@ use crate::report::{ContinuousReport, Effects, WatchdogReport};
 use crate::slew::SlewLimit;
 use crate::watchdog::Watchdog;
 
-/// What a tick is like for every stage.
+/// Properties of a tick that every stage sees.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment {
-    /// All that came in are numbers.
+pub(crate) struct TickInput {
+    /// Whether every input is finite.
     pub(crate) is_sound: bool,
     pub(crate) is_late: bool,
     /// As [`PortState::start`](super::PortState::start).
     pub(crate) start: f64,
 }
 
-/// From an observed force, or torque, to the one that is written: the fastest change, the
-/// largest, the continuous one, the guard against what is not a number, ramp, watchdog and
-/// emergency stop.
+/// The stages from the observed force or torque to the written one: slew limit, force limit,
+/// continuous limit, guard against numbers that are not finite, ramp, watchdog and emergency
+/// stop.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel<const D: usize> {
     slew: SlewLimit<D>,
@@ -39,7 +39,8 @@ pub(crate) struct Channel<const D: usize> {
     ramp: Ramp,
     watchdog: Watchdog,
     is_stopped: bool,
-    /// The fastest change once more, as what comes after the first may change the force too.
+    /// A second slew limit at the end, because the stages after the first also change the
+    /// force.
     closing: SlewLimit<D>,
     pub(crate) effects: Effects,
 }
@@ -59,54 +60,57 @@ impl<const D: usize> Channel<D> {
         let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
         let rise_time = not_negative("rise_time", options.rise_time, "s")?;
         let fall_time = not_negative("fall_time", options.fall_time, "s")?;
-        let times = (rise_time, fall_time);
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),
             continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            ramp: Ramp::new(0.0, times, rate),
-            watchdog: Watchdog::new(options.late_ticks, Ramp::new(1.0, times, rate)),
+            ramp: Ramp::new(0.0, rise_time, fall_time, rate),
+            watchdog: Watchdog::new(
+                options.late_ticks,
+                Ramp::new(1.0, rise_time, fall_time, rate),
+            ),
             is_stopped: false,
             closing: slew,
             effects: Effects::default(),
         })
     }
 
-    /// The force to write where `observed` passed the passivity stage and `free` is added to it;
-    /// and what the stages left of the observed one.
+    /// Returns the force to write for `observed`, which passed the passivity stage, plus
+    /// `free`; and the part of `observed` in it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(
         &mut self,
-        (observed, free): (Vector<f64, D>, Vector<f64, D>),
-        moment: &Moment,
+        observed: Vector<f64, D>,
+        free: Vector<f64, D>,
+        input: &TickInput,
     ) -> (Vector<f64, D>, Vector<f64, D>) {
         self.effects.ticks += 1;
-        let is_sound = moment.is_sound;
+        let is_sound = input.is_sound;
         let all = with_free(observed, free);
         let force = if is_sound { self.limited(all) } else { all };
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
-        let force = self.faded(force, moment);
+        let force = self.faded(force, input);
         if !is_sound || self.is_stopped {
-            // To zero at once: the exceptions of the fastest change.
+            // Both exceptions to the slew limit fall to zero at once.
             self.slew.restart();
             self.closing.restart();
         }
         let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
-        // What the stages left of all of it, they left of the part that is observed.
+        // The stages scaled the observed part by the same factor as the whole force.
         let left = if force == all { 1.0 } else { force.dot(all) / all.dot(all) };
         (force, if left == 1.0 { observed } else { observed * left })
     }
 
-    /// Lowers the largest force; never raises it.
+    /// Lowers the force limit; never raises it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn lower_limit(&mut self, max_force: f64) {
         self.force_limit.lower(max_force);
     }
 
-    /// Stops.
+    /// Begins an emergency stop.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn stop(&mut self) {
@@ -114,7 +118,7 @@ impl<const D: usize> Channel<D> {
         self.is_stopped = true;
     }
 
-    /// Ends an emergency stop; the force rises from nothing.
+    /// Ends an emergency stop; the force rises from zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn release(&mut self) {
@@ -139,7 +143,7 @@ impl<const D: usize> Channel<D> {
         WatchdogReport { effect: self.effects.watchdog, trips: self.watchdog.trips() }
     }
 
-    /// What the device's limits leave of a force.
+    /// A force after the limits of the device.
     fn limited(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
         let effects = &mut self.effects;
         let force = effects.slew.count(force, self.slew.limit(force));
@@ -147,23 +151,23 @@ impl<const D: usize> Channel<D> {
         effects.continuous.count(force, self.continuous.limit(force))
     }
 
-    /// What ramp, watchdog and emergency stop leave of a force.
-    fn faded(&mut self, force: Vector<f64, D>, moment: &Moment) -> Vector<f64, D> {
-        self.ramp.lower(moment.start);
+    /// A force after ramp, watchdog and emergency stop.
+    fn faded(&mut self, force: Vector<f64, D>, input: &TickInput) -> Vector<f64, D> {
+        self.ramp.lower(input.start);
         let effects = &mut self.effects;
         let force = effects.ramp.count(force, part(force, self.ramp.step(true)));
-        let left = self.watchdog.step(moment.is_late);
+        let left = self.watchdog.step(input.is_late);
         let force = effects.watchdog.count(force, part(force, left));
         effects.emergency_stop.count(force, self.is_stopped.then_some(Vector::ZERO))
     }
 }
 
-/// A part of a force; none if it is all of it.
+/// `factor` times a force; `None` if the factor is one.
 fn part<const D: usize>(force: Vector<f64, D>, factor: f64) -> Option<Vector<f64, D>> {
     (factor != 1.0).then(|| force * factor)
 }
 
-/// Both forces together; of one alone the same bits.
+/// The sum of both forces; if one is zero, the other bit for bit.
 fn with_free<const D: usize>(observed: Vector<f64, D>, free: Vector<f64, D>) -> Vector<f64, D> {
     if free == Vector::ZERO { observed } else { observed + free }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The force that motors stand for long.
+//! The limit on the continuous force, which protects motors from heat.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,33 +9,34 @@ use palpate_field::Vector;
 
 use crate::limit::shortened;
 
-/// From this part of the continuous force on, larger forces are shortened. Nearer to one, they
-/// are shortened later and faster.
+/// The part of the continuous force at which the limit begins to act. Nearer to one, it acts
+/// later and more abruptly.
 const ONSET: f64 = 0.9;
 
-/// Keeps the heat of motors below that of their continuous force.
+/// Keeps the heat in the motors below the heat of their continuous force.
 ///
-/// Heat grows with the square of the current, so of the force, and leaves in proportion to
-/// itself: with the force written `F` and a time constant `τ`, `τ dh/dt = |F|² − h`, exactly
-/// for a held force. As `√h` goes from 0.9 to 1 of the continuous force, what is longer than
-/// that is shortened to it, in proportion; so a burst of any force passes at first, and `√h`
-/// never exceeds the continuous force. Shorter forces are never changed.
+/// Heating grows with the square of the current, and so of the force; cooling is proportional
+/// to the heat. With the written force `F` and the time constant `τ`: `τ dh/dt = |F|² − h`,
+/// exact for a held force. While `√h` rises from 0.9 to 1 of the continuous force, longer
+/// forces are shortened towards the continuous force, in proportion. So a burst of any force
+/// passes at first, and `√h` never exceeds the continuous force. Forces below the continuous
+/// force are never changed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContinuousLimit {
     continuous_force: f64,
-    /// What a tick brings `h` nearer to the square of its force.
+    /// The part of its distance to `|F|²` by which `h` moves in a tick.
     part: f64,
     heat: f64,
 }
 
 impl ContinuousLimit {
-    /// For `continuous_force` [N], a time constant [s] and `rate` [Hz].
+    /// A limit for `continuous_force` [N], a time constant [s] and `rate` [Hz].
     pub(crate) fn new(continuous_force: f64, time_constant: f64, rate: f64) -> Self {
         let part = -libm::expm1(-1.0 / (time_constant * rate));
         Self { continuous_force, part, heat: 0.0 }
     }
 
-    /// What is left of a force; none if all of it.
+    /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit<const D: usize>(
@@ -54,16 +55,16 @@ impl ContinuousLimit {
         shortened(force, norm + (self.continuous_force - norm) * blend)
     }
 
-    /// Takes the force that was written in the end.
+    /// Updates the heat by the force that was written.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn written<const D: usize>(&mut self, force: Vector<f64, D>) {
-        // A square that overflows would never cool down.
+        // An infinite square would never cool down.
         let square = force.dot(force).min(f64::MAX);
         self.heat += self.part * (square - self.heat);
     }
 
-    /// `√h` [N]: the steady force that would be as warm.
+    /// `√h` [N]: the constant force that would give the same heat.
     pub(crate) fn root_mean_square(&self) -> f64 {
         self.heat.sqrt()
     }

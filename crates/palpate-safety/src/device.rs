@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a haptic device is to the servo.
+//! The interface between a haptic device and the servo.
 
 use std::borrow::Cow;
 
@@ -9,13 +9,13 @@ use palpate_field::{Point, Rotation, Vector};
 
 use crate::error::SafetyError;
 
-/// One contact point of a device, as read in a tick. Coordinates of the device, which are those
-/// of the world unless a [`WorkspaceMap`](crate::WorkspaceMap) places the device elsewhere.
+/// One contact point of a device, as read in a tick, in device coordinates. They equal world
+/// coordinates unless the servo's [protection](crate::Protection) has a workspace map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointState<const D: usize> {
-    /// Where the hand holds the device [m].
+    /// The device point: where the hand holds the device [m].
     pub position: Point<D>,
-    /// How fast it moves [m/s].
+    /// The velocity of the device point [m/s].
     pub velocity: Vector<f64, D>,
 }
 
@@ -33,28 +33,29 @@ impl<const D: usize> PointState<D> {
     }
 }
 
-/// How a device is turned, as read in a tick. Coordinates of the device.
+/// Orientation and angular velocity of a device, as read in a tick, in device coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnState<const D: usize> {
-    /// How the axes of what the hand holds lie in those of the device.
+    /// The orientation of the handle in device coordinates.
     pub orientation: Rotation<D>,
-    /// How fast it turns [rad/s]: along the axis, as the device sees it; in the plane about z
-    /// alone.
+    /// The angular velocity in device coordinates [rad/s], a vector along the axis; in the
+    /// plane only z is used.
     pub angular_velocity: Vector<f64, 3>,
 }
 
 impl<const D: usize> TurnState<D> {
-    /// Held still in an orientation.
+    /// A device at rest in an orientation.
     #[must_use]
     pub fn at_rest(orientation: Rotation<D>) -> Self {
         Self { orientation, angular_velocity: Vector::ZERO }
     }
 }
 
-/// What a device can do: data, from its maker or, where there is none, assumed.
+/// The limits and properties of a device. Numbers are the maker's where they exist, and assumed
+/// where they do not.
 ///
-/// Of a device that is not known, everything is [unlimited](Self::unlimited) until told
-/// otherwise: its maker has to say what is safe.
+/// No safe default exists for an unknown device: start from [`unlimited`](Self::unlimited) and
+/// set what its maker states as safe.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DeviceProfile {
@@ -62,7 +63,7 @@ pub struct DeviceProfile {
     pub name: Cow<'static, str>,
     /// Largest force [N].
     pub max_force: f64,
-    /// Largest force that it gives for as long as one likes [N].
+    /// Largest force that the device can give without time limit [N].
     pub continuous_force: f64,
     /// Fastest change of force [N/s].
     pub max_force_rate: f64,
@@ -72,26 +73,26 @@ pub struct DeviceProfile {
     pub max_damping: f64,
     /// Radius of the ball it reaches [m].
     pub workspace_radius: f64,
-    /// What it weighs in the hand [kg].
+    /// Apparent mass in the hand [kg].
     pub mass: f64,
-    /// The least damping of its own that can be relied on, b of Colgate and Schenkel (1997)
-    /// [N·s/m].
+    /// The least physical damping of the device that can be relied on, b of Colgate and
+    /// Schenkel (1997) [N·s/m].
     pub least_damping: f64,
-    /// Its Coulomb friction, f_c of Abbott and Okamura (2005) [N].
+    /// Coulomb friction of the device, f_c of Abbott and Okamura (2005) [N].
     pub friction: f64,
-    /// The step of its encoders at the handle [m].
+    /// Resolution of the encoders at the handle [m].
     pub encoder_step: f64,
-    /// What it can do about its axes; none of a device that does not turn.
+    /// The rotational properties; `None` for a device that does not sense orientation.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningProfile>,
-    /// Where the numbers are from.
+    /// The source of the numbers.
     pub source: Cow<'static, str>,
-    /// Which numbers are not from there, but assumed: names of fields.
+    /// Names of the fields whose numbers are assumed and not from the source.
     pub assumed: Cow<'static, [&'static str]>,
 }
 
 impl DeviceProfile {
-    /// A device that does all it is told to, without mass, friction or steps.
+    /// An ideal device: no limits, mass, friction or encoder steps.
     ///
     /// ```
     /// let ideal = palpate_safety::DeviceProfile::unlimited("ideal");
@@ -119,8 +120,8 @@ impl DeviceProfile {
 }
 
 impl DeviceProfile {
-    /// Refuses a `device` that bears less than this one: what is rendered for this one might
-    /// harm it, or be unstable on it.
+    /// Refuses a `device` with tighter limits than this one: a servo made for this profile
+    /// could harm such a device or be unstable on it.
     pub fn check_bears(&self, device: &Self) -> Result<(), SafetyError> {
         at_most("max_force", self.max_force, device.max_force, "N")?;
         at_most("continuous_force", self.continuous_force, device.continuous_force, "N")?;
@@ -130,7 +131,7 @@ impl DeviceProfile {
         at_most("least_damping", self.least_damping, device.least_damping, "N·s/m")?;
         at_least("encoder_step", self.encoder_step, device.encoder_step, "m")?;
         match (&self.turning, &device.turning) {
-            // Without a torque there is nothing to bear.
+            // Without a torque there is no limit to check.
             (None, _) => Ok(()),
             (Some(turning), None) => at_most("max_torque", turning.max_torque, 0.0, "N·m"),
             (Some(turning), Some(device)) => turning.check_bears(device),
@@ -167,14 +168,14 @@ fn at_least(
     }
 }
 
-/// What a device can do about its axes: the numbers of a [`DeviceProfile`], angles for lengths
-/// and torques for forces. They are those of the worst axis.
+/// The rotational counterpart of a [`DeviceProfile`], with angles for lengths and torques for
+/// forces. Each number holds for the worst axis.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurningProfile {
-    /// Largest torque [N·m]; zero of a device that senses how it is turned, and gives no torque.
+    /// Largest torque [N·m]; zero for a device that senses its orientation but gives no torque.
     pub max_torque: f64,
-    /// Largest torque that it gives for as long as one likes [N·m].
+    /// Largest torque that the device can give without time limit [N·m].
     pub continuous_torque: f64,
     /// Fastest change of torque [N·m/s].
     pub max_torque_rate: f64,
@@ -182,17 +183,17 @@ pub struct TurningProfile {
     pub max_stiffness: f64,
     /// Largest angular damping it renders at 1 kHz [N·m·s/rad].
     pub max_damping: f64,
-    /// Its moment of inertia in the hand [kg·m²].
+    /// Apparent moment of inertia in the hand [kg·m²].
     pub inertia: f64,
-    /// The least angular damping of its own that can be relied on [N·m·s/rad].
+    /// The least physical angular damping of the device that can be relied on [N·m·s/rad].
     pub least_damping: f64,
-    /// Its Coulomb friction [N·m].
+    /// Coulomb friction of the device [N·m].
     pub friction: f64,
-    /// The step of its encoders [rad].
+    /// Resolution of the encoders [rad].
     pub encoder_step: f64,
-    /// Where the numbers are from.
+    /// The source of the numbers.
     pub source: Cow<'static, str>,
-    /// Which numbers are not from there, but assumed: names of fields.
+    /// Names of the fields whose numbers are assumed and not from the source.
     pub assumed: Cow<'static, [&'static str]>,
 }
 
@@ -225,7 +226,7 @@ impl TurningProfile {
 }
 
 impl TurningProfile {
-    /// As [`DeviceProfile::check_bears`], about the axes.
+    /// As [`DeviceProfile::check_bears`], for the rotational limits.
     fn check_bears(&self, device: &Self) -> Result<(), SafetyError> {
         at_most("max_torque", self.max_torque, device.max_torque, "N·m")?;
         let (torque, of_device) = (self.continuous_torque, device.continuous_torque);
@@ -243,24 +244,25 @@ impl TurningProfile {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the device was lost: {reason}")]
 pub struct DeviceLost {
-    /// What its transport said.
+    /// The message of the transport.
     pub reason: String,
 }
 
 /// A haptic device with one contact point or more.
 ///
-/// A stylus has one point, a glove one for each finger. Coordinates of the device both ways: a
-/// [`WorkspaceMap`](crate::WorkspaceMap) of the servo takes them to the world.
+/// A stylus has one point, a glove one for each finger. States and forces are in device
+/// coordinates; the servo's [`WorkspaceMap`](crate::WorkspaceMap) converts them to the world
+/// and back.
 ///
-/// A device that turns, with six degrees of freedom in space or three in the plane, also
-/// [says how it is turned](Self::read_turn) and [takes a torque](Self::write_torque); a
-/// tool with a shape turns with its one point. Other devices leave both as they
-/// are.
+/// A device with rotation, six degrees of freedom in space or three in the plane, also
+/// implements [`read_turn`](Self::read_turn) and [`write_torque`](Self::write_torque); a rigid
+/// [`Tool`](crate::Tool) then turns with the device's one contact point. Other devices keep the
+/// provided implementations.
 pub trait Device<const D: usize> {
-    /// How many contact points it has; the same for life.
+    /// The number of contact points; it never changes.
     fn points(&self) -> usize;
 
-    /// What it can do.
+    /// The limits and properties of the device.
     fn profile(&self) -> &DeviceProfile;
 
     /// Reads every contact point into `points`, which has one place for each, at `time` [s]
@@ -270,8 +272,8 @@ pub trait Device<const D: usize> {
     ///
     /// # Errors
     ///
-    /// [`DeviceLost`] if there is nothing more to read, ever; the servo then stops. A reading
-    /// that fails once should repeat the last one.
+    /// [`DeviceLost`] if the device can never be read again; the servo then stops. A reading
+    /// that fails once should repeat the last state.
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost>;
 
     /// Writes one force on the hand for every contact point [N].
@@ -283,8 +285,8 @@ pub trait Device<const D: usize> {
     /// As [`read`](Self::read).
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost>;
 
-    /// How the hand turns the device, at the time of the last [`read`](Self::read); `None`, always,
-    /// of a device that does not turn.
+    /// Orientation and angular velocity at the time of the last [`read`](Self::read); always
+    /// `None` for a device without rotation.
     ///
     /// Real-time: called in every tick.
     ///
@@ -295,11 +297,11 @@ pub trait Device<const D: usize> {
         Ok(None)
     }
 
-    /// Writes the torque on the hand about the device point [N·m], along its axis; in the plane
-    /// about z alone.
+    /// Writes the torque on the hand about the device point [N·m], a vector along its axis; in
+    /// the plane only z is used.
     ///
-    /// Real-time: called in every tick of a device that turns, after [`write`](Self::write), and
-    /// once with no torque when the servo stops.
+    /// Real-time: called in every tick of a device with rotation, after [`write`](Self::write),
+    /// and once with zero torque when the servo stops.
     ///
     /// # Errors
     ///

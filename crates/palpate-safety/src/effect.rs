@@ -5,34 +5,34 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::passivity::Directed;
+use crate::passivity::InnerProduct;
 
 /// What a stage of the safety chain did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Effect {
-    /// Ticks in which it changed the force.
+    /// Ticks in which the stage changed the force.
     pub ticks: u64,
-    /// The largest change of the force [N], or of the torque [N·m], of those that are finite.
+    /// The largest finite change of the force [N] or of the torque [N·m].
     pub largest: f64,
 }
 
 impl Effect {
-    /// Counts what a stage made of a force, which is nothing if it let it pass; returns what
-    /// is left of it.
+    /// Counts the action of a stage; `changed` is `None` if the force passed unchanged. Returns
+    /// the force after the stage.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline]
-    pub(crate) fn count<V: Directed>(&mut self, before: V, changed: Option<V>) -> V {
+    pub(crate) fn count<V: InnerProduct>(&mut self, before: V, changed: Option<V>) -> V {
         match changed {
             None => before,
             Some(after) => self.note(before, after),
         }
     }
 
-    /// Apart from the way of a force that every stage lets pass.
+    /// Out of line, because forces usually pass unchanged.
     #[cold]
-    fn note<V: Directed>(&mut self, before: V, after: V) -> V {
+    fn note<V: InnerProduct>(&mut self, before: V, after: V) -> V {
         // NaN differs from itself.
         if before != after {
             self.ticks += 1;

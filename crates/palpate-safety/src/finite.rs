@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The last number that is not one.
+//! The guard against numbers that are not finite.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,17 +9,17 @@ use palpate_field::Vector;
 
 use crate::PortState;
 
-/// `true` if forces, position and velocity are numbers.
+/// `true` if forces, position and velocity are finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn is_sound<const D: usize>(wanted: Vector<f64, D>, state: &PortState<D>) -> bool {
-    // Zero times a number is zero; times what is none, NaN.
+    // Zero times a finite number is zero; zero times infinity or NaN is NaN.
     let vectors = [state.position, state.velocity, state.free_force];
     let nothing = vectors.into_iter().fold(wanted * 0.0, |sum, vector| sum + vector * 0.0);
     nothing == Vector::ZERO
 }
 
-/// No force, unless what led to `force` was sound and it is finite.
+/// `force`, or zero if an input or `force` is not finite.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn guarded<const D: usize>(

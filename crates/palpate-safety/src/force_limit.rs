@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The largest force.
+//! The limit on the largest force.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,14 +9,14 @@ use palpate_field::Vector;
 
 use crate::limit::shortened;
 
-/// Shortens what is longer than a length, keeping its direction.
+/// Shortens a force to a largest length, keeping its direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceLimit {
     max_force: f64,
 }
 
 impl ForceLimit {
-    /// Forces of at most `max_force` [N].
+    /// A limit of `max_force` [N].
     pub(crate) fn new(max_force: f64) -> Self {
         Self { max_force }
     }
@@ -29,7 +29,7 @@ impl ForceLimit {
         self.max_force = self.max_force.min(max_force);
     }
 
-    /// What is left of a force; none if all of it.
+    /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit<const D: usize>(

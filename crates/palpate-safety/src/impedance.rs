@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Stiffness and damping: what decides whether a device stays passive.
+//! Stiffness and damping of a virtual wall, which decide whether a device stays passive.
 
 use crate::error::{SafetyError, not_negative, positive};
 
@@ -46,7 +46,8 @@ impl Impedance {
 }
 
 impl Default for Impedance {
-    /// 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m of its own.
+    /// 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m of physical
+    /// damping.
     fn default() -> Self {
         Self { stiffness: 500.0, damping: 1.0 }
     }

@@ -47,4 +47,4 @@ pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 pub use rotation::{cross, in_place, in_space, turn_between, turned};
 pub use velocity::VelocityEstimator;
 pub use workspace::WorkspaceMap;
-pub use wrench::{Both, WrenchChain, WrenchState};
+pub use wrench::{PerMotion, SpatialVector, WrenchChain, WrenchState};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A force is no larger than a device may give, or than the one before.
+//! Limits on the length of a force.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -23,7 +23,7 @@ pub fn limited<const D: usize>(force: Vector<f64, D>, max_force: f64) -> Vector<
     shortened(force, max_force).unwrap_or(force)
 }
 
-/// Likewise; none if `force` is no longer than that.
+/// `force` shortened to `max_force` [N]; `None` if it is no longer than that.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 #[inline]
@@ -31,20 +31,21 @@ pub(crate) fn shortened<const D: usize>(
     force: Vector<f64, D>,
     max_force: f64,
 ) -> Option<Vector<f64, D>> {
-    // No force is infinite, even where no limit is. Written so that NaN is shortened.
+    // The force is finite even if the limit is not. Written so that NaN is shortened.
     let most = max_force.min(f64::MAX);
     let passes = force.norm() <= most;
     (!passes).then(|| of_length(force, most))
 }
 
-/// A vector of this length along `force`; zero if that is not finite.
+/// A vector of length `length` along `force`; zero if `force` is not finite.
 #[cold]
 fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, D> {
     // The norm of a huge but finite force overflows; its direction does not.
     force.normalized().map_or(Vector::ZERO, |direction| direction * length)
 }
 
-/// The part of a force that is as large as the one `before`; all of one that is no larger.
+/// The factor in [0, 1] that shortens a force of size `now` to the size `before`; one if `now`
+/// is no larger.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub fn part_of(before: f64, now: f64) -> f64 {
@@ -66,7 +67,7 @@ mod tests {
     fn a_force_that_is_not_finite_is_none() {
         assert_eq!(limited(Vector([f64::NAN, 1.0]), 2.0), Vector::ZERO);
         assert_eq!(limited(Vector([f64::INFINITY, 1.0]), 2.0), Vector::ZERO);
-        // Without a limit it once passed as it was. Found by fuzzing.
+        // An infinite force is zero even without a limit. Found by fuzzing.
         assert_eq!(limited(Vector([f64::INFINITY, 1.0]), f64::INFINITY), Vector::ZERO);
         let huge = Vector([f64::MAX, -f64::MAX]);
         assert!(limited(huge, f64::INFINITY).is_finite());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a device can do, along its axes or about them, in one form: torques are to angles what
-//! forces are to lengths, so that each rule and each stage stands once.
+//! The limits of a device in one form for translation and rotation, so that each rule and each
+//! stage is written once: torque corresponds to force, and angle to length.
 
 use std::borrow::Cow;
 
@@ -34,8 +34,8 @@ impl Limit {
     }
 }
 
-/// The limits of a device along its axes, or about them: then angles stand for lengths and torques
-/// for forces.
+/// The translational or rotational numbers of a profile, under the names of the translational
+/// ones.
 #[derive(Clone, Debug)]
 pub struct Limits {
     pub(crate) max_force: Limit,
@@ -47,14 +47,14 @@ pub struct Limits {
     pub(crate) least_damping: Limit,
     pub(crate) friction: Limit,
     pub(crate) encoder_step: Limit,
-    /// The rules, in the order in which they are asked.
+    /// The rules, in the order in which they are checked.
     pub(crate) rules: [Rule; 4],
     pub(crate) is_turning: bool,
     pub(crate) assumed: Cow<'static, [&'static str]>,
 }
 
 impl Limits {
-    /// Along the axes of a device.
+    /// The translational limits of a device.
     #[must_use]
     pub fn along(device: &DeviceProfile) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Limits {
         }
     }
 
-    /// About the axes of a device.
+    /// The rotational limits of a device.
     #[must_use]
     pub fn about(device: &TurningProfile) -> Self {
         let limit = |value, name, unit| Limit::new(value, name, unit);

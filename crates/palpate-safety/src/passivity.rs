@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Energy given to the hand is energy taken from it.
+//! The passivity observer and controller: a rendering gives the hand no more energy than it
+//! took.
 //!
 //! B. Hannaford, J.-H. Ryu, "Time-domain passivity control of haptic interfaces" (2002): an
-//! observer of energy, and a controller that acts when it runs out. J.-P. Kim, J. Ryu,
-//! "Robustly stable haptic interaction control using an energy-bounding algorithm" (2010): what
-//! a sampled spring gives out in excess may be as much as the device's own damping eats.
+//! observer of energy, and a controller that acts when the energy balance is used up. J.-P.
+//! Kim, J. Ryu, "Robustly stable haptic interaction control using an energy-bounding algorithm"
+//! (2010): a sampled spring may leak as much energy as the device's own damping dissipates.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -16,23 +17,23 @@ use palpate_field::Vector;
 
 use crate::effect::Effect;
 
-/// What a tick's leak still weighs a tick later, in the verdict on whether damping covers it: a
-/// memory of 100 ticks of contact, several strikes.
+/// The factor by which past leaks and losses decay in each tick of contact, when they are
+/// compared: a memory of 100 ticks, which spans several impacts.
 const MEMORY: f64 = 0.99;
 
-/// A force is not made smaller than to this part of what damping covers. With one, walls of
-/// `2 b / T` are left, which hardly come to rest; with zero, hands sink into walls that are seen
-/// in steps, as a hand that rests between two of them seems to be worked on.
+/// The controller leaves at least this part of the force whose leaks damping covers. With one,
+/// walls of `2 b / T` would remain, which hardly come to rest; with zero, hands would sink into
+/// walls, because position quantisation looks like work done on a resting hand.
 const FLOOR: f64 = 0.25;
 
-/// A force, a way or a velocity, as energy knows them: vectors, or [along axes and about
-/// them](super::Both).
-pub(crate) trait Directed:
+/// A force, displacement or velocity with the inner product that gives energy: a vector, or a
+/// [spatial vector](super::SpatialVector) of translation and rotation.
+pub(crate) trait InnerProduct:
     Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
     const ZERO: Self;
 
-    /// Force on way, or the square of either.
+    /// The inner product: work of a force along a displacement, or a squared length.
     fn dot(self, other: Self) -> f64;
 
     fn norm(self) -> f64;
@@ -41,7 +42,7 @@ pub(crate) trait Directed:
     fn is_finite(&self) -> bool;
 }
 
-impl<const D: usize> Directed for Vector<f64, D> {
+impl<const D: usize> InnerProduct for Vector<f64, D> {
     const ZERO: Self = Vector::ZERO;
 
     fn dot(self, other: Self) -> f64 {
@@ -57,64 +58,66 @@ impl<const D: usize> Directed for Vector<f64, D> {
     }
 }
 
-/// Where a device is in a tick, and how fast it moves.
+/// Position and velocity of a device in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen<V> {
     pub(crate) position: V,
     pub(crate) velocity: V,
-    /// The force [starts](super::PortState::start) to rise: that of bodies that came to the hand,
-    /// and brought what they hold.
+    /// Whether the force [starts](super::PortState::start) to rise, because a body moved onto
+    /// the hand and brought its own stored energy.
     pub(crate) has_start: bool,
 }
 
-/// What the passivity observer saw and the controller did.
+/// Energies that the passivity observer measured, and the controller's interventions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassivityReport {
     /// Interventions, and the largest change of the force.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// Energy that the forces written took from the hand [J].
+    /// Energy that the written forces took from the hand [J].
     pub energy_in: f64,
-    /// Energy that they gave to it [J].
+    /// Energy that the written forces gave to the hand [J].
     pub energy_out: f64,
-    /// The least balance of the two at any time [J]: what was given out in net is its negative.
+    /// The least value of taken minus given energy at any time [J]; if negative, its size is
+    /// the net energy given out.
     pub least_balance: f64,
-    /// Energy that the wanted forces would have given out, but those written did not [J].
+    /// Energy that the wanted forces would have given out, but the written forces did not [J].
     pub dissipated: f64,
 }
 
 /// The passivity observer and controller of one contact point.
 ///
-/// *Observer.* A force is held over a tick, so the energy it takes from the hand is exactly
-/// `−F_k · (x_{k+1} − x_k)`, whatever the motion between. With the device's damping `b`, at
-/// least `b |x_{k+1} − x_k|² / T` of it is lost in the device on the way (Cauchy and Schwarz).
+/// **Observer.* A force is held over a tick, so the energy that it takes from the hand is
+/// exactly `−F_k · (x_{k+1} − x_k)`, whatever the motion between. The device's damping `b`
+/// dissipates at least `b |x_{k+1} − x_k|² / T` of it (Cauchy and Schwarz).
 ///
-/// *Credit.* A held spring gives out `K |Δx|² / 2` a tick more than it stored. Where the device
-/// is sure to lose as much, up to `K = 2 b / T`, rendering is passive as it is, and each tick is
-/// credited with the loss: the balance then is never below the spring's energy, and nothing is
-/// ever changed. Whether it does is observed, not believed: the leaks `−½ ΔF·Δx` of the wanted
-/// forces over the last [`MEMORY`] of contact are compared with the losses. Where they are
-/// larger, there is no credit, and all that is given out must have been taken in before.
+/// **Credit.* A sampled spring gives out `K |Δx|² / 2` a tick more than it stored. Up to `K = 2
+/// b / T` the device is sure to dissipate as much, so the rendering is passive. Each tick then
+/// credits the loss to the balance, which never falls below the spring's energy, and the force
+/// is never changed. The controller measures whether this holds: it compares the leaks `−½
+/// ΔF·Δx` of the wanted forces over the last [`MEMORY`] of contact with the losses. If the
+/// leaks are larger, there is no credit, and all energy given out must have been taken in
+/// before.
 ///
-/// *Controller.* A force is made smaller, as a whole, until the energy that it gives out in the
-/// coming tick is no more than the balance and a reserve. The motion is predicted from the
-/// velocity and from what this force and the one before do to the device's mass. Where the
-/// fastest change of force keeps it from being taken back at once, what it gives out until then
-/// counts too. A part of the
-/// force remains in any case, [`FLOOR`] of that whose leaks damping covers; a wall so soft comes
-/// to rest by itself. The balance is
-/// at most what a spring of the material's stiffness holds at this force, `½ |F|² / K`, so that
-/// a long rub against friction does not pay for an oscillation; a source of constant force that
-/// is to give back more than that must do without this stage.
+/// **Controller.* The whole force is scaled down until the energy that it gives out in the
+/// coming tick is no more than the balance plus a reserve. The motion is predicted from the
+/// velocity, and from the acceleration of the device's mass by this force and the one before.
+/// If the slew limit would prevent a fast removal of the force, the energy given out during the
+/// removal counts too. The controller always leaves [`FLOOR`] of the force whose leaks damping
+/// covers; a wall that soft comes to rest by itself. The balance is capped at the energy of a
+/// spring of the material's stiffness at this force, `½ |F|² / K`, so that a long rub against
+/// friction does not pay for an oscillation. A source of constant force that must give back
+/// more than that cannot use this stage.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passivity<V> {
     options: PassivityOptions,
-    /// As [`PassivityOptions::yielding`] [m/N].
-    yielding: f64,
-    /// Taken in, credited and capped [J].
+    /// As [`PassivityOptions::compliance`] [m/N].
+    compliance: f64,
+    /// The energy balance: taken in, plus credit, capped [J].
     balance: f64,
-    /// Leaks of the wanted forces in contact, and what damping is sure to lose [J].
+    /// Leaks of the wanted forces in contact, and losses that damping guarantees; both decay by
+    /// [`MEMORY`] [J].
     leaks: f64,
     losses: f64,
     last: Option<Last<V>>,
@@ -124,23 +127,24 @@ pub(crate) struct Passivity<V> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PassivityOptions {
     pub(crate) is_on: bool,
-    /// At the device [N/m].
+    /// The stiffness at the device [N/m].
     pub(crate) stiffness: f64,
     /// The device's least damping [N·s/m].
     pub(crate) damping: f64,
     /// The device's mass [kg]; 0 if it is not known.
     pub(crate) mass: f64,
-    /// How fast the force can be taken back [N/s].
+    /// The slew limit: how fast the force can be removed [N/s].
     pub(crate) max_rate: f64,
-    /// What may be given out before anything was taken in [J].
+    /// Energy that may be given out before any was taken in [J].
     pub(crate) reserve: f64,
-    /// Of a tick [s].
+    /// The duration of a tick [s].
     pub(crate) period: f64,
 }
 
 impl PassivityOptions {
-    /// How far a force moves the device's mass in a tick [m/N]; not at all where it is not known.
-    fn yielding(&self) -> f64 {
+    /// The displacement of the device's mass in a tick per force [m/N]; zero if the mass is not
+    /// known.
+    fn compliance(&self) -> f64 {
         if self.mass > 0.0 { 0.5 * self.period * self.period / self.mass } else { 0.0 }
     }
 }
@@ -152,11 +156,11 @@ struct Last<V> {
     written: V,
 }
 
-impl<V: Directed> Passivity<V> {
+impl<V: InnerProduct> Passivity<V> {
     pub(crate) fn new(options: PassivityOptions) -> Self {
         Self {
             options,
-            yielding: options.yielding(),
+            compliance: options.compliance(),
             balance: 0.0,
             leaks: 0.0,
             losses: 0.0,
@@ -169,15 +173,15 @@ impl<V: Directed> Passivity<V> {
         &self.options
     }
 
-    /// Watches over another rendering from now on; what was taken in before counts.
+    /// Replaces the options; the energy balance stays.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn renew(&mut self, options: PassivityOptions) {
         self.options = options;
-        self.yielding = options.yielding();
+        self.compliance = options.compliance();
     }
 
-    /// The same in other units of ways and of forces.
+    /// Converts the state to other units of displacement and force.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn in_units(&mut self, way: impl Fn(V) -> V, force: impl Fn(V) -> V) {
@@ -187,7 +191,8 @@ impl<V: Directed> Passivity<V> {
         }
     }
 
-    /// The force that may be written in place of `wanted`; of what is not sound, as it is.
+    /// The force that may be written in place of `wanted`. If an input is not finite, `wanted`
+    /// is returned unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn observed(&mut self, wanted: V, state: &Seen<V>, is_sound: bool) -> V {
@@ -218,7 +223,7 @@ impl<V: Directed> Passivity<V> {
         allowed
     }
 
-    /// Takes the force that was written in the end.
+    /// Records the force that was written.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn written(&mut self, force: V) {
@@ -227,7 +232,8 @@ impl<V: Directed> Passivity<V> {
         }
     }
 
-    /// The position is not known: what happens until it is again cannot be observed.
+    /// Forgets the last position, because the present one is not finite: energy cannot be
+    /// observed until the next one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn lose(&mut self) {
@@ -238,11 +244,11 @@ impl<V: Directed> Passivity<V> {
         self.report
     }
 
-    /// Books the tick that ends now, over which the device moved by `way`.
+    /// Updates the balance for the tick that ends now, in which the device moved by `way`.
     fn observe(&mut self, last: &Last<V>, wanted: V, way: V) {
         let PassivityOptions { damping, reserve, period, .. } = self.options;
         if [last.written, last.wanted, wanted] == [V::ZERO; 3] {
-            // No force does work, and none holds energy.
+            // A zero force does no work and stores no energy.
             self.balance = self.balance.min(0.0);
             return;
         }
@@ -269,36 +275,37 @@ impl<V: Directed> Passivity<V> {
         };
         self.balance = self.balance.min(self.stored(largest));
         if !(self.balance.is_finite() && self.leaks.is_finite() && self.losses.is_finite()) {
-            // Numbers overflowed: nothing is known to have been taken in.
+            // Numbers overflowed: assume that no energy was taken in.
             (self.balance, self.leaks, self.losses) = (-reserve, 1.0, 0.0);
         }
     }
 
-    /// What a spring of the material's stiffness holds at `force` [J].
+    /// The energy of a spring of the material's stiffness at `force` [J].
     fn stored(&self, force: V) -> f64 {
         0.5 * force.dot(force) / self.options.stiffness
     }
 
-    /// `true` if the device's own damping eats what the rendering leaks.
+    /// `true` if the device's own damping dissipates what the rendering leaks.
     fn is_covered(&self) -> bool {
         self.leaks <= self.losses
     }
 
-    /// The part of `wanted` that gives out no more than there is.
+    /// The part of `wanted` that gives out no more than the balance and the reserve.
     fn part(&self, wanted: V, held: V, way: V, state: &Seen<V>) -> f64 {
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve).max(0.0);
-        let yielding = self.yielding;
-        // The mean velocity of the last tick is half a tick old, and what was held has changed
-        // it since. The estimate may be older, or better: the one that gives more out counts.
-        let by_way = way + held * yielding;
-        let by_velocity = state.velocity * period + held * yielding;
+        let compliance = self.compliance;
+        // The mean velocity of the last tick is half a tick old, and the held force has changed
+        // it since. The given estimate may be older or better. Use the one that gives out more.
+        let by_way = way + held * compliance;
+        let by_velocity = state.velocity * period + held * compliance;
         let coasting =
             if wanted.dot(by_way) >= wanted.dot(by_velocity) { by_way } else { by_velocity };
-        let moved = coasting + wanted * yielding;
+        let moved = coasting + wanted * compliance;
         let loss = if self.is_covered() { damping * moved.dot(moved) / period } else { 0.0 };
-        // Where the force cannot be taken back at once, what it gives out until it is: the power
-        // of now, falling to nothing. Only where it may have to be.
+        // If the slew limit prevents removing the force at once, the energy given out during
+        // the removal: the present power, falling to zero. Needed only if damping does not
+        // cover the leaks.
         let trailing = if self.is_covered() {
             0.0
         } else {
@@ -311,16 +318,16 @@ impl<V: Directed> Passivity<V> {
         let part = part_within(
             available,
             wanted.dot(coasting),
-            wanted.dot(wanted) * yielding + trailing,
+            wanted.dot(wanted) * compliance + trailing,
         );
-        // Where damping covers the leaks, the balance knows that already.
+        // Where damping covers the leaks, the balance already has the credit.
         let floor = if self.is_covered() { 0.0 } else { FLOOR * self.losses / self.leaks };
         part.max(floor)
     }
 }
 
-/// The largest `s` in [0, 1] with `s linear + s² square ≤ available`, where nothing but
-/// `linear` may be negative; zero if it is not a number.
+/// The largest `s` in [0, 1] with `s linear + s² square ≤ available`, where only `linear` may
+/// be negative; zero if it is NaN.
 fn part_within(available: f64, linear: f64, square: f64) -> f64 {
     let root = (linear * linear + 4.0 * square * available).sqrt();
     let part = if linear > 0.0 {

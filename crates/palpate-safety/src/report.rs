@@ -1,63 +1,63 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What every stage of a safety chain did.
+//! The report of a safety chain.
 
 use crate::Accepted;
 use crate::channel::Channel;
 use crate::effect::Effect;
 use crate::passivity::PassivityReport;
 
-/// What every stage of a safety chain did, since it was made.
+/// Actions of every stage of a safety chain since it was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SafetyReport {
     /// Ticks done.
     pub ticks: u64,
-    /// What became of the impedance.
+    /// The accepted stiffness and damping.
     pub impedance: Accepted,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
-    /// The fastest change of force; counted where it is limited first, and once more where it
-    /// had to be limited after the stages behind.
+    /// The slew limit. A tick counts twice if the force had to be limited again after the later
+    /// stages.
     pub slew: Effect,
-    /// The largest force.
+    /// The force limit.
     pub force_limit: Effect,
-    /// The continuous force.
+    /// The limit on the continuous force.
     pub continuous: ContinuousReport,
-    /// Inputs that were not numbers.
+    /// The guard against inputs that are not finite.
     pub guard: Effect,
-    /// Rises after the start, placements and emergencies.
+    /// The ramp after the start, placements and emergency stops.
     pub ramp: Effect,
     /// The deadline watchdog.
     pub watchdog: WatchdogReport,
     /// The emergency stop.
     pub emergency_stop: Effect,
-    /// How often it was pulled.
+    /// The number of emergency stops.
     pub stops: u64,
-    /// What the stages of the torque did; none of a device that gives no torque.
+    /// The stages of the torque; `None` for a device that gives no torque.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningReport>,
 }
 
-/// What every stage that the torque passes did, at a device that turns: changes are in N·m.
-/// Passivity is that of force and torque together, [`SafetyReport::passivity`].
+/// Actions of the stages of the torque, for a device with rotation; changes are in N·m.
+/// Passivity covers force and torque together: see [`SafetyReport::passivity`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurningReport {
-    /// What became of the coupling's angular stiffness and damping.
+    /// The accepted angular stiffness and damping of the coupling.
     pub impedance: Accepted,
     /// The largest torque that was written [N·m].
     pub largest_torque: f64,
-    /// The fastest change of torque.
+    /// The slew limit.
     pub slew: Effect,
-    /// The largest torque.
+    /// The torque limit.
     pub torque_limit: Effect,
-    /// The continuous torque; its root mean square is in N·m.
+    /// The limit on the continuous torque; its root mean square is in N·m.
     pub continuous: ContinuousReport,
-    /// Inputs that were not numbers.
+    /// The guard against inputs that are not finite.
     pub guard: Effect,
-    /// Rises after the start, placements and emergencies.
+    /// The ramp after the start, placements and emergency stops.
     pub ramp: Effect,
     /// The deadline watchdog.
     pub watchdog: WatchdogReport,
@@ -65,29 +65,29 @@ pub struct TurningReport {
     pub emergency_stop: Effect,
 }
 
-/// What the limit of the continuous force did.
+/// Actions of the limit on the continuous force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContinuousReport {
-    /// How often it acted, and how much.
+    /// Actions of the stage.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// The steady force that would be as warm now [N]; of torques [N·m].
+    /// The constant force that would give the present heat [N]; for torques [N·m].
     pub root_mean_square: f64,
 }
 
-/// What the deadline watchdog did.
+/// Actions of the deadline watchdog.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WatchdogReport {
-    /// How often it acted, and how much.
+    /// Actions of the stage.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
-    /// How often it tripped.
+    /// The number of times the watchdog tripped.
     pub trips: u64,
 }
 
-/// Counts of the stages that do not keep their own.
+/// Counts of the stages that keep none of their own.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Effects {
     pub(crate) ticks: u64,
@@ -102,7 +102,7 @@ pub(crate) struct Effects {
 }
 
 impl SafetyReport {
-    /// What the stages of a chain of forces did.
+    /// The report of a chain of forces.
     pub(crate) fn of<const D: usize>(
         accepted: &Accepted,
         passivity: PassivityReport,
@@ -127,7 +127,7 @@ impl SafetyReport {
 }
 
 impl TurningReport {
-    /// What the stages of a chain of torques did.
+    /// The report of a chain of torques.
     pub(crate) fn of(accepted: &Accepted, largest_torque: f64, channel: &Channel<3>) -> Self {
         let effects = channel.effects;
         Self {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Turns as vectors: along their axis, as long as their angle [rad]; in the plane along z.
+//! Rotation vectors: along the axis, with the angle as length [rad]; in the plane along z.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -10,10 +10,10 @@ use palpate_field::{Rotation, Vector};
 /// Below this angle [rad], sin θ / θ is one to the last bit.
 const TINY: f64 = 1e-9;
 
-/// `rotation` turned further by a vector along the axis, as long as the angle [rad]; in the plane
-/// along z.
+/// `rotation` followed by the rotation of the vector `by`, which lies along the axis with the
+/// angle as length [rad]; in the plane along z.
 ///
-/// Orthonormal to rounding, so that turns may be chained for ever.
+/// The result is orthonormal to rounding, so that any number of rotations may be chained.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
@@ -30,7 +30,7 @@ pub fn turned<const D: usize>(rotation: &Rotation<D>, by: Vector<f64, 3>) -> Rot
     Rotation::from_matrix(*turned.matrix()).unwrap_or(*rotation)
 }
 
-/// The vector that turns `from` into `to`, at most π long [rad]: undoes [`turned`].
+/// The rotation vector from `from` to `to`, at most π long [rad]: the inverse of [`turned`].
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
@@ -85,7 +85,7 @@ fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
     Rotation::from_matrix(rows).unwrap_or_else(|_| Rotation::identity())
 }
 
-/// The vector of a rotation, at most π long: `2 atan2(‖q‖, w) q / ‖q‖` of its quaternion.
+/// The rotation vector, at most π long: `2 atan2(‖q‖, w) q / ‖q‖` for the quaternion `(q, w)`.
 fn angle<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
     let rows = std::array::from_fn(|i| {
         let unit = Vector::<f64, 3>::unit(i).0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How fast a force may change.
+//! The slew limit: how fast a force may change.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,7 +9,7 @@ use palpate_field::Vector;
 
 use crate::limit::shortened;
 
-/// Follows a force by at most so much a tick, on the straight line to it.
+/// Follows a force on a straight line, by at most a fixed step a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlewLimit<const D: usize> {
     /// The largest change a tick [N].
@@ -18,12 +18,12 @@ pub(crate) struct SlewLimit<const D: usize> {
 }
 
 impl<const D: usize> SlewLimit<D> {
-    /// Changes of at most `max_rate` [N/s] at `rate` [Hz].
+    /// A limit of `max_rate` [N/s] at `rate` [Hz].
     pub(crate) fn new(max_rate: f64, rate: f64) -> Self {
         Self { step: max_rate / rate, last: Vector::ZERO }
     }
 
-    /// How far a force is followed; none if all the way.
+    /// The limited force; `None` if it is unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit(&mut self, force: Vector<f64, D>) -> Option<Vector<f64, D>> {
@@ -39,7 +39,7 @@ impl<const D: usize> SlewLimit<D> {
         }
     }
 
-    /// The next force follows none.
+    /// Forgets the last force: the next force starts from zero.
     pub(crate) fn restart(&mut self) {
         self.last = Vector::ZERO;
     }

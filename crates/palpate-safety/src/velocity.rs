@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How fast a device point moves, from positions in steps.
+//! The velocity of a device point, estimated from quantised positions.
 //!
 //! F. Janabi-Sharifi, V. Hayward, C.-S. J. Chen, "Discrete-time adaptive windowing for velocity
 //! estimation" (2000): the first-order adaptive window, fitted to its ends.
@@ -12,12 +12,11 @@ use palpate_field::{Point, Vector};
 
 use crate::error::{SafetyError, not_negative, positive};
 
-/// The longest window, in periods. A longer one is quieter at constant speed, and no faster
-/// anywhere.
+/// The longest window, in periods. A longer window would reduce noise at constant speed only.
 const LONGEST: usize = 16;
 
-/// What is allowed beyond a step, as a part of it: positions in steps may be just a step off a
-/// line, and rounding is not to decide.
+/// Tolerance on the encoder step, as a part of it: quantised positions may lie exactly one step
+/// off a line, and rounding must not decide.
 const SLACK: f64 = 1e-6;
 
 /// Velocity over the longest window in which the positions lie on a straight line.
@@ -34,7 +33,7 @@ const SLACK: f64 = 1e-6;
 /// periods and `|v − v_true| ≤ Δ / (16 T)` on each axis: a sixteenth of the error of the plain
 /// difference. At a jump the window is one period, so nothing is delayed.
 ///
-/// Without steps, `Δ = 0`, it is the plain difference.
+/// Without encoder steps (`Δ = 0`) the estimate is the plain difference.
 ///
 /// # Examples
 ///
@@ -54,7 +53,7 @@ pub struct VelocityEstimator<const D: usize> {
     rate: f64,
     /// How far from the line a position may be [m].
     step: f64,
-    /// Round and round: from the newest on, the older the farther.
+    /// A ring buffer: from the newest position on, each next one is older.
     positions: [Point<D>; LONGEST],
     newest: usize,
     known: usize,
@@ -62,7 +61,7 @@ pub struct VelocityEstimator<const D: usize> {
 }
 
 impl<const D: usize> VelocityEstimator<D> {
-    /// For positions at `rate` [Hz] in steps of `encoder_step` [m].
+    /// An estimator for positions read at `rate` [Hz] and quantised to `encoder_step` [m].
     ///
     /// # Errors
     ///
@@ -79,10 +78,10 @@ impl<const D: usize> VelocityEstimator<D> {
         })
     }
 
-    /// Takes the `position` of the next tick [m]; the velocity [m/s].
+    /// Adds the `position` of the next tick [m] and returns the velocity [m/s].
     ///
-    /// Zero for the first position. One that is not finite forgets all before it, and gives
-    /// zero.
+    /// The velocity is zero at the first position. A position that is not finite clears the
+    /// window and gives zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most 16 positions
     /// an axis.
@@ -113,8 +112,8 @@ impl<const D: usize> VelocityEstimator<D> {
     /// The longest window up to `position` in which the positions lie on a line.
     #[inline]
     fn window_to(&self, position: Point<D>, longest: usize) -> usize {
-        // A line from the newest position passes all of a window, by a step at most, if its way
-        // in a period is between these.
+        // A line from the newest position passes within a step of every position of the window
+        // if its displacement per period lies between these bounds.
         let (mut least, mut most) = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
         for window in 1..=longest {
             let Some(way) = self.way(position, window) else { return window - 1 };
@@ -125,7 +124,8 @@ impl<const D: usize> VelocityEstimator<D> {
                 if !is_on_line {
                     return window - 1;
                 }
-                // Of numbers alone, of which the larger is one instruction.
+                // Plain comparisons compile to one instruction each; `f64::max` must also treat
+                // NaN.
                 *least = if *least > way - step { *least } else { way - step };
                 *most = if *most < way + step { *most } else { way + step };
             }
@@ -133,7 +133,7 @@ impl<const D: usize> VelocityEstimator<D> {
         longest
     }
 
-    /// The way in a period from the position so many periods ago; none from this one.
+    /// The mean displacement per period over `window` periods; `None` for a window of zero.
     #[inline]
     fn way(&self, position: Point<D>, window: usize) -> Option<Vector<f64, D>> {
         let oldest = self.positions.get((self.newest + window.checked_sub(1)?) % LONGEST)?;
@@ -146,14 +146,14 @@ impl<const D: usize> VelocityEstimator<D> {
         self.window = 0;
     }
 
-    /// Over how many periods the last velocity was taken; 0 if there was none.
+    /// The number of periods over which the last velocity was taken; 0 without a velocity.
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
     }
 }
 
-/// By way of 32 bits, from which a conversion is one instruction.
+/// Converted by way of `u32`, because that conversion is one instruction.
 #[inline]
 fn per_window(window: usize) -> f64 {
     1.0 / f64::from(window as u32)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Forces that nobody looks after fall to zero.
+//! The deadline watchdog.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -11,12 +11,12 @@ use crate::ramp::Ramp;
 
 /// Lowers the force to zero while ticks are late.
 ///
-/// A force held for too long pushes the hand where it no longer should. After so many late
-/// ticks in a row the force falls to zero; after as many in time it rises again.
+/// A force that is held for too long is stale. After a number of consecutive late ticks the
+/// force falls to zero; after as many ticks in time it rises again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watchdog {
     limit: u32,
-    /// Ticks in a row that contradict the present verdict.
+    /// Consecutive ticks that contradict the present state.
     contrary: u32,
     tripped: bool,
     ramp: Ramp,
@@ -28,7 +28,7 @@ impl Watchdog {
         Self { limit: limit.get(), contrary: 0, tripped: false, ramp, trips: 0 }
     }
 
-    /// The part of the force that is given in this tick.
+    /// The factor on the force in this tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(&mut self, is_late: bool) -> f64 {
@@ -41,7 +41,7 @@ impl Watchdog {
         self.ramp.step(!self.tripped)
     }
 
-    /// How often it tripped.
+    /// The number of times the watchdog tripped.
     pub(crate) fn trips(&self) -> u64 {
         self.trips
     }
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn it_trips_after_late_ticks_in_a_row_and_recovers() {
-        let ramp = Ramp::new(1.0, (2.0, 2.0), 1.0);
+        let ramp = Ramp::new(1.0, 2.0, 2.0, 1.0);
         let mut dog = Watchdog::new(NonZeroU32::new(2).unwrap(), ramp);
         let late = [true, false, true, true, false, true, false, false, false, false];
         let parts = late.map(|is_late| dog.step(is_late));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where a device's workspace lies in the world, and what is felt through it.
+//! The workspace map: between device and world coordinates.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,15 +13,14 @@ use crate::rotation::{in_place, in_space};
 
 /// From device to world coordinates and back: `world = s R device + t`.
 ///
-/// A motion is turned by `R` and made `s` times as large; a force is turned alone, as the hand
-/// is to feel the newtons of the world. So a way of 1 m at the device is `s` m in a spring of
-/// the world, which is felt as `s` times as stiff: with `F = K s x`, `K_device = s K_world`.
-/// What a device can render limits the stiffness at the device.
+/// A displacement is rotated by `R` and scaled by `s`; a force is only rotated, so that the
+/// hand feels the newtons of the world. A displacement `x` at the device therefore stretches a
+/// spring of the world by `s x`, and the device renders `F = K s x`: `K_device = s K_world`.
+/// The limits of a device apply to the stiffness at the device.
 ///
-/// Angles are the same in both, so an angular velocity is turned alone. The arm on which a force
-/// acts at the device is `1/s` of that in the world, and so is its torque: what force and torque
-/// do at the device is `1/s` of what they do in the world, `F·v + τ·ω`, and nothing is given that
-/// was not taken.
+/// Angles are equal in both, so an angular velocity is only rotated. The lever arm of a force
+/// at the device is `1/s` of the arm in the world, and so is the torque. The power at the
+/// device, `F·v + τ·ω`, is then `1/s` of the power in the world: the map creates no energy.
 ///
 /// # Examples
 ///
@@ -42,12 +41,12 @@ pub struct WorkspaceMap<const D: usize> {
     world_from_device: Pose<D>,
     device_from_world: Pose<D>,
     scale: f64,
-    /// Whether it changes nothing.
+    /// Whether the map is the identity.
     is_identity: bool,
 }
 
 impl<const D: usize> Default for WorkspaceMap<D> {
-    /// The world as the device sees it.
+    /// The identity: world coordinates equal device coordinates.
     fn default() -> Self {
         let identity = Pose::identity();
         Self {
@@ -60,7 +59,8 @@ impl<const D: usize> Default for WorkspaceMap<D> {
 }
 
 impl<const D: usize> WorkspaceMap<D> {
-    /// Device coordinates times `scale`, then placed by `world_from_device`.
+    /// The map that multiplies device coordinates by `scale` and then applies the pose
+    /// `world_from_device`.
     ///
     /// # Errors
     ///
@@ -85,8 +85,8 @@ impl<const D: usize> WorkspaceMap<D> {
         }
     }
 
-    /// The map without rotation whose workspace, a ball of `workspace_radius` [m] about the
-    /// device's origin, just holds `scene`: every point of the box is reached.
+    /// The smallest map without rotation that lets a device reach every point of the box
+    /// `scene`; the workspace is a ball of `workspace_radius` [m] about the device's origin.
     ///
     /// # Errors
     ///
@@ -109,43 +109,43 @@ impl<const D: usize> WorkspaceMap<D> {
         Self::new(Pose::translation(scene.centre()), half_diagonal / workspace_radius)
     }
 
-    /// Lengths in the world over lengths at the device.
+    /// The scale `s`: lengths in the world over lengths at the device.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// How the device's axes lie in the world.
+    /// The rotation `R`: the device's axes in world coordinates.
     #[must_use]
     pub fn rotation(&self) -> Rotation<D> {
         self.world_from_device.rotation
     }
 
-    /// Where a point at the device is in the world [m]. Real-time.
+    /// Maps a point from device to world coordinates [m]. Real-time.
     #[must_use]
     pub fn point_to_world(&self, point: Point<D>) -> Point<D> {
         self.world_from_device.transform_point(point * self.scale)
     }
 
-    /// Where a point of the world is at the device [m]. Real-time.
+    /// Maps a point from world to device coordinates [m]. Real-time.
     #[must_use]
     pub fn point_to_device(&self, point: Point<D>) -> Point<D> {
         self.device_from_world.transform_point(point) * (1.0 / self.scale)
     }
 
-    /// A velocity at the device as one in the world [m/s]. Real-time.
+    /// Maps a velocity from device to world coordinates [m/s]. Real-time.
     #[must_use]
     pub fn velocity_to_world(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
         self.world_from_device.transform_vector(velocity * self.scale)
     }
 
-    /// A velocity in the world as one at the device [m/s]. Real-time.
+    /// Maps a velocity from world to device coordinates [m/s]. Real-time.
     #[must_use]
     pub fn velocity_to_device(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
         self.device_from_world.transform_vector(velocity) * (1.0 / self.scale)
     }
 
-    /// A contact point at the device as one in the world. Real-time.
+    /// Maps the state of a contact point from device to world coordinates. Real-time.
     #[must_use]
     pub fn state_to_world(&self, state: PointState<D>) -> PointState<D> {
         if self.is_identity {
@@ -157,31 +157,32 @@ impl<const D: usize> WorkspaceMap<D> {
         }
     }
 
-    /// A force of the world as one at the device, of the same size [N]. Real-time.
+    /// Rotates a force from world to device coordinates [N]; its size stays. Real-time.
     #[must_use]
     pub fn force_to_device(&self, force: Vector<f64, D>) -> Vector<f64, D> {
         if self.is_identity { force } else { self.device_from_world.transform_vector(force) }
     }
 
-    /// A force at the device as one in the world, of the same size [N]. Real-time.
+    /// Rotates a force from device to world coordinates [N]; its size stays. Real-time.
     #[must_use]
     pub fn force_to_world(&self, force: Vector<f64, D>) -> Vector<f64, D> {
         if self.is_identity { force } else { self.world_from_device.transform_vector(force) }
     }
 
-    /// An orientation at the device as one in the world. Real-time.
+    /// Maps an orientation from device to world coordinates. Real-time.
     #[must_use]
     pub fn orientation_to_world(&self, orientation: Rotation<D>) -> Rotation<D> {
         self.world_from_device.rotation * orientation
     }
 
-    /// An angular velocity at the device as one in the world [rad/s]. Real-time.
+    /// Rotates an angular velocity from device to world coordinates [rad/s]. Real-time.
     #[must_use]
     pub fn spin_to_world(&self, spin: Vector<f64, 3>) -> Vector<f64, 3> {
         about_axes(&self.world_from_device, spin)
     }
 
-    /// A torque of the world as one at the device [N·m]: `1/s` of it. Real-time.
+    /// Maps a torque from world to device coordinates [N·m]: rotated and divided by `s`.
+    /// Real-time.
     ///
     /// ```
     /// use palpate_field::{Pose, Vector};
@@ -198,27 +199,28 @@ impl<const D: usize> WorkspaceMap<D> {
         about_axes(&self.device_from_world, torque) * (1.0 / self.scale)
     }
 
-    /// A torque at the device as one of the world [N·m]: `s` times as much. Real-time.
+    /// Maps a torque from device to world coordinates [N·m]: rotated and multiplied by `s`.
+    /// Real-time.
     #[must_use]
     pub fn torque_to_world(&self, torque: Vector<f64, 3>) -> Vector<f64, 3> {
         about_axes(&self.world_from_device, torque) * self.scale
     }
 
-    /// What a stiffness of the world is at the device [N/m]: `s` times as much.
+    /// The stiffness at the device for a stiffness of the world [N/m]: `s` times as large.
     #[must_use]
     pub fn device_stiffness(&self, world_stiffness: f64) -> f64 {
         self.scale * world_stiffness
     }
 
-    /// What a damping of the world is at the device [N·s/m]: `s` times as much, as velocities
-    /// are scaled like ways.
+    /// The damping at the device for a damping of the world [N·s/m]: `s` times as large,
+    /// because velocities scale like lengths.
     #[must_use]
     pub fn device_damping(&self, world_damping: f64) -> f64 {
         self.scale * world_damping
     }
 }
 
-/// What turns, in other coordinates: in the plane it is about z, whatever the pose.
+/// Rotates a rotation-like vector by the pose; in the plane the vector lies along z and stays.
 fn about_axes<const D: usize>(pose: &Pose<D>, v: Vector<f64, 3>) -> Vector<f64, 3> {
     if D < 3 { v } else { in_space(pose.transform_vector(in_place(v))) }
 }

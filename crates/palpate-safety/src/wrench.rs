@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What stands between a wanted force and torque and a hand.
+//! The safety chain of a force and a torque together.
 //!
-//! Whether energy was taken before it is given is a question to force and torque together: a
-//! lever that was turned into a wall may give by a force what it took by a torque. So one
-//! observer sees `F·v + τ·ω`, and what it allows passes the other stages as force and as torque.
+//! Passivity concerns force and torque together: a lever that a torque turned into a wall may
+//! return the energy by a force. So one observer measures `F·v + τ·ω`; the force and the torque
+//! that it allows then pass the other stages separately.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,30 +13,30 @@ use std::ops::{Add, Mul, Sub};
 
 use palpate_field::Vector;
 
-use crate::channel::{Channel, Moment};
+use crate::channel::{Channel, TickInput};
 use crate::error::{SafetyError, not_negative};
 use crate::limits::Limits;
-use crate::passivity::{Directed, Passivity, PassivityOptions, Seen};
+use crate::passivity::{InnerProduct, Passivity, PassivityOptions, Seen};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
 
-/// What goes along axes, and what turns about them: a force [N] and a torque [N·m], a place [m]
-/// and an angle [rad], or their velocities.
+/// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
+/// [rad], or their velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Both<const D: usize> {
-    /// Along axes.
+pub struct SpatialVector<const D: usize> {
+    /// The translational part.
     pub along: Vector<f64, D>,
-    /// About axes; in the plane about z alone.
+    /// The rotational part; in the plane only z is used.
     pub about: Vector<f64, 3>,
 }
 
-impl<const D: usize> Both<D> {
-    /// With `factor` times as much about axes.
+impl<const D: usize> SpatialVector<D> {
+    /// The vector with its rotational part multiplied by `factor`.
     fn turning(self, factor: f64) -> Self {
         Self { about: self.about * factor, ..self }
     }
 }
 
-impl<const D: usize> Add for Both<D> {
+impl<const D: usize> Add for SpatialVector<D> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -44,7 +44,7 @@ impl<const D: usize> Add for Both<D> {
     }
 }
 
-impl<const D: usize> Sub for Both<D> {
+impl<const D: usize> Sub for SpatialVector<D> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -52,7 +52,7 @@ impl<const D: usize> Sub for Both<D> {
     }
 }
 
-impl<const D: usize> Mul<f64> for Both<D> {
+impl<const D: usize> Mul<f64> for SpatialVector<D> {
     type Output = Self;
 
     fn mul(self, factor: f64) -> Self {
@@ -60,7 +60,7 @@ impl<const D: usize> Mul<f64> for Both<D> {
     }
 }
 
-impl<const D: usize> Directed for Both<D> {
+impl<const D: usize> InnerProduct for SpatialVector<D> {
     const ZERO: Self = Self { along: Vector::ZERO, about: Vector::ZERO };
 
     fn dot(self, other: Self) -> f64 {
@@ -76,53 +76,62 @@ impl<const D: usize> Directed for Both<D> {
     }
 }
 
-/// A device that turns in a tick, as its chain sees it. Device coordinates.
+/// The input of the chain in a tick, beside force and torque. Device coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct WrenchState<const D: usize> {
-    /// Where it is [m], and the sum of all its turns so far [rad].
-    pub position: Both<D>,
-    /// How fast it moves [m/s] and turns [rad/s].
-    pub velocity: Both<D>,
+    /// The position [m] and the sum of all rotation vectors so far [rad].
+    pub position: SpatialVector<D>,
+    /// The velocity [m/s] and the angular velocity [rad/s].
+    pub velocity: SpatialVector<D>,
     /// As [`PortState::free_force`](crate::PortState::free_force).
     pub free_force: Vector<f64, D>,
-    /// The tick began too late.
+    /// Whether the tick began too late.
     pub is_late: bool,
 }
 
-/// The safety chain of a device that turns: [`SafetyChain`](crate::SafetyChain) for a force and a
-/// torque.
+/// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
+/// and a torque.
 ///
-/// With a radian as long as `u = √(κ/K)`, a stretch of the coupling in any direction, turning or
-/// not, is as stiff as in any other, and holds `½ (|F|² + |τ/u|²) / K`. So the passivity stage
-/// sees one spring in all directions, on the least damping `min(b, b_θ / u²)`, the least mass and
-/// the slowest change of both: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, nothing is ever changed.
+/// If a radian counts as the length `u = √(κ/K)`, the coupling is equally stiff in translation
+/// and rotation, and stores `½ (|F|² + |τ/u|²) / K`. The passivity stage then sees one
+/// isotropic spring with the smaller damping `min(b, b_θ / u²)`, the smaller mass and the
+/// slower slew limit: where `K ≤ 2b/T` and `κ ≤ 2b_θ/T`, the force is never changed.
 #[derive(Clone, Debug)]
 pub struct WrenchChain<const D: usize> {
-    /// Along axes, and about them.
-    accepted: (Accepted, Accepted),
-    /// What the device is sure of, along axes and about them.
-    sides: (Side, Side),
+    /// What the device renders.
+    accepted: PerMotion<Accepted>,
+    /// Properties of the device.
+    sides: PerMotion<AxisLimits>,
     /// A radian as a length [m].
     unit: f64,
-    passivity: Passivity<Both<D>>,
+    passivity: Passivity<SpatialVector<D>>,
     force: Channel<D>,
     torque: Channel<3>,
-    /// Written so far [N·m].
+    /// The largest torque written so far [N·m].
     largest_torque: f64,
 }
 
-/// What a device is sure of, along its axes or about them, as a spring in any direction sees it.
+/// One value for translation and one for rotation.
 #[derive(Clone, Copy, Debug)]
-struct Side {
+pub struct PerMotion<T> {
+    /// The value for translation, along the axes.
+    pub along: T,
+    /// The value for rotation, about the axes.
+    pub about: T,
+}
+
+/// Guaranteed properties of a device, in translation or rotation.
+#[derive(Clone, Copy, Debug)]
+struct AxisLimits {
     /// The least damping.
     damping: f64,
-    /// Zero if it is not known.
+    /// The mass; zero if it is not known.
     mass: f64,
-    /// The fastest change of a force.
+    /// The slew limit.
     max_rate: f64,
 }
 
-impl Side {
+impl AxisLimits {
     fn new(limits: &Limits) -> Result<Self, SafetyError> {
         Ok(Self {
             damping: limits.least_damping.positive()?,
@@ -131,7 +140,8 @@ impl Side {
         })
     }
 
-    /// The worse of this along axes and that about them, with a radian as long as `unit` [m].
+    /// The worse of this (translational) and `about` (rotational), where a radian counts as the
+    /// length `unit` [m].
     fn with(&self, about: &Self, unit: f64) -> Self {
         let square = unit * unit;
         Self {
@@ -142,30 +152,31 @@ impl Side {
     }
 }
 
-/// A radian as a length, so that the coupling is as stiff about axes as along them [m].
+/// The length of a radian that makes the coupling equally stiff in translation and rotation
+/// [m].
 fn unit(along: &Accepted, about: &Accepted) -> f64 {
     (about.device_stiffness / along.device_stiffness).sqrt()
 }
 
 impl<const D: usize> WrenchChain<D> {
-    /// A chain for a device of these limits, along axes and about them, that renders what was
-    /// accepted, at `rate` [Hz].
+    /// A chain for a device with these translational and rotational limits, which renders the
+    /// accepted impedances at `rate` [Hz].
     ///
     /// # Errors
     ///
     /// As [`SafetyChain::new`](crate::SafetyChain::new).
     pub fn new(
-        limits: [&Limits; 2],
-        accepted: [Accepted; 2],
+        limits: PerMotion<&Limits>,
+        accepted: PerMotion<Accepted>,
         options: &SafetyOptions,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        let [along, about] = limits;
-        let accepted: (Accepted, Accepted) = accepted.into();
-        let sides = (Side::new(along)?, Side::new(about)?);
-        let unit = unit(&accepted.0, &accepted.1);
-        let stiffness = accepted.0.device_stiffness;
-        let Side { damping, mass, max_rate } = sides.0.with(&sides.1, unit);
+        let PerMotion { along, about } = limits;
+        let sides =
+            PerMotion { along: AxisLimits::new(along)?, about: AxisLimits::new(about)? };
+        let unit = unit(&accepted.along, &accepted.about);
+        let stiffness = accepted.along.device_stiffness;
+        let AxisLimits { damping, mass, max_rate } = sides.along.with(&sides.about, unit);
         let passivity = PassivityOptions {
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness,
@@ -186,55 +197,61 @@ impl<const D: usize> WrenchChain<D> {
         })
     }
 
-    /// Renders what was accepted anew, along axes and about them, for the same device.
+    /// Replaces the accepted impedances by others for the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn renew(&mut self, (along, about): (&Accepted, &Accepted)) {
-        self.accepted.0.renew(along);
-        self.accepted.1.renew(about);
+    pub fn renew(&mut self, along: &Accepted, about: &Accepted) {
+        self.accepted.along.renew(along);
+        self.accepted.about.renew(about);
         let unit = unit(along, about);
         let longer = unit / self.unit;
         self.passivity.in_units(|way| way.turning(longer), |force| force.turning(1.0 / longer));
         self.unit = unit;
         let stiffness = along.device_stiffness;
-        let Side { damping, mass, max_rate } = self.sides.0.with(&self.sides.1, unit);
+        let AxisLimits { damping, mass, max_rate } =
+            self.sides.along.with(&self.sides.about, unit);
         let options = *self.passivity.options();
         let options = PassivityOptions { stiffness, damping, mass, max_rate, ..options };
         self.passivity.renew(options);
     }
 
-    /// What to write where `wanted` is wanted, at the device, in one tick.
+    /// One tick: force and torque to write for `wanted`, both in device coordinates.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub fn step(&mut self, wanted: Both<D>, state: &WrenchState<D>) -> Both<D> {
+    pub fn step(
+        &mut self,
+        wanted: SpatialVector<D>,
+        state: &WrenchState<D>,
+    ) -> SpatialVector<D> {
         let WrenchState { position, velocity, free_force, is_late } = *state;
-        // What is not a number reaches no stage that remembers; the guards answer for it.
-        let is_sound =
-            [wanted, position, velocity].iter().all(Both::is_finite) && free_force.is_finite();
+        // Stages with a state never see numbers that are not finite; the guards then write
+        // zero.
+        let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
+            && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
         let seen = Seen { position, velocity, has_start: false };
         let as_lengths = wanted.turning(1.0 / unit);
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
-        // What is not changed keeps its bits.
+        // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
-        let moment = Moment { is_sound, is_late, start: 1.0 };
-        let (along, force_left) = self.force.step((allowed.along, free_force), &moment);
-        let (about, torque_left) = self.torque.step((allowed.about, Vector::ZERO), &moment);
-        let left = Both { along: force_left, about: torque_left };
+        let input = TickInput { is_sound, is_late, start: 1.0 };
+        let (along, force_left) = self.force.step(allowed.along, free_force, &input);
+        let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);
+        let left = SpatialVector { along: force_left, about: torque_left };
         self.passivity.written(left.turning(1.0 / unit));
         self.largest_torque = self.largest_torque.max(about.norm());
-        Both { along, about }
+        SpatialVector { along, about }
     }
 
-    /// Lowers the largest force [N].
+    /// Lowers the force limit [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         self.force.lower_limit(max_force);
     }
 
-    /// Lowers the largest torque [N·m].
+    /// Lowers the torque limit [N·m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_torque(&mut self, max_torque: f64) {
@@ -262,10 +279,10 @@ impl<const D: usize> WrenchChain<D> {
         self.passivity.report()
     }
 
-    /// What every stage did so far, along axes and about them.
+    /// What every stage did so far, in translation and rotation.
     #[must_use]
     pub fn report(&self) -> SafetyReport {
-        let (along, about) = &self.accepted;
+        let PerMotion { along, about } = &self.accepted;
         let turning = TurningReport::of(about, self.largest_torque, &self.torque);
         SafetyReport {
             turning: Some(turning),

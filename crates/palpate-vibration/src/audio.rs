@@ -11,21 +11,31 @@ use super::cue::{Mapping, Sensation, Tap, Tone};
 use super::ringing::Ringing;
 use palpate_haptics::{HapticsError, NumberError, positive};
 
-/// How long an amplitude takes from nothing to all [s]: a change within a sample would click, a
-/// slower one would blur a texture.
+/// The time over which an amplitude rises from zero to one [s]: a jump would click, a slower
+/// rise would blur a texture.
 const ATTACK: f64 = 0.002;
 
 /// A sine whose phase never jumps, and whose amplitude changes slowly.
 #[derive(Clone, Copy, Debug, Default)]
 struct Oscillator {
-    /// In turns, in [0, 1).
+    /// The phase in turns, in [0, 1).
     phase: f64,
     amplitude: f64,
 }
 
+/// From one sample to the next.
+#[derive(Clone, Copy)]
+struct Step {
+    /// The time between two samples [s].
+    period: f64,
+    /// The largest change of an amplitude.
+    slew: f64,
+}
+
 impl Oscillator {
-    /// The next sample on the way to `tone`; `slew` is the most its amplitude changes.
-    fn next(&mut self, tone: Tone, (period, slew): (f64, f64)) -> f64 {
+    /// The next sample, a step after the last, while the oscillator moves towards `tone`.
+    fn next(&mut self, tone: Tone, step: Step) -> f64 {
+        let Step { period, slew } = step;
         let change = (tone.amplitude - self.amplitude).clamp(-slew, slew);
         self.amplitude += change;
         let sample = self.amplitude * libm::sin(TAU * self.phase);
@@ -34,7 +44,8 @@ impl Oscillator {
         sample
     }
 
-    /// Begins `amplitude` at once, if there is silence: at phase zero it does not click.
+    /// Starts at `amplitude` at once if the oscillator is silent: at phase zero this does not
+    /// click.
     fn strike(&mut self, amplitude: f64) {
         if self.amplitude == 0.0 {
             *self = Self { phase: 0.0, amplitude };
@@ -48,15 +59,15 @@ struct Player {
     slide: Oscillator,
     tap: Oscillator,
     ringing: Ringing,
-    /// The last tones of hold and slide: a sine that fades out keeps its frequency.
+    /// The last tones of hold and slide, because a sine that fades out keeps its frequency.
     last: [f64; 2],
 }
 
 /// Makes the samples of one actuator from the sensations of some contact points.
 ///
-/// Every sine goes on in phase when its frequency changes, and its amplitude changes over 2 ms;
-/// a tap begins at once, at phase zero. So the samples of a point differ by at most
-/// [`largest_step`](Self::largest_step) from one to the next. The sum is cut off at ±1.
+/// The phase of every sine is continuous when its frequency changes, and its amplitude changes
+/// over 2 ms; a tap begins at once, at phase zero. So neighbouring samples of a point differ by
+/// at most [`largest_step`](Self::largest_step). The sum is clamped to ±1.
 ///
 /// # Examples
 ///
@@ -88,13 +99,13 @@ pub struct Synthesiser {
 }
 
 impl Synthesiser {
-    /// A synthesiser of `sample_rate` [Hz] for `points` contact points, whose sensations are of
-    /// `mapping`.
+    /// A synthesiser of `sample_rate` [Hz] for `points` contact points, whose sensations come
+    /// from `mapping`.
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`], or [`HapticsError::Number`] if the sample rate is less
-    /// than twice the mapping's highest frequency, which samples could not tell from lower ones.
+    /// [`HapticsError::NoContactPoint`] without a point; [`HapticsError::Number`] if the sample
+    /// rate is less than twice the mapping's highest frequency, which would alias.
     pub fn new(
         mapping: &Mapping,
         sample_rate: f64,
@@ -126,8 +137,8 @@ impl Synthesiser {
         self.sample_rate
     }
 
-    /// The most that neighbouring samples of one contact point differ: three sines of full
-    /// amplitude and the highest frequency f, `3 (2π f + 1 / 2 ms) / sample_rate`.
+    /// The largest difference of neighbouring samples of one contact point: for three sines of
+    /// full amplitude and the highest frequency f, `3 (2π f + 1 / 2 ms) / sample_rate`.
     #[must_use]
     pub fn largest_step(&self) -> f64 {
         3.0 * (TAU * self.highest_frequency + 1.0 / ATTACK) / self.sample_rate
@@ -139,7 +150,8 @@ impl Synthesiser {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn render(&mut self, sensations: &[Sensation], samples: &mut [f32]) {
-        let step = (1.0 / self.sample_rate, 1.0 / (ATTACK * self.sample_rate));
+        let step =
+            Step { period: 1.0 / self.sample_rate, slew: 1.0 / (ATTACK * self.sample_rate) };
         let silence = Sensation::default();
         let felt = sensations.iter().chain(std::iter::repeat(&silence));
         for (player, sensation) in self.players.iter_mut().zip(felt) {
@@ -151,7 +163,7 @@ impl Synthesiser {
             for (player, sensation) in self.players.iter_mut().zip(felt) {
                 sum += player.next(sensation, step);
             }
-            // Cutting off makes no step larger.
+            // Clamping makes no step larger.
             *sample = sum.clamp(-1.0, 1.0) as f32;
         }
     }
@@ -171,7 +183,7 @@ impl Player {
         }
     }
 
-    fn next(&mut self, sensation: &Sensation, step: (f64, f64)) -> f64 {
+    fn next(&mut self, sensation: &Sensation, step: Step) -> f64 {
         let [hold, slide] = self.last;
         let Tap { amplitude, frequency, .. } = self.ringing.next();
         self.hold.next(Tone { frequency: hold, ..sensation.hold }, step)

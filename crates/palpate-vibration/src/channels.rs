@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Tones shared out among actuators: one, two, or many on the skin.
+//! Distributing tones among actuators: one, two, or many on the skin.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,8 +13,8 @@ use super::cue::{Tone, level};
 use super::ringing::Tones;
 use palpate_haptics::{HapticsError, NumberError, positive};
 
-/// One tone for an actuator that plays one at a time: the frequency of the strongest, the
-/// amplitude `√(Σ a²)` of them together, at most one.
+/// Combines tones for an actuator that plays one at a time: the frequency of the strongest
+/// tone, and the amplitude `√(Σ a²)` of all, at most one.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
@@ -41,17 +41,17 @@ pub fn one_channel(tones: &Tones) -> Tone {
 /// The amplitudes of a strong, slow motor and of a weak, fast one, in [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TwoChannels {
-    /// Of the strong one: pressure, and what of a tap is below the split.
+    /// The amplitude of the strong motor: pressure, and the part of a tap below the split.
     pub low: f64,
-    /// Of the weak one: texture, and what of a tap is above the split.
+    /// The amplitude of the weak motor: texture, and the part of a tap above the split.
     pub high: f64,
 }
 
-/// Shares tones out between two motors at `split` [Hz]; 72.5 to 80 Hz is usual.
+/// Distributes tones between two motors at `split` [Hz]; 72.5 to 80 Hz is usual.
 ///
 /// The power spectrum of `exp(−d t) sin(2π f t)` is a Lorentz line of half width d about f, of
 /// which `½ + atan(2π (split − f) / d) / π` lies below the split; amplitudes go as the square
-/// root. A tap that does not decay is on one side.
+/// root. A tap that does not decay lies on one side.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
@@ -78,8 +78,9 @@ pub fn two_channels(tones: &Tones, split: f64) -> TwoChannels {
     }
 }
 
-/// The amplitudes of two actuators that together feel as one of `amplitude` between them, at
-/// the part `beta` of the way from the first to the second: `√(1 − β) A` and `√β A`.
+/// The amplitudes of two actuators that together feel like one actuator of amplitude
+/// `amplitude` (A) between them, at the fraction `beta` (β) from the first to the second: `√(1
+/// − β) A` and `√β A`.
 ///
 /// Israr and Poupyrev, "Tactile Brush: drawing on skin with a tactile grid display" (2011): the
 /// phantom has the sum of their powers.
@@ -98,15 +99,15 @@ pub fn phantom(amplitude: f64, beta: f64) -> [f64; 2] {
     [(1.0 - beta).sqrt() * amplitude, beta.sqrt() * amplitude]
 }
 
-/// The most actuators that a point is felt through.
+/// The most actuators that play one point.
 const NEAREST: usize = 3;
 
-/// Actuators at places on the skin, which share what is felt between them.
+/// Actuators at places on the skin; points between them are played by several.
 ///
-/// A point is played by its three nearest actuators, each with the weight `max(0, 1 − d / reach)`
-/// of its distance d, divided by that of the nearest, which plays the full amplitude. Points that
-/// share an actuator do not add up: the strongest is played. Beyond `reach` of every actuator
-/// nothing is.
+/// A point is played by its three nearest actuators, each with the weight `max(0, 1 − d /
+/// reach)` of its distance d, divided by the weight of the nearest, which plays the full
+/// amplitude. Points that share an actuator do not add up: the actuator plays the strongest. A
+/// point beyond `reach` of every actuator is silent.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -128,7 +129,7 @@ pub struct ActuatorArray<const D: usize> {
 }
 
 impl<const D: usize> ActuatorArray<D> {
-    /// Actuators at `places` [m] that are felt as far as `reach` [m].
+    /// Actuators at `places` [m] that play points within `reach` [m].
     ///
     /// # Errors
     ///
@@ -147,14 +148,14 @@ impl<const D: usize> ActuatorArray<D> {
         Ok(Self { places, reach: positive("reach", reach, "m")? })
     }
 
-    /// Where the actuators are [m].
+    /// The places of the actuators [m].
     #[must_use]
     pub fn places(&self) -> &[Point<D>] {
         &self.places
     }
 
-    /// Plays `amplitude` at `point` [m]: raises those of `amplitudes`, one for each actuator,
-    /// that are lower than what they add to it.
+    /// Plays `amplitude` at `point` [m]: raises each of `amplitudes`, one per actuator, to at
+    /// least the actuator's part of it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at each actuator once.
     pub fn play(&self, point: Point<D>, amplitude: f64, amplitudes: &mut [f64]) {
@@ -167,9 +168,9 @@ impl<const D: usize> ActuatorArray<D> {
         }
     }
 
-    /// Plays `amplitude` at `point` [m] as a [`phantom`] between the two nearest actuators within
-    /// reach, at the point of the way between them closest to it; by one alone, if there is no
-    /// second. Raises `amplitudes` as [`play`](Self::play) does.
+    /// Plays `amplitude` at `point` [m] as a [`phantom`] between the two nearest actuators
+    /// within reach, at the point of their connecting segment closest to `point`; with one
+    /// actuator if no second is in reach. Raises `amplitudes` as [`play`](Self::play) does.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at each actuator once.
     ///
@@ -199,16 +200,16 @@ impl<const D: usize> ActuatorArray<D> {
             }
             _ => 0.0,
         };
-        // Of two at one place, `level` makes the first play alone.
+        // If both are at one place, `level` gives zero and the first plays alone.
         let [near, far] = phantom(amplitude, beta);
         raise(amplitudes, first, near);
         raise(amplitudes, second, far);
     }
 
-    /// The weights and numbers of the nearest actuators, nearest first; weight zero for those
-    /// missing or out of reach.
+    /// Weights and indices of the nearest actuators, nearest first; weight zero if missing or
+    /// out of reach.
     fn nearest(&self, point: Point<D>) -> [(f64, usize); NEAREST] {
-        // The largest weights so far, and whose they are; of equals the first.
+        // The largest weights so far with their actuators; the first of equals.
         let mut nearest = [(0.0, usize::MAX); NEAREST];
         for (actuator, place) in self.places.iter().enumerate() {
             let mut candidate = (1.0 - (*place - point).norm() / self.reach, actuator);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From what a contact point meets to what an actuator plays.
+//! Cues and sensations: from the touch of a contact point to what an actuator plays.
 //!
 //! A tap rings as a decaying sinusoid whose amplitude grows with the speed of the tap: Okamura,
 //! Cutkosky and Dennerlein, "Reality-based models for vibration feedback in virtual
@@ -16,17 +16,17 @@ use palpate_haptics::{NumberError, Touch};
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
-    /// Its amplitude a: of a [`Cue`] for each metre per second of the tap [N·s/m], of a
-    /// [`Sensation`] as a part of the actuator's largest.
+    /// The amplitude a: in a [`Cue`] per speed of the tap [N·s/m], in a [`Sensation`] as a part
+    /// of the actuator's largest.
     pub amplitude: f64,
-    /// Its frequency f [Hz].
+    /// The frequency f [Hz].
     pub frequency: f64,
-    /// Its rate of decay d [1/s].
+    /// The rate of decay d [1/s].
     pub decay: f64,
 }
 
 impl Tap {
-    /// What a tap on a material of a scene rings like.
+    /// The ringing of a tap on a material.
     #[must_use]
     pub fn from_data(impact: &palpate_haptics::Impact) -> Self {
         let palpate_haptics::Impact { amplitude, frequency, decay, .. } = *impact;
@@ -34,28 +34,28 @@ impl Tap {
     }
 }
 
-/// What a contact point meets in a tick.
+/// The touch of a contact point in a tick, as vibration needs it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cue {
-    /// How deep the hand presses [m]; zero in free space.
+    /// The depth [m]; zero in free space.
     pub depth: f64,
-    /// How hard the surface is pressed [N].
+    /// The normal force [N].
     pub normal_force: f64,
-    /// How fast the hand moves towards the surface [m/s]; negative on its way out.
+    /// The speed towards the surface [m/s]; negative when the hand moves out.
     pub normal_speed: f64,
-    /// How fast the hand moves along the surface [m/s].
+    /// The speed along the surface [m/s].
     pub slide_speed: f64,
-    /// From crest to crest of the surface's texture [m]; none on a smooth one.
+    /// The wavelength of the surface's texture [m]; `None` for a smooth surface.
     pub wavelength: Option<f64>,
-    /// What a tap on the surface rings like; none where it is mute.
+    /// The ringing of a tap on the surface; `None` for a mute surface.
     pub impact: Option<Tap>,
     /// `true` in the tick in which contact begins.
     pub began: bool,
 }
 
 impl Cue {
-    /// What a touch is on a smooth and mute surface; also where the device gives no force.
-    /// `began`: there was no contact in the tick before.
+    /// The cue of a touch on a smooth and mute surface; it does not depend on the force that
+    /// the device gives. Set `began` if there was no contact in the tick before.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -80,31 +80,32 @@ impl Cue {
 /// A vibration at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tone {
-    /// [Hz]
+    /// The frequency [Hz].
     pub frequency: f64,
-    /// As a part of the actuator's largest, in [0, 1].
+    /// The amplitude, as a part of the actuator's largest, in [0, 1].
     pub amplitude: f64,
 }
 
-/// What a cue is to an actuator.
+/// The vibration of a cue on an actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensation {
-    /// The pressure that holds.
+    /// The tone of pressure.
     pub hold: Tone,
-    /// The texture that passes.
+    /// The tone of a slide over a texture.
     pub slide: Tone,
     /// The tap that begins in this tick; amplitude in [0, 1].
     pub tap: Option<Tap>,
 }
 
-/// How cues are felt. The defaults are choices for a hand-held actuator, not measurements.
+/// Options of a [`Mapping`]. The defaults are choices for a hand-held actuator, not
+/// measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MappingOptions {
     /// The level of the lightest pressure, a_min, in [0, 1]: where the actuator starts to move.
     pub hold_floor: f64,
-    /// The depth that is felt at full level, d_max [m]; positive.
+    /// The depth at which pressure is at full level, d_max [m]; positive.
     pub full_depth: f64,
-    /// The exponent γ of depth, in (0, 4]; below one, light pressure is told apart better.
+    /// The exponent γ of depth, in (0, 4]; below one, light pressures differ more.
     pub hold_exponent: f64,
     /// The frequency of pressure [Hz], in the actuator's range.
     pub hold_frequency: f64,
@@ -114,7 +115,7 @@ pub struct MappingOptions {
     pub full_slide_speed: f64,
     /// The normal force at which a slide is at full level [N]; positive.
     pub full_slide_force: f64,
-    /// The exponent of both in a slide's level, in (0, 4].
+    /// The exponent κ of speed and force in a slide's level, in (0, 4].
     pub slide_exponent: f64,
     /// The lowest frequency the actuator plays [Hz]; positive.
     pub lowest_frequency: f64,
@@ -149,8 +150,8 @@ impl Default for MappingOptions {
 ///
 /// Pressure holds at `a_min + (1 − a_min) (depth / d_max)^γ`; a tap at normal speed v begins at
 /// `a v / full_impact`; a slide at speed u over crests λ apart, pressed by F, shakes at `u / λ`
-/// within the actuator's range, at the level `(u / full_slide_speed)^κ (F / full_slide_force)^κ`.
-/// Levels are at most one. What is not a number is not felt.
+/// within the actuator's range, at the level `(u / full_slide_speed)^κ (F /
+/// full_slide_force)^κ`. Levels are at most one. A number that is not finite gives silence.
 ///
 /// # Examples
 ///
@@ -181,15 +182,15 @@ impl Default for MappingOptions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
     options: MappingOptions,
-    /// What the perceptual weight of a frequency is divided by.
+    /// The largest perceptual weight in the range, by which weights are divided.
     heaviest: f64,
 }
 
-/// The largest exponent: beyond, all but the strongest is silent.
+/// The largest exponent: a larger one would silence all but the strongest level.
 const LARGEST_EXPONENT: f64 = 4.0;
 
 impl Mapping {
-    /// The mapping of these options.
+    /// A mapping with these options.
     ///
     /// # Errors
     ///
@@ -230,13 +231,13 @@ impl Mapping {
         Ok(Self { options, heaviest })
     }
 
-    /// How cues are felt.
+    /// The options.
     #[must_use]
     pub fn options(&self) -> &MappingOptions {
         &self.options
     }
 
-    /// What `cue` is to the actuator.
+    /// The sensation of `cue` on the actuator.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -257,7 +258,7 @@ impl Mapping {
         let tap = cue.impact.filter(|_| cue.began && cue.normal_speed > 0.0).map(|tap| {
             let strength = tap.amplitude * cue.normal_speed / o.full_impact;
             let Tone { frequency, amplitude } = self.tone(tap.frequency, strength);
-            // Written so that NaN does not ring on.
+            // Written so that a tap with NaN decay ends at once.
             let decay = if tap.decay >= 0.0 { tap.decay } else { f64::INFINITY };
             Tap { amplitude, frequency, decay }
         });
@@ -265,7 +266,7 @@ impl Mapping {
         Sensation { hold, slide: slide.unwrap_or_default(), tap }
     }
 
-    /// The tone of a level that the actuator can play; silence of what is not a number.
+    /// The tone within the actuator's range; silence for NaN.
     fn tone(&self, frequency: f64, amplitude: f64) -> Tone {
         let o = &self.options;
         if frequency.is_nan() {
@@ -278,11 +279,11 @@ impl Mapping {
     }
 }
 
-/// `value` within [0, 1]; zero if it is not a number.
+/// `value` clamped to [0, 1]; zero for NaN.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(super) fn level(value: f64) -> f64 {
-    // Written so that NaN is nothing.
+    // Written so that NaN gives zero.
     if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Vibration for devices that cannot push: what a touch is to an actuator that shakes.
+//! Touches as vibration, for devices that shake instead of push.
 //!
-//! A [`Cue`] says what a contact point meets in a tick; a [`Mapping`] turns it into a
-//! [`Sensation`]: a level that holds, a tone that slides, a tap that rings. From there two ways:
+//! A [`Cue`] describes the touch of a contact point in a tick. A [`Mapping`] turns a cue into a
+//! [`Sensation`]: tones of pressure and of sliding, and a tap. A sensation becomes either:
 //!
-//! - *Commands*, for motors: a [`Voice`] lets taps ring down, [`one_channel`], [`two_channels`]
-//!   and an [`ActuatorArray`] share the [`Tones`] out, and a [`Publisher`] holds the largest
+//! - *Commands*, for motors: a [`Voice`] lets taps decay; [`one_channel`], [`two_channels`] and
+//!   an [`ActuatorArray`] distribute the [`Tones`]; a [`Publisher`] holds the strongest tone
 //!   until a slow device takes it.
-//! - *Audio*, for voice coils: a [`Synthesiser`] makes samples, and [`write_wav`] a file of them.
+//! - *Audio*, for voice coils: a [`Synthesiser`] makes samples, and [`write_wav`] writes them
+//!   to a file.
 
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 

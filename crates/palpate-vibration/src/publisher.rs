@@ -8,23 +8,23 @@
 use super::cue::{Tone, level};
 use palpate_haptics::{HapticsError, NumberError, positive};
 
-/// What a device is told to play on a channel.
+/// A command to a device: what to play on a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
-    /// What to play.
+    /// The tone.
     pub tone: Tone,
-    /// How long [s]: the device stops by itself if nothing more is said.
+    /// The duration [s]: the device stops by itself without a further command.
     pub duration: f64,
 }
 
-/// Periods for which a command holds: a device may miss one or two before it falls silent, and
-/// falls silent soon when its program has died.
+/// The duration of a command in publishing periods: a device may miss one or two commands, and
+/// falls silent soon after its program has died.
 const PERIODS: f64 = 2.5;
 
 /// Holds the strongest tone of each channel until it is time to publish.
 ///
-/// A tap of 5 ms between two publishes 20 ms apart is felt, in full. Each command has a duration
-/// of 2.5 periods, so that nothing gets stuck.
+/// A tap of 5 ms between two commands 20 ms apart is therefore played at full amplitude. Each
+/// command has a duration of 2.5 periods, so that no tone gets stuck.
 ///
 /// ```
 /// use palpate_vibration::{Publisher, Tone};
@@ -47,18 +47,18 @@ pub struct Publisher {
     commands: Vec<Command>,
     servo_rate: f64,
     publish_rate: f64,
-    /// Publishes due, in `servo_rate`ths.
+    /// Commands due, in units of `1 / servo_rate`.
     due: f64,
 }
 
 impl Publisher {
-    /// A publisher of `channels` channels that is told tones `servo_rate` times a second and
-    /// publishes `publish_rate` times a second [Hz].
+    /// A publisher of `channels` channels that takes tones at `servo_rate` [Hz] and publishes
+    /// commands at `publish_rate` [Hz].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] without a channel; [`HapticsError::Number`] if a rate is
-    /// not positive, or the publish rate above the servo's.
+    /// [`HapticsError::NoContactPoint`] without a channel; [`HapticsError::Number`] if a rate
+    /// is not positive, or the publish rate exceeds the servo rate.
     pub fn new(
         channels: usize,
         servo_rate: f64,

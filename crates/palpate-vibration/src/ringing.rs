@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Taps ring down: what an actuator plays from tick to tick.
+//! Decaying taps: what an actuator plays from tick to tick.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Sensation, Tap, Tone};
 use palpate_haptics::{HapticsError, positive};
 
-/// The amplitude below which a tap is over: a tenth of the threshold at 250 Hz, where the skin
-/// is most sensitive. Larger, and its end could be felt; smaller, and it rings on for nothing.
+/// The amplitude below which a tap ends: a tenth of the threshold at 250 Hz, where the skin is
+/// most sensitive. The end of a louder tap could be felt; a quieter one cannot be felt at all.
 const SILENT: f64 = 5e-4;
 
-/// The longest a tap rings [s], whatever its decay: nothing gets stuck.
+/// The longest duration of a tap [s], whatever its decay, so that no tone gets stuck.
 const LONGEST: f64 = 1.0;
 
-/// A tap on its way down, in steps of fixed length.
+/// A decaying tap, in steps of fixed length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ringing {
     tap: Tap,
-    /// What is left of the amplitude after a step.
+    /// The factor on the amplitude in a step.
     remainder: f64,
     steps_left: f64,
     rate: f64,
@@ -32,7 +32,7 @@ impl Ringing {
         Self { tap, remainder: 0.0, steps_left: 0.0, rate }
     }
 
-    /// Begins `tap`, unless what rings is stronger.
+    /// Starts `tap`, unless a stronger one is ringing.
     pub(super) fn strike(&mut self, tap: Tap) {
         if tap.amplitude > self.tap.amplitude {
             self.tap = tap;
@@ -41,7 +41,7 @@ impl Ringing {
         }
     }
 
-    /// What rings in this step.
+    /// The tap in this step.
     pub(super) fn next(&mut self) -> Tap {
         let now = self.tap;
         self.steps_left -= 1.0;
@@ -59,13 +59,13 @@ pub struct Tones {
     pub hold: Tone,
     /// The texture that passes.
     pub slide: Tone,
-    /// The tap that rings.
+    /// The tone of a ringing tap.
     pub tap: Tone,
-    /// Its rate of decay [1/s].
+    /// The tap's rate of decay [1/s].
     pub tap_decay: f64,
 }
 
-/// Lets the taps of one contact point ring down at the servo's rate.
+/// Lets the taps of one contact point decay at the servo's rate.
 ///
 /// A tap is replaced by a stronger one; it ends at a 2000th of full amplitude, or after one
 /// second.
@@ -92,7 +92,7 @@ pub struct Voice {
 }
 
 impl Voice {
-    /// A voice that is asked `rate` times a second [Hz].
+    /// A voice with `rate` steps a second [Hz].
     ///
     /// # Errors
     ///

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How weak a vibration the skin still feels, by frequency.
+//! The threshold of vibration on the skin, by frequency.
 //!
 //! The closed form is that of the psychohaptic model in the reference software of ISO/IEC
 //! 23090-31, MPEG-I haptics coding (2024).
@@ -12,9 +12,9 @@
 const BEST_FREQUENCY: f64 = 250.0;
 /// The threshold there [dB].
 const BEST_THRESHOLD: f64 = -45.0;
-/// How far the threshold of a vibration of no frequency would lie above [dB].
+/// The rise of the threshold from 250 Hz to 0 Hz [dB].
 const RISE: f64 = 50.0;
-/// What bends the curve [Hz].
+/// The scale of the curve in frequency [Hz].
 const BEND: f64 = 550.0;
 
 /// The threshold of vibration at `frequency` [Hz], relative to full amplitude [dB].
@@ -23,8 +23,9 @@ const BEND: f64 = 550.0;
 /// T(f) = min(0, a (log₁₀(c f + b) / log₁₀ b)² − e)
 /// ```
 ///
-/// with a = 50 dB, c = 1/550 Hz, b = 1 − 250 Hz · c and e = 45 dB. It is lowest at 250 Hz, and
-/// 0 dB where nothing is felt; so it is of a frequency that is no number or out of its domain.
+/// with a = 50 dB, c = 1/550 Hz, b = 1 − 250 Hz · c and e = 45 dB. The threshold is lowest at
+/// 250 Hz. A threshold of 0 dB means that nothing is felt; NaN and frequencies outside the
+/// formula's domain give 0 dB.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 ///
@@ -43,7 +44,7 @@ pub fn threshold_db(frequency: f64) -> f64 {
     (RISE * ratio * ratio + BEST_THRESHOLD).min(0.0)
 }
 
-/// The amplitude at `frequency` [Hz] that is just felt, as a part of full amplitude:
+/// The smallest amplitude at `frequency` [Hz] that is felt, as a part of full amplitude:
 /// `10^(T(f)/20)`, in [0.0056, 1].
 ///
 /// Amplitudes in the ratio of their weights are equally far above the threshold: scaling each
@@ -84,7 +85,7 @@ mod tests {
             (700.0, 0.0),
         ];
         for (frequency, expected) in known {
-            // They are given to a tenth.
+            // The expected values are given to a tenth.
             assert!((threshold_db(frequency) - expected).abs() <= 0.051, "{frequency} Hz");
         }
     }

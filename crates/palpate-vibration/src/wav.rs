@@ -5,14 +5,16 @@
 
 use std::io::{self, Seek, Write};
 
-/// Writes samples in [−1, 1] as a WAV file of one channel and 16 bits; what is beyond is cut off,
-/// and what is not a number is silence.
+/// Writes samples as a WAV file of one channel and 16 bits. Samples are clamped to [−1, 1]; NaN
+/// becomes silence.
 ///
-/// Not for the servo: it writes as it goes. Record first, and write when the servo has stopped.
+/// Not for the servo's thread, because the function writes to the file while it runs: record
+/// first, and write when the servo has stopped.
 ///
 /// # Errors
 ///
-/// Those of `file`, and one if there are more samples than a WAV file holds, 2³¹.
+/// The errors of `file`, and an error if there are more than 2³¹ samples, the most that a WAV
+/// file holds.
 ///
 /// ```
 /// use palpate_vibration::write_wav;

@@ -1,40 +1,40 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The way about a shape from which a hand looks at it.
+//! The orbit about a shape from which a tour casts its rays.
 
 use std::f64::consts::TAU;
 
 use palpate_field::{Aabb, Point, Vector};
 
-/// Turns about the axis for each pass from end to end, at most: enough that neighbouring turns
-/// are a twelfth of the shape apart. Not a whole number, so that passes interleave.
+/// The most turns about the axis in a pass from end to end: neighbouring turns are then a
+/// twelfth of the shape apart. Not a whole number, so that passes interleave.
 const MOST_TURNS: f64 = 6.18;
 
-/// Turns for each pass at least, however short the way is: with fewer the hand would climb one
-/// side and see no other.
+/// The fewest turns in a pass, however short the orbit: with fewer the hand would climb one
+/// side and miss the others.
 const FEWEST_TURNS: f64 = 0.62;
 
-/// Points at which the length of a pass is measured: 40 a turn or more, so that it comes out too
-/// short by less than a hundredth.
+/// Points at which the length of a pass is measured: at least 40 a turn, so that the error is
+/// below one per cent.
 const PASS_POINTS: u32 = 256;
 
-/// How often the turns of a pass are halved in upon: to a thousandth of a turn.
+/// Bisections for the turns of a pass: to a thousandth of a turn.
 const HALVINGS: u32 = 12;
 
-/// How much of the way from the box's middle to its pole an orbit goes.
+/// The highest latitude of an orbit, as a part of that of the pole.
 const HIGHEST_LATITUDE: f64 = 0.97;
 
-/// How much of the way to the other pole: to where a turn begins to pass below the box, at
-/// `tan⁻¹ √½` of a quarter turn.
+/// The lowest latitude, as a part of that of the other pole: where a turn begins to pass below
+/// the box, at `tan⁻¹ √½` of a quarter turn.
 const LOWEST_LATITUDE: f64 = 0.39;
 
-/// Points `step` apart [m] on a box `height` [m] around everything. In space they wind from the
-/// foot of the box to its upper pole and back, and none is below the box: there is the table. In
-/// the plane they go round.
+/// Points `step` apart [m] on a box `height` [m] around the scene. In space the orbit winds
+/// from the foot of the box to its upper pole and back, and no point is below the box, where
+/// the table is. In the plane the orbit goes round the box.
 ///
-/// A way too short for a pass of [`MOST_TURNS`] is one pass of fewer: the hand comes to the sides
-/// and the top of the shape, however little time it has.
+/// An orbit too short for a pass of [`MOST_TURNS`] is one pass with fewer turns, so that the
+/// hand reaches the sides and the top of the shape in any time.
 pub(super) fn orbit<const D: usize>(
     bounds: &Aabb<D>,
     height: f64,
@@ -48,7 +48,7 @@ pub(super) fn orbit<const D: usize>(
         half.0[1] -= 0.5 * height;
     }
     let turns = turns_a_pass(centre, half, step * count as f64);
-    // The angle is advanced by what the last advance travelled.
+    // The step in angle is adapted to the distance of the last step.
     let mut angle = 0.0;
     let mut rate = step / half.norm();
     let mut here = on_box(direction(angle, turns), centre, half);
@@ -63,7 +63,7 @@ pub(super) fn orbit<const D: usize>(
     })
 }
 
-/// The turns for which a pass is `way` long [m].
+/// The number of turns that makes a pass `way` long [m].
 fn turns_a_pass<const D: usize>(centre: Point<D>, half: Vector<f64, D>, way: f64) -> f64 {
     if D < 3 {
         return MOST_TURNS; // it goes round, without passes
@@ -90,7 +90,7 @@ fn turns_a_pass<const D: usize>(centre: Point<D>, half: Vector<f64, D>, way: f64
     low
 }
 
-/// The unit vector of the orbit at `angle` [rad] of its turns, so many of which are a pass.
+/// The unit vector of the orbit at `angle` [rad], with `turns` turns in a pass.
 fn direction<const D: usize>(angle: f64, turns: f64) -> Vector<f64, D> {
     let (sin, cos) = libm::sincos(angle);
     let mut direction = [0.0; D];
@@ -123,7 +123,7 @@ fn on_box<const D: usize>(
 mod tests {
     use super::*;
 
-    /// The lowest and the highest point of an orbit `way` long [m].
+    /// The heights of the lowest and the highest point of an orbit `way` long [m].
     fn heights(way: f64) -> (f64, f64) {
         let bounds = Aabb { min: Vector([-0.3, 0.0, -0.05]), max: Vector([0.3, 0.1, 0.05]) };
         let points = orbit(&bounds, 0.1, 0.001, (way / 0.001) as usize).map(|p| p[1]);

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Sequences without jumps and corners.
+//! Smoothing of sequences.
 
 use palpate_field::{Point, Vector};
 
-/// The highest value within `window` places of each.
+/// The maximum within `window` places of each value.
 pub(super) fn highest(values: &[f64], window: usize) -> Vec<f64> {
     (0..values.len())
         .map(|i| {
@@ -15,13 +15,13 @@ pub(super) fn highest(values: &[f64], window: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The mean of the values within `window` places of each, taken twice: without corners.
+/// The moving mean over `window` places on both sides, taken twice, which removes corners.
 pub(super) fn smoothed(values: &[f64], window: usize) -> Vec<f64> {
     let points: Vec<Vector<f64, 1>> = values.iter().map(|v| Vector([*v])).collect();
     smoothed_points(&points, window).into_iter().map(|v| v.0[0]).collect()
 }
 
-/// Likewise of points.
+/// The moving mean of points, taken twice.
 pub(super) fn smoothed_points<const D: usize>(
     points: &[Vector<f64, D>],
     window: usize,
@@ -39,7 +39,7 @@ fn mean_around<const D: usize>(points: &[Vector<f64, D>], window: usize) -> Vec<
         .collect()
 }
 
-/// The places within `window` of place `i`, fewer on both sides near an end.
+/// The places within `window` of place `i`; symmetric, and fewer near an end.
 fn around(i: usize, window: usize, count: usize) -> (usize, usize) {
     let window = window.min(i).min(count - 1 - i);
     (i - window, i + window + 1)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A curve as short straight segments, and the closest point of it in bounded time.
+//! A curve of short straight segments, and its closest point in bounded time.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -12,19 +12,21 @@ use super::finite;
 use super::target::Closest;
 use crate::error::HapticsError;
 
-/// The most segments of a curve: what a tick has time for if no group can be skipped.
+/// The most segments of a curve: a tick has time for all of them even if no group can be
+/// skipped.
 const MOST_SEGMENTS: usize = 1024;
 
-/// Segments with a common ball: fewer make more balls to ask, more make them larger.
+/// Segments in a bounding ball: smaller groups need more balls, larger groups make the balls
+/// less tight.
 const GROUP: usize = 16;
 
-/// Segments from one point of a smooth curve to the next.
+/// Segments between two points of a smooth curve.
 const PIECES: usize = 16;
 
-/// A curve through points: straight from each to the next, or smooth.
+/// A curve through points: a polyline, or smooth.
 ///
-/// Between two neighbours the closest point moves continuously with the hand, except where the
-/// hand is equally far from two parts of the curve: there it changes sides.
+/// The closest point moves continuously with the hand, except where the hand is equally far
+/// from two parts of the curve: there the closest point jumps from one part to the other.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -54,8 +56,7 @@ struct Segment<const D: usize> {
 }
 
 impl<const D: usize> Curve<D> {
-    /// Straight from each point to the next [m]; points that repeat their predecessor are
-    /// left out.
+    /// A polyline through the points [m]; points that repeat their predecessor are left out.
     ///
     /// # Errors
     ///
@@ -83,9 +84,9 @@ impl<const D: usize> Curve<D> {
         Ok(Self { segments, balls, deviation: 0.0 })
     }
 
-    /// Smoothly through the points [m], by the cubics of Catmull and Rom, "A class of local
-    /// interpolating splines" (1974): at each point the tangent is that from the one before to
-    /// the one after, at the ends that to the neighbour.
+    /// A smooth curve through the points [m], by the cubics of Catmull and Rom, "A class of
+    /// local interpolating splines" (1974): the tangent at each point is half the difference of
+    /// its two neighbours; at an end it is the difference to its one neighbour.
     ///
     /// Each cubic is kept as 16 straight pieces: see [`deviation`](Self::deviation).
     ///
@@ -117,7 +118,7 @@ impl<const D: usize> Curve<D> {
                 });
             }
             // The second derivative is linear in t, so largest at an end; a chord over a step h
-            // is within h²/8 of it.
+            // deviates by at most h²/8 of the second derivative.
             let bends = [
                 way * 6.0 - leave * 4.0 - arrive * 2.0,
                 way * -6.0 + leave * 2.0 + arrive * 4.0,
@@ -129,13 +130,13 @@ impl<const D: usize> Curve<D> {
         Ok(Self { deviation, ..polyline })
     }
 
-    /// How far the curve is at most from the smooth one it stands for [m]; zero for a polyline.
+    /// The largest distance between this curve and the exact cubics [m]; zero for a polyline.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         self.deviation
     }
 
-    /// The closest point; of equally close ones the first along the curve.
+    /// The closest point; the first along the curve if several are equally close.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at 64 balls and 1024
     /// segments at most.
@@ -182,6 +183,6 @@ fn ball_around<const D: usize>(segments: &[Segment<D>]) -> (Point<D>, f64) {
         centre += end * (0.5 / segments.len() as f64);
     }
     let radius = ends().map(|end| (end - centre).norm()).fold(0.0, f64::max);
-    // Rounding must not let a ball miss what it holds.
+    // Enlarged, so that rounding cannot put a segment outside its ball.
     (centre, radius * (1.0 + 1e-12) + 1e-12 * centre.norm())
 }

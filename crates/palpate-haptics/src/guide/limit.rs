@@ -12,17 +12,17 @@ use palpate_safety::limited;
 /// The two parts of a force [N].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<const D: usize> {
-    /// What depends on the position alone.
+    /// The part that depends on the position alone.
     pub(crate) spring: Vector<f64, D>,
-    /// What takes energy from the motion.
+    /// The part that dissipates energy.
     pub(crate) damper: Vector<f64, D>,
 }
 
-/// The sum of both, at most `max_force`: the spring limited on its own, then as much of the
-/// damper as there is room for.
+/// The sum of spring and damper, at most `max_force`: the spring is limited first, then the
+/// damper is scaled to what the limit leaves.
 ///
-/// Shortening the sum instead would let the speed decide how much of the spring is felt: pressed
-/// in slowly and let out fast, it would give back more than it took.
+/// Limiting the sum instead would make the spring force depend on the speed: a spring that is
+/// compressed slowly and released fast would give back more energy than it took.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
 pub(crate) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vector<f64, D> {
@@ -36,7 +36,8 @@ pub(crate) fn damped<const D: usize>(motion: &Motion<D>, max_force: f64) -> Vect
     let (a, b) = (damper.dot(damper), spring.dot(damper));
     let room = (max_force * max_force - spring.dot(spring)).max(0.0);
     let part = ((b * b + a * room).sqrt() - b) / a;
-    // Written so that NaN, of huge numbers, leaves the damper out; the second limit is rounding.
+    // Written so that NaN from overflow leaves the damper out; the upper limit corrects
+    // rounding.
     let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
     limited(spring + damper * part, max_force)
 }

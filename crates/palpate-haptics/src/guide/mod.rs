@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Forces in free space: virtual fixtures that a hand follows, wells and slopes that draw it.
+//! Forces in free space: virtual fixtures that a hand follows, wells and slopes that attract
+//! it.
 //!
-//! Rosenberg, "Virtual fixtures: perceptual tools for telerobotic manipulation" (1993), who
-//! likens them to a ruler under a pencil.
+//! Source: Rosenberg, "Virtual fixtures: perceptual tools for telerobotic manipulation" (1993),
+//! who compares them with a ruler under a pencil.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -23,25 +24,25 @@ use palpate_safety::{NumberError, not_negative, positive, positive_or_infinite};
 pub use slope::Slope;
 use target::Target;
 
-/// How strongly a guide holds.
+/// Stiffness, damping and limits of a guide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideOptions {
-    /// Force for each metre off the guide [N/m]; positive.
+    /// Force per metre of distance from the guide [N/m]; positive.
     pub stiffness: f64,
-    /// Force for each metre per second off the guide [N·s/m]; zero or more.
+    /// Force per constrained velocity [N·s/m]; zero or more.
     pub damping: f64,
-    /// How near the hand must come before the guide takes hold [m]; infinite for always.
+    /// Distance at which the guide engages [m]; infinite to engage everywhere.
     pub snap_distance: f64,
-    /// How far it must be pulled before it lets go [m], not below the snap distance; none for
-    /// the snap distance itself.
+    /// Distance at which an engaged guide releases the hand [m], at least the snap distance;
+    /// `None` means the snap distance.
     pub release_distance: Option<f64>,
-    /// The largest force [N]; infinite for none.
+    /// The largest force [N]; infinite for no limit.
     pub max_force: f64,
 }
 
 impl Default for GuideOptions {
-    /// 300 N/m and 1 N·s/m at any distance, at most 2 N: firm to a finger, and passed with
-    /// intent.
+    /// 300 N/m and 1 N·s/m at any distance, at most 2 N: firm to a finger, but a deliberate
+    /// push overcomes it.
     fn default() -> Self {
         Self {
             stiffness: 300.0,
@@ -91,7 +92,7 @@ fn finite<const D: usize>(
     }
 }
 
-/// The unit vector along `direction`; refused if it has none.
+/// The unit vector along `direction`; an error if `direction` is zero or not finite.
 fn unit<const D: usize>(
     parameter: &'static str,
     direction: Vector<f64, D>,
@@ -104,24 +105,25 @@ fn unit<const D: usize>(
     }))
 }
 
-/// A force that guides a hand: towards a point, line, plane or curve, into a well, or down a
-/// field.
+/// A force on the hand in free space: towards a point, line, plane or curve, into a well, or
+/// down a field.
 ///
-/// Towards the closest point c of its target, with the hand at x moving at v,
+/// With the closest point c of the target, and the hand at x with velocity v,
 ///
 /// ```text
 /// F = min(K, F_max / ‖c − x‖) (c − x) − λ B P v
 /// ```
 ///
-/// where P drops what of the motion the target leaves free: nothing at a point and at the ends
-/// of a segment or curve, along a line all that is along it. The spring alone is never more than
-/// the largest force, and λ ≤ 1 is the largest for which the whole is not. So the spring gives
-/// back what was put in, and the damper, `−λ B P v · v ≤ 0`, only takes.
+/// where P projects on the constrained directions: all directions at a point and at the ends of
+/// a segment or curve, those across a line or curve elsewhere, the normal of a plane. The
+/// spring alone never exceeds the largest force, and λ ≤ 1 is the largest factor for which the
+/// sum does not. So the spring is conservative, and the damper, `−λ B P v · v ≤ 0`, dissipates.
 ///
-/// The spring is continuous in the position wherever the closest point is, and zero on the
-/// target. A guide that snaps is not continuous where it takes hold and lets go: the force jumps
-/// by at most `min(K d, F_max)` there, and since it lets go no nearer than it took hold, what the
-/// hand gains by the one it pays back by the other.
+/// The spring force is zero on the target and continuous wherever the closest point is. With a
+/// snap distance, the force jumps by at most `min(K d, F_max)` where the guide engages and
+/// where it releases at distance d. Because the release distance is at least the snap distance,
+/// the energy that the hand gains at the snap is at most the energy that it pays until the
+/// release.
 ///
 /// # Examples
 ///
@@ -137,7 +139,7 @@ fn unit<const D: usize>(
 /// // 1/256 m above the line, sliding along it and rising.
 /// let force = guide.force(Vector([3.0, 0.00390625]), Vector([0.5, 0.25]));
 /// assert_eq!(force, Vector([0.0, -1.5]));
-/// // Never more than the largest force.
+/// // The largest force limits the spring.
 /// assert_eq!(guide.force(Vector([0.0, 1.0]), Vector::ZERO), Vector([0.0, -2.0]));
 /// # Ok(())
 /// # }
@@ -157,22 +159,22 @@ enum Kind<const D: usize> {
 }
 
 impl<const D: usize> Guide<D> {
-    /// Towards `point` [m].
+    /// A guide towards `point` [m].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if an option is outside its range or a coordinate not finite; so
-    /// it is of every guide.
+    /// [`HapticsError::Number`] if an option is outside its range or a coordinate is not
+    /// finite.
     pub fn to_point(point: Point<D>, options: GuideOptions) -> Result<Self, HapticsError> {
         Self::of(Kind::Target(Target::Point(finite("point", point)?)), options)
     }
 
-    /// Towards the line through the point `through` [m] along `direction`, of any length but
-    /// zero.
+    /// A guide towards the line through the point `through` [m] along `direction`, a vector of
+    /// any length but zero.
     ///
     /// # Errors
     ///
-    /// As [`to_point`](Self::to_point), and without a direction.
+    /// As [`to_point`](Self::to_point), and if `direction` is zero.
     pub fn along_line(
         through: Point<D>,
         direction: Vector<f64, D>,
@@ -183,11 +185,11 @@ impl<const D: usize> Guide<D> {
         Self::of(Kind::Target(Target::Line { through, direction }), options)
     }
 
-    /// Towards the straight way from `from` to `to` [m].
+    /// A guide towards the segment from `from` to `to` [m].
     ///
     /// # Errors
     ///
-    /// As [`to_point`](Self::to_point), and if the ends are one.
+    /// As [`to_point`](Self::to_point), and if the ends coincide.
     pub fn along_segment(
         from: Point<D>,
         to: Point<D>,
@@ -196,12 +198,12 @@ impl<const D: usize> Guide<D> {
         Self::along_curve(Curve::polyline(&[from, to])?, options)
     }
 
-    /// Towards the plane, in 2D the line, through `through` [m] with the `normal`, of any length
-    /// but zero.
+    /// A guide towards the plane (in 2D the line) through `through` [m] with the `normal`, a
+    /// vector of any length but zero.
     ///
     /// # Errors
     ///
-    /// As [`to_point`](Self::to_point), and without a normal.
+    /// As [`to_point`](Self::to_point), and if `normal` is zero.
     pub fn on_plane(
         through: Point<D>,
         normal: Vector<f64, D>,
@@ -211,7 +213,7 @@ impl<const D: usize> Guide<D> {
         Self::of(Kind::Target(Target::Plane { through, normal }), options)
     }
 
-    /// Towards `curve`.
+    /// A guide towards `curve`.
     ///
     /// # Errors
     ///
@@ -220,17 +222,17 @@ impl<const D: usize> Guide<D> {
         Self::of(Kind::Target(Target::Curve(curve)), options)
     }
 
-    /// Towards `centre` [m] from within `reach` [m]: the pull rises by the stiffness to the
-    /// largest force, and from there falls evenly to nothing at the reach.
+    /// A guide towards `centre` [m] that acts within `reach` [m]. With distance, the pull rises
+    /// by the stiffness to the largest force, then falls linearly to zero at the reach.
     ///
-    /// Continuous everywhere; a central force, which gives and takes nothing over a closed path.
-    /// Its damper is against all motion, at full strength up to the largest force, and falls with
-    /// the pull beyond. Snap and release distances mean nothing to it.
+    /// The pull is continuous and central, so it does no work over a closed path. The damper
+    /// acts against all motion, at full strength up to the largest pull, and falls with the
+    /// pull beyond. Snap and release distances are ignored.
     ///
     /// # Errors
     ///
-    /// As [`to_point`](Self::to_point), and if the largest force is not finite or the reach not
-    /// beyond where the pull is largest, `max_force / stiffness`.
+    /// As [`to_point`](Self::to_point), and if the largest force is not finite, or the reach is
+    /// not beyond `max_force / stiffness`, the distance of the largest pull.
     ///
     /// ```
     /// use palpate_field::Vector;
@@ -256,9 +258,9 @@ impl<const D: usize> Guide<D> {
         Self::of(Kind::Well(well::Well::new(centre, reach, &options)?), options)
     }
 
-    /// Down the field of `shape` within a band of distances: see [`Slope`].
+    /// A guide down the field of a shape within a band of distances: see [`Slope`].
     ///
-    /// Of the options it uses damping and largest force alone.
+    /// Only the damping and the largest force of the options are used.
     ///
     /// # Errors
     ///
@@ -271,20 +273,22 @@ impl<const D: usize> Guide<D> {
         Ok(Self { kind, options: options.checked()?, engaged: false })
     }
 
-    /// How strongly it holds.
+    /// The options.
     #[must_use]
     pub fn options(&self) -> &GuideOptions {
         &self.options
     }
 
-    /// `true` if it held the hand in the last tick; a well or slope, if it has a force there.
+    /// `true` if the guide held the hand in the last tick; for a well or slope, if the hand was
+    /// within its reach or band.
     #[must_use]
     pub fn is_engaged(&self) -> bool {
         self.engaged
     }
 
-    /// The force on a hand at `position` [m] that moves at `velocity` [m/s], in the world [N]:
-    /// finite, at most the largest force; zero for numbers that are not finite, which let go.
+    /// The force on a hand at `position` [m] that moves at `velocity` [m/s], in world
+    /// coordinates [N]: finite, and at most the largest force. A number that is not finite
+    /// releases the hand, and the force is zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does. A
     /// curve costs at most 1024 segments, a slope one evaluation of its shape.
@@ -298,7 +302,7 @@ impl<const D: usize> Guide<D> {
         if force.is_finite() { force } else { Vector::ZERO }
     }
 
-    /// Spring and damper, without the limit; none where the guide does not hold.
+    /// Spring and damper, without the limit; `None` where the guide does not act.
     fn motion(&self, position: Point<D>, velocity: Vector<f64, D>) -> Option<Motion<D>> {
         if !position.is_finite() || !velocity.is_finite() {
             return None;
@@ -310,7 +314,7 @@ impl<const D: usize> Guide<D> {
                 let off = closest.point - position;
                 let o = &self.options;
                 let hold = if self.engaged { o.release() } else { o.snap_distance };
-                // Written so that NaN lets go.
+                // Written so that NaN releases the hand.
                 let holds = off.norm() <= hold;
                 let damper = closest.constrained(velocity) * -damping;
                 holds.then(|| Motion { spring: off * stiffness, damper })

@@ -17,15 +17,15 @@ use palpate_safety::{NumberError, positive};
 /// F = −gain · w(f) ∇f
 /// ```
 ///
-/// where w rises from 0 at the lower end of the band to 1 and falls to 0 at the upper one, as
-/// `3t² − 2t³` over the `edge`. The force is the gradient of `−gain ∫ w(f) df`: over a closed path
-/// it gives and takes nothing, as long as it stays below the largest force. It is continuous
-/// where ∇f is. A positive gain draws towards the shape, a negative one pushes off.
+/// where w rises from 0 at the lower end of the band to 1 and falls to 0 at the upper end, as
+/// `3t² − 2t³` over the `edge`. The force is the gradient of `−gain ∫ w(f) df`, so it does no
+/// work over a closed path as long as it stays below the largest force. The force is continuous
+/// where ∇f is. A positive gain attracts to the shape, a negative gain repels.
 ///
 /// # Examples
 ///
-/// Drawn to a ball of 1/2 m from up to 1/4 m away, with half of the force in the middle of the
-/// edge:
+/// Attraction to a ball of 1/2 m radius from up to 1/4 m away, with half of the force in the
+/// middle of the edge:
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
@@ -51,8 +51,8 @@ pub struct Slope<const D: usize> {
 }
 
 impl<const D: usize> Slope<D> {
-    /// The slope of `shape` where its field is in `band` [m], with the force `gain` [N] for each
-    /// metre per metre of its gradient; edges take a quarter of the band each.
+    /// The slope of `shape` where its field is in `band` [m]; a gradient of length one gives
+    /// the force `gain` [N]. Each edge takes a quarter of the band.
     ///
     /// # Errors
     ///
@@ -72,11 +72,11 @@ impl<const D: usize> Slope<D> {
         Ok(Self { shape, gain, band, edge: 0.25 * width })
     }
 
-    /// The same, with edges of `edge` [m].
+    /// This slope with edges of `edge` [m].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is not positive, or more than half of the band.
+    /// [`HapticsError::Number`] if the edge is not positive, or more than half of the band.
     pub fn with_edge(self, edge: f64) -> Result<Self, HapticsError> {
         positive("edge", edge, "m")?;
         let [near, far] = self.band;
@@ -87,7 +87,7 @@ impl<const D: usize> Slope<D> {
         Err(HapticsError::Number(NumberError { parameter, rule, value: edge, unit: "m" }))
     }
 
-    /// Force and damper along the gradient; none outside the band.
+    /// Force and damper along the gradient; `None` outside the band.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; one
     /// evaluation.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a guide leads to, and the closest point of it.
+//! The target of a guide, and its closest point.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -17,7 +17,7 @@ pub(super) enum Target<const D: usize> {
     Curve(Curve<D>),
 }
 
-/// The closest point of a target, and what it leaves free there.
+/// The closest point of a target, and the free directions there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closest<const D: usize> {
     pub(super) point: Point<D>,
@@ -27,19 +27,19 @@ pub(super) struct Closest<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 enum Freedom<const D: usize> {
     None,
-    /// Along a unit vector.
+    /// Free along a unit vector.
     Along(Vector<f64, D>),
-    /// Across a unit vector.
+    /// Free across a unit vector.
     Across(Vector<f64, D>),
 }
 
 impl<const D: usize> Closest<D> {
-    /// A point of a curve with the unit `tangent`; none at its ends.
+    /// A point of a curve with the unit `tangent`; `None` at its ends.
     pub(super) fn on_curve(point: Point<D>, tangent: Option<Vector<f64, D>>) -> Self {
         Self { point, freedom: tangent.map_or(Freedom::None, Freedom::Along) }
     }
 
-    /// What of `velocity` the target does not leave free.
+    /// The constrained part of `velocity`.
     pub(super) fn constrained(&self, velocity: Vector<f64, D>) -> Vector<f64, D> {
         match self.freedom {
             Freedom::None => velocity,

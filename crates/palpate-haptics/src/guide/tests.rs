@@ -17,7 +17,7 @@ fn vector(u: Random, most: f64) -> arbitrary::Result<Vector<f64, 3>> {
     Ok(Vector([number(u, most)?, number(u, most)?, number(u, most)?]))
 }
 
-/// A guide of any kind that holds at any distance, damped as said.
+/// A guide of any kind without a snap distance, with the given damping.
 fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide<3>> {
     let options = GuideOptions { stiffness: 200.0, damping, ..GuideOptions::default() };
     let ball = || Shape::from_kernel(Ball::new(0.02).unwrap());
@@ -64,8 +64,8 @@ fn a_closed_path_costs_nothing() {
     cases(40, |u| {
         let mut guide = any_guide(u, 0.0)?;
         let (centre, a, b) = (vector(u, 0.05)?, vector(u, 0.02)?, vector(u, 0.02)?);
-        // A wedge of planes halfway between parts of a curve is crossed without a jump of the
-        // potential; the trapezoidal rule sees the kink.
+        // Where two parts of a curve are equally far, the potential is continuous but has a
+        // kink, and the trapezoidal rule errs.
         let steps = 20_000;
         let mut work = 0.0;
         let at = |step: i32| {
@@ -78,8 +78,8 @@ fn a_closed_path_costs_nothing() {
             work += 0.5 * (before + now).dot(at(step + 1) - at(step));
             before = now;
         }
-        // Jumps of at most 4 N over steps of at most 2e-5 m, a few of them; smooth parts err
-        // as the square of the step.
+        // A few jumps of at most 4 N over steps of at most 2e-5 m; smooth parts err as the
+        // square of the step.
         assert!(work.abs() < 1e-4, "{work} J: {guide:?}");
         Ok(())
     });
@@ -97,8 +97,8 @@ fn wells_and_slopes_are_continuous() {
             let here = vector(u, 0.08)?;
             let there = here + vector(u, 1e-7)?;
             let [a, b] = [here, there].map(|x| guide.force(x, Vector::ZERO));
-            // Their steepest: 200 N/m, and 1.2 N over an edge of 15 mm, by 3/2 for its middle;
-            // the gradient of a ball turns once within 0.01 m of its centre at least.
+            // The steepest parts: 200 N/m in a well; 3/2 · 1.2 N over an edge of 15 mm in a
+            // slope; and the gradient of a ball, which turns on a radius of at least 0.01 m.
             assert!((a - b).norm() <= 400.0 * (here - there).norm() + 1e-12);
         }
         Ok(())
@@ -172,8 +172,8 @@ fn a_smooth_curve_passes_its_points_and_says_how_far_off_it_is() {
     for point in points {
         assert!((curve.closest(point).point - point).norm() < 1e-15);
     }
-    // The middle of the second span, of a cubic by hand: the mean of its ends, and an eighth
-    // of the difference of its tangents, (3, 2)/2 and (3, −3)/2.
+    // The middle of the second span, by hand: the mean of its ends plus an eighth of the
+    // difference of its tangents, (3, 2)/2 and (3, −3)/2.
     let middle = Vector([2.0, 2.0 + 0.3125]);
     assert!((curve.closest(middle).point - middle).norm() < 1e-14);
     assert!(curve.deviation() > 0.0 && curve.deviation() < 0.01);

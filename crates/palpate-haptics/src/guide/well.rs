@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A pull towards a centre that ends.
+//! A pull towards a centre, with a finite reach.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -14,9 +14,9 @@ use palpate_safety::{NumberError, positive};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Well<const D: usize> {
     centre: Point<D>,
-    /// Where the pull is largest [m].
+    /// The distance at which the pull is largest [m].
     inner: f64,
-    /// Where it ends [m].
+    /// The distance at which the pull ends [m].
     reach: f64,
     /// The largest pull [N].
     max_force: f64,
@@ -38,8 +38,8 @@ impl<const D: usize> Well<D> {
         Err(HapticsError::Number(NumberError { parameter, rule, value: reach, unit: "m" }))
     }
 
-    /// The pull at `position` [N], and the part of the damper that acts there; none beyond the
-    /// reach.
+    /// The pull at `position` [N], and the part of the damper that acts there; `None` beyond
+    /// the reach.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn pull(&self, position: Point<D>) -> Option<(Vector<f64, D>, f64)> {

@@ -20,34 +20,34 @@ use crate::tool::Coupling;
 use palpate_safety::Accepted;
 use palpate_safety::not_negative;
 
-/// Changes what a running servo renders, and sees what it does. From [`handoff`](crate::handoff)
-/// or a [`ServoThread`](crate::ServoThread).
+/// The end of a hand-off for an ordinary thread: edits what a running servo renders, and reads
+/// its state. Made by [`handoff`](crate::handoff) or a [`ServoThread`](crate::ServoThread).
 ///
-/// Edits that the servo has not seen yet are joined: it finds all of them before its next tick,
-/// or none. What it no longer renders is dropped here, by the next call.
+/// Edits that the servo has not received yet are merged: before its next tick the servo
+/// receives all of them or none. Replaced bodies are dropped on this thread, by the next call.
 pub struct Control<const D: usize> {
     pub(super) sender: Sender<Edits<D>>,
     pub(super) reader: Reader<Snapshot<D>>,
     pub(super) events: rtrb::Consumer<Event>,
     pub(super) flags: Arc<Flags>,
-    /// Bodies of the newest scene.
+    /// The number of bodies in the newest scene.
     pub(super) bodies: usize,
     pub(super) most_bodies: usize,
-    /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` of an unprotected
-    /// one.
+    /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` for an
+    /// [`UnprotectedServo`](crate::UnprotectedServo).
     pub(super) protection: Option<(Protection<D>, f64)>,
-    /// The coupling that was requested of its tool; `None` for contact points.
+    /// The requested virtual coupling of the tool; `None` for contact points.
     pub(super) requested_coupling: Option<Coupling>,
 }
 
 impl<const D: usize> Control<D> {
-    /// Renders `bodies` from the next tick on, instead of all before. Poses set before were
-    /// those of the old ones.
+    /// Replaces all bodies from the next tick on. Poses that were set before belong to the old
+    /// bodies and are dropped.
     ///
-    /// A [`Servo`](crate::Servo) gets them as its device can render them, and a tool's coupling
-    /// with them; what became of them is returned, as by
-    /// [`Servo::accepted`](crate::Servo::accepted). An
-    /// [`UnprotectedServo`](crate::UnprotectedServo) gets them as they are, and the list is
+    /// For a [`Servo`](crate::Servo), the bodies and the tool's coupling are scaled to what its
+    /// device can render; the result is returned as in
+    /// [`Servo::accepted`](crate::Servo::accepted). For an
+    /// [`UnprotectedServo`](crate::UnprotectedServo) the bodies stay unchanged and the list is
     /// empty.
     ///
     /// # Errors
@@ -78,12 +78,12 @@ impl<const D: usize> Control<D> {
         Ok(accepted)
     }
 
-    /// Moves bodies, all of them before the same tick. Of several poses for a body before a
-    /// tick, the last counts.
+    /// Moves bodies, all of them before the same tick. If a body gets several poses before a
+    /// tick, the last one holds.
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; nothing moves then.
+    /// [`HapticsError::NoSuchBody`] or [`HapticsError::Pose`]; then no body moves.
     pub fn set_poses(&mut self, poses: &[(usize, Pose<D>)]) -> Result<(), HapticsError> {
         for (body, pose) in poses {
             if *body >= self.bodies {
@@ -107,7 +107,7 @@ impl<const D: usize> Control<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is negative or not finite.
+    /// [`HapticsError::Number`] if the limit is negative or not finite.
     pub fn limit_force(&mut self, max_force: f64) -> Result<(), HapticsError> {
         let max_force = not_negative("max_force", max_force, "N")?;
         self.edit(|edits| edits.max_force = edits.max_force.min(max_force));
@@ -118,14 +118,14 @@ impl<const D: usize> Control<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is negative or not finite.
+    /// [`HapticsError::Number`] if the limit is negative or not finite.
     pub fn limit_torque(&mut self, max_torque: f64) -> Result<(), HapticsError> {
         let max_torque = not_negative("max_torque", max_torque, "N·m")?;
         self.edit(|edits| edits.max_torque = edits.max_torque.min(max_torque));
         Ok(())
     }
 
-    /// Drops what the servo no longer renders; every edit does so too.
+    /// Drops replaced bodies that the servo has returned; every edit does so too.
     pub fn collect(&mut self) {
         self.sender.collect(|edits| {
             edits.bodies = None;
@@ -141,13 +141,13 @@ impl<const D: usize> Control<D> {
         StopSwitch { flags: self.flags.clone() }
     }
 
-    /// The servo after its last tick; `None` if there was none.
+    /// The state of the servo after its last tick; `None` before the first tick.
     #[must_use]
     pub fn latest(&mut self) -> Option<&Snapshot<D>> {
         self.reader.latest()
     }
 
-    /// The next event, in their order; `None` if there is none yet. Events that found no room
+    /// The next event, in order; `None` if the queue is empty. Events that found the queue full
     /// are [counted](Snapshot::events_lost).
     #[must_use]
     pub fn next_event(&mut self) -> Option<Event> {
@@ -180,21 +180,22 @@ impl<const D: usize> fmt::Debug for Control<D> {
     }
 }
 
-/// Stops all forces of a running servo, and lets them rise again; for any thread.
+/// The emergency stop of a running servo, for any thread: sets all forces to zero and releases
+/// them again.
 #[derive(Clone, Debug)]
 pub struct StopSwitch {
     flags: Arc<Flags>,
 }
 
 impl StopSwitch {
-    /// From the next tick on the forces written are zero.
+    /// From the next tick on, all written forces are zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn stop(&self) {
         self.flags.stop.set(true);
     }
 
-    /// Forces are written again; they rise from nothing.
+    /// Ends the emergency stop; forces rise from zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn release(&self) {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Handing over boxes between two threads, neither of which waits for the other.
+//! Wait-free exchange of boxes between two threads.
 //!
-//! All of it stands on one primitive, a [`Place`] whose box is exchanged in one step. A box is
-//! owned by one thread at a time, so nobody sees half of what is in it; what remains to be shown
-//! is that nothing is lost, late or freed at the wrong end. `model.rs` does, for every
-//! interleaving, on places of a model checker.
+//! The one primitive is a [`Place`], whose box is exchanged atomically. One thread at a time
+//! owns a box, so no thread sees a half-written content. `model.rs` checks every interleaving
+//! with a model checker: no content is lost, late, or freed on the servo's thread.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -15,29 +14,29 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crossbeam_utils::atomic::AtomicCell;
 
-/// A box or none, which threads exchange for another. What a thread did before it put a box
-/// there is seen by the thread that gets it.
+/// An optional box that threads exchange atomically. Everything a thread did before it put a
+/// box there is visible to the thread that takes the box.
 pub(crate) trait Place<T>: Send + Sync {
     fn holding(content: Option<Box<T>>) -> Self;
 
-    /// Puts `content` there; what was there before.
+    /// Stores `content` and returns the previous content.
     fn exchange(&self, content: Option<Box<T>>) -> Option<Box<T>>;
 }
 
-/// Something that is so or not. What a thread did before it set it is seen by the thread that
-/// sees it set.
+/// An atomic boolean. Everything a thread did before it set the flag is visible to a thread
+/// that reads the flag as set.
 pub(crate) trait Flag: Default + Send + Sync {
     fn set(&self, is_set: bool);
     fn is_set(&self) -> bool;
 }
 
-/// What threads share: the machine's atomic operations, or those of a model of them.
+/// The atomic operations in use: the machine's, or those of the model checker.
 pub(crate) trait Medium {
     type Place<T: Send>: Place<T>;
     type Flag: Flag;
 }
 
-/// The machine.
+/// The machine's atomic operations.
 pub(crate) struct Native;
 
 impl Medium for Native {
@@ -67,30 +66,30 @@ impl Flag for AtomicBool {
     }
 }
 
-/// A value and which publication it is, from 1; 0 if none.
+/// A value with the number of its publication, counted from 1; 0 before the first.
 #[derive(Clone)]
 pub(crate) struct Edition<T> {
     number: u64,
     value: T,
 }
 
-/// Publishes values of which the latest counts.
+/// The writing end of a triple buffer.
 pub(crate) struct Writer<T: Send, M: Medium = Native> {
     place: Arc<M::Place<Edition<T>>>,
-    /// Always there but for the moment of an exchange.
+    /// `Some` except during an exchange.
     draft: Option<Box<Edition<T>>>,
     number: u64,
 }
 
-/// Reads the latest value.
+/// The reading end of a triple buffer.
 pub(crate) struct Reader<T: Send, M: Medium = Native> {
     place: Arc<M::Place<Edition<T>>>,
-    /// Always there but for the moment of an exchange.
+    /// `Some` except during an exchange.
     seen: Option<Box<Edition<T>>>,
 }
 
-/// The two ends of a value of which the latest counts: three boxes that go round, one with the
-/// writer, one with the reader, one between them.
+/// The two ends of a triple buffer: one box belongs to the writer, one to the reader, one is in
+/// transit. The reader gets the latest value only.
 pub(crate) fn latest<T: Clone + Send, M: Medium>(value: T) -> (Writer<T, M>, Reader<T, M>) {
     let edition = Box::new(Edition { number: 0, value });
     let place = Arc::new(M::Place::holding(Some(edition.clone())));
@@ -99,7 +98,7 @@ pub(crate) fn latest<T: Clone + Send, M: Medium>(value: T) -> (Writer<T, M>, Rea
 }
 
 impl<T: Send, M: Medium> Writer<T, M> {
-    /// Publishes what `fill` makes of an older value.
+    /// Publishes a value; `fill` overwrites an older one.
     ///
     /// Real-time, if `fill` is: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub(crate) fn publish(&mut self, fill: impl FnOnce(&mut T)) {
@@ -112,7 +111,7 @@ impl<T: Send, M: Medium> Writer<T, M> {
 }
 
 impl<T: Send, M: Medium> Reader<T, M> {
-    /// What was published last; `None` if nothing was.
+    /// The value published last; `None` before the first publication.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub(crate) fn latest(&mut self) -> Option<&T> {
@@ -121,61 +120,63 @@ impl<T: Send, M: Medium> Reader<T, M> {
         self.seen = if other.as_ref().map(|edition| edition.number) > number {
             other
         } else {
-            // An older one was there; for that, what was seen comes back, or news of this moment.
+            // The place held an older edition. Exchange again: this returns the edition just
+            // seen, or a newer one.
             self.place.exchange(other)
         };
         self.seen.as_ref().filter(|edition| edition.number > 0).map(|edition| &edition.value)
     }
 }
 
-/// Something sent, and what was returned before it.
+/// A box that was sent, linked to the box returned before it.
 #[derive(Default)]
 pub(crate) struct Parcel<T> {
     pub(crate) content: T,
     below: Option<Box<Parcel<T>>>,
 }
 
-struct Counter<T: Send, M: Medium> {
-    /// Sent, and not taken yet.
+struct EditChannel<T: Send, M: Medium> {
+    /// Sent, but not yet taken.
     inbox: M::Place<Parcel<T>>,
-    /// Taken and given back, the last on top.
+    /// Taken and returned: a stack with the last one on top.
     returned: M::Place<Parcel<T>>,
 }
 
-/// Sends edits. What was not taken yet is edited further, so that the receiver finds all edits
-/// at once or none.
+/// The sending end for edits. An edit that was not taken yet is edited further, so that the
+/// receiver gets all edits at once or none.
 pub(crate) struct Sender<T: Send, M: Medium = Native> {
-    counter: Arc<Counter<T, M>>,
-    /// To be sent again.
+    channel: Arc<EditChannel<T, M>>,
+    /// A returned box to reuse.
     spare: Option<Box<Parcel<T>>>,
 }
 
-/// Takes edits, and gives back what it took: it allocates and frees nothing.
+/// The receiving end for edits. It returns every box to the sender, so it allocates and frees
+/// nothing.
 pub(crate) struct Receiver<T: Send, M: Medium = Native> {
-    counter: Arc<Counter<T, M>>,
+    channel: Arc<EditChannel<T, M>>,
 }
 
-/// The two ends of a way for edits.
-pub(crate) fn counter<T: Send, M: Medium>() -> (Sender<T, M>, Receiver<T, M>) {
+/// The two ends of a channel for edits.
+pub(crate) fn edit_channel<T: Send, M: Medium>() -> (Sender<T, M>, Receiver<T, M>) {
     let (inbox, returned) = (M::Place::holding(None), M::Place::holding(None));
-    let counter = Arc::new(Counter { inbox, returned });
-    (Sender { counter: counter.clone(), spare: None }, Receiver { counter })
+    let channel = Arc::new(EditChannel { inbox, returned });
+    (Sender { channel: channel.clone(), spare: None }, Receiver { channel })
 }
 
 impl<T: Default + Send, M: Medium> Sender<T, M> {
-    /// Adds to what the receiver finds next.
+    /// Edits what the receiver takes next.
     pub(crate) fn edit(&mut self, edit: impl FnOnce(&mut T)) {
-        let unseen = self.counter.inbox.exchange(None);
+        let unseen = self.channel.inbox.exchange(None);
         let mut parcel = unseen.or_else(|| self.spare.take()).unwrap_or_default();
         edit(&mut parcel.content);
-        // Nobody else puts anything there: nothing comes back.
-        self.counter.inbox.exchange(Some(parcel));
+        // Only the sender fills the inbox, so the exchange returns `None`.
+        self.channel.inbox.exchange(Some(parcel));
     }
 
-    /// Looks at everything that was given back, the last first, and keeps a box to be sent
-    /// again, with what `look` leaves in it.
+    /// Calls `look` for every returned box, the last first, and keeps one box for reuse, with
+    /// the content that `look` leaves in it.
     pub(crate) fn collect(&mut self, mut look: impl FnMut(&mut T)) {
-        let mut top = self.counter.returned.exchange(None);
+        let mut top = self.channel.returned.exchange(None);
         while let Some(mut parcel) = top {
             top = parcel.below.take();
             look(&mut parcel.content);
@@ -185,19 +186,20 @@ impl<T: Default + Send, M: Medium> Sender<T, M> {
 }
 
 impl<T: Send, M: Medium> Receiver<T, M> {
-    /// All edits since the last time.
+    /// Takes all edits since the last call.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub(crate) fn take(&mut self) -> Option<Box<Parcel<T>>> {
-        self.counter.inbox.exchange(None)
+        self.channel.inbox.exchange(None)
     }
 
-    /// Gives back what was taken, with what is to be dropped by the sender.
+    /// Returns a box to the sender, with content that the sender must drop.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub(crate) fn give_back(&mut self, mut parcel: Box<Parcel<T>>) {
-        parcel.below = self.counter.returned.exchange(None);
-        // Nobody else puts anything there: nothing comes back, and nothing is freed here.
-        self.counter.returned.exchange(Some(parcel));
+        parcel.below = self.channel.returned.exchange(None);
+        // Only the receiver fills this place and it is empty now, so the exchange returns
+        // `None` and frees nothing.
+        self.channel.returned.exchange(Some(parcel));
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The way between an ordinary thread and the servo, on which the servo never waits.
+//! The hand-off between an ordinary thread and the servo, which never makes the servo wait.
 
 mod control;
 mod exchange;
@@ -18,18 +18,18 @@ pub use control::{Control, StopSwitch};
 pub use latest::{LatestReader, LatestWriter, latest_value};
 pub use servo_end::ServoEnd;
 
-use exchange::{Medium, Native, counter, latest};
+use exchange::{Medium, Native, edit_channel, latest};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::live::{Progress, Snapshot};
 use crate::servo::AnyServo;
 
-/// What a hand-off has room for; the servo allocates nothing later.
+/// Capacities of a hand-off, allocated when it is made; the servo allocates nothing later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandoffOptions {
-    /// Events that wait to be taken.
+    /// The most events in the queue.
     pub events: usize,
-    /// Bodies of a scene.
+    /// The most bodies in a scene.
     pub bodies: usize,
 }
 
@@ -40,11 +40,11 @@ impl Default for HandoffOptions {
     }
 }
 
-/// The two ends of a hand-off to and from `servo`: one for an ordinary thread, one for the
-/// servo's. There is always room for the bodies that the servo has.
+/// The two ends of a hand-off: the first for an ordinary thread, the second for the thread of
+/// `servo`. The capacity for bodies is at least the number of bodies that the servo has.
 ///
-/// [`ServoThread`](crate::ServoThread) makes them itself. A loop of one's own, as where a
-/// device's driver calls back, [receives](ServoEnd::receive) before each
+/// [`ServoThread`](crate::ServoThread) makes its own hand-off. A custom loop, for example the
+/// callback of a device driver, [receives](ServoEnd::receive) before each
 /// [step](crate::Servo::step) and [publishes](ServoEnd::publish) after it.
 ///
 /// # Examples
@@ -80,7 +80,7 @@ pub fn handoff<const D: usize>(
     let servo = servo.renderer();
     let bodies = servo.bodies().bodies().len();
     let most_bodies = options.bodies.max(bodies);
-    let (sender, receiver) = counter();
+    let (sender, receiver) = edit_channel();
     let snapshot = Snapshot {
         progress: Progress::default(),
         touches: servo.touches().to_vec(),
@@ -113,11 +113,12 @@ pub fn handoff<const D: usize>(
     (control, end)
 }
 
-/// What the servo is to change before a tick, all of it together.
+/// Edits that the servo applies together before a tick.
 struct Edits<const D: usize> {
-    /// The new bodies, as they are rendered; after that tick, those to be dropped.
+    /// The new bodies; after the tick that applies them, the old bodies, for the sender to
+    /// drop.
     bodies: Option<AcceptedBodies<D>>,
-    /// New poses, by the number of the body.
+    /// New poses, by body index.
     poses: Vec<Option<Pose<D>>>,
     /// The largest force on a contact point [N].
     max_force: f64,
@@ -132,12 +133,12 @@ impl<const D: usize> Default for Edits<D> {
     }
 }
 
-/// What is so or not, for both ends.
+/// Flags that both ends share.
 #[derive(Debug, Default)]
 struct Flags {
-    /// An emergency: no forces.
+    /// Emergency stop: all forces are zero.
     stop: <Native as Medium>::Flag,
-    /// The loop is to end.
+    /// A request to end the loop.
     end: <Native as Medium>::Flag,
     /// The loop has ended.
     ended: <Native as Medium>::Flag,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The exchanges in every interleaving of two threads, by loom.
+//! Model checking of the exchanges in every interleaving of two threads, by loom.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use loom::sync::Mutex;
 use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use loom::thread;
 
-use super::exchange::{Flag, Medium, Place, Receiver, Sender, counter, latest};
+use super::exchange::{Flag, Medium, Place, Receiver, Sender, edit_channel, latest};
 
-/// Atomic operations whose interleavings loom goes through.
+/// Atomic operations whose interleavings loom explores.
 struct Model;
 
 impl Medium for Model {
@@ -19,7 +19,7 @@ impl Medium for Model {
     type Flag = ModelFlag;
 }
 
-/// One step that other threads see whole, as the machine's exchange of a pointer is.
+/// One atomic step, like the machine's exchange of a pointer.
 impl<T: Send> Place<T> for Mutex<Option<Box<T>>> {
     fn holding(content: Option<Box<T>>) -> Self {
         Self::new(content)
@@ -69,7 +69,7 @@ fn readers_see_the_latest_whole_and_in_order() {
     });
 }
 
-/// A scene that counts itself, and says where it is dropped.
+/// A scene that counts live instances and checks the thread on which it is dropped.
 #[derive(Debug)]
 struct Scene {
     name: u32,
@@ -91,14 +91,14 @@ impl Drop for Scene {
     }
 }
 
-/// What a scene looks like to the model: its name, and two poses that belong together.
+/// Edits in the model: a scene, and two poses that belong together.
 #[derive(Debug, Default)]
 struct Edits {
     scene: Option<Scene>,
     poses: Option<[u32; 2]>,
 }
 
-/// A servo that renders scene 0 at first; the poses and scenes it saw.
+/// A servo that starts with scene 0 and records the poses and scenes that it receives.
 struct ModelServo {
     receiver: Receiver<Edits, Model>,
     scene: Scene,
@@ -118,7 +118,7 @@ impl ModelServo {
     }
 }
 
-/// Drops what was returned; the names of the scenes among it.
+/// Drops returned edits and records the names of their scenes.
 fn collect(sender: &mut Sender<Edits, Model>, names: &mut Vec<u32>) {
     let mut scenes = Vec::new();
     sender.collect(|edits| {
@@ -132,7 +132,7 @@ fn collect(sender: &mut Sender<Edits, Model>, names: &mut Vec<u32>) {
 fn edits_arrive_whole_in_order_and_scenes_come_back_once() {
     loom::model(|| {
         let alive = Arc::new(AtomicUsize::new(0));
-        let (mut sender, receiver) = counter::<Edits, Model>();
+        let (mut sender, receiver) = edit_channel::<Edits, Model>();
         let scene = Scene::new(0, &alive);
         let mut servo = ModelServo { receiver, scene, poses: Vec::new() };
         let ticking = thread::spawn(move || {
@@ -156,7 +156,8 @@ fn edits_arrive_whole_in_order_and_scenes_come_back_once() {
         servo.tick();
         collect(&mut sender, &mut dropped);
 
-        // The latest won, nothing was seen twice, and poses were seen with their own scene.
+        // The latest scene is rendered, no edit arrived twice, and poses arrived with their own
+        // scene.
         assert_eq!(servo.scene.name, 2);
         assert_eq!(servo.poses.last(), Some(&(2, [3, 3])));
         assert!(servo.poses.windows(2).all(|pair| pair[0].1 < pair[1].1), "{:?}", servo.poses);

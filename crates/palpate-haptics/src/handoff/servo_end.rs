@@ -14,7 +14,8 @@ use crate::event::Event;
 use crate::live::{Progress, Snapshot};
 use crate::servo::AnyServo;
 
-/// Receives edits for a servo and publishes what it does. From [`handoff`](crate::handoff).
+/// The servo's end of a hand-off: receives edits and publishes the state of the servo. Made by
+/// [`handoff`](crate::handoff).
 pub struct ServoEnd<const D: usize> {
     pub(super) receiver: Receiver<Edits<D>>,
     pub(super) writer: Writer<Snapshot<D>>,
@@ -25,7 +26,7 @@ pub struct ServoEnd<const D: usize> {
 }
 
 impl<const D: usize> ServoEnd<D> {
-    /// Changes `servo` as the other end asks; before a tick.
+    /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
@@ -50,7 +51,7 @@ impl<const D: usize> ServoEnd<D> {
         self.receiver.give_back(parcel);
     }
 
-    /// Whether the loop is to end: it was asked to, or there is nobody left to ask.
+    /// Whether the loop must end: the other end asked for it, or was dropped.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -58,7 +59,7 @@ impl<const D: usize> ServoEnd<D> {
         self.flags.end.is_set() || self.events.is_abandoned()
     }
 
-    /// Shows the other end what `servo` did; after a tick.
+    /// Publishes the state of `servo` to the other end; call it after each tick.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn publish(&mut self, servo: &impl AnyServo<D>, progress: &Progress) {
@@ -76,7 +77,7 @@ impl<const D: usize> ServoEnd<D> {
         });
     }
 
-    /// Tells the other end that there will be no more ticks.
+    /// Tells the other end that the loop has ended.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn finish(&self) {
@@ -93,7 +94,7 @@ impl<const D: usize> fmt::Debug for ServoEnd<D> {
     }
 }
 
-/// Makes `list` a copy of `content`, as far as it has room.
+/// Copies `content` into `list`, up to the capacity of `list`.
 fn refill<T: Copy>(list: &mut Vec<T>, content: &[T]) {
     list.clear();
     let room = list.capacity();

@@ -3,10 +3,11 @@
 
 //! Materials by name.
 //!
-//! A device cannot render a real surface's stiffness: wood is some 10⁵ N/m under a finger. The
-//! presets are what tells materials apart within what common desktop devices render, up to 1000
-//! N/m: harder ones are stiffer, and ring higher when tapped, which is how hardness is judged
-//! through a tool (Okamura, Cutkosky and Dennerlein 2001; Kuchenbecker, Fiene and Niemeyer 2006).
+//! A device cannot render the stiffness of a real surface: wood has some 10⁵ N/m under a
+//! finger. The presets differ from each other within what common desktop devices render, up to
+//! 1000 N/m: harder materials are stiffer and ring higher when tapped, which is how people
+//! judge hardness through a tool (Okamura, Cutkosky and Dennerlein 2001; Kuchenbecker, Fiene
+//! and Niemeyer 2006).
 
 use super::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 
@@ -16,9 +17,9 @@ struct Preset {
     material: fn() -> Material,
 }
 
-/// Declares presets: where the numbers are from, the name, the material.
+/// Declares presets: the source of the numbers, the name, the material.
 ///
-/// Numbers without a source are said to be chosen: plausible, felt apart, not measured.
+/// A number without a source is called chosen: plausible and distinguishable, but not measured.
 macro_rules! presets {
     ($(#[doc = $source:literal] $name:ident => $material:expr,)*) => {
         const PRESETS: &[Preset] = &[
@@ -91,11 +92,11 @@ presets! {
     },
 }
 
-/// There is no material of that name.
+/// No preset has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown material `{name}`; there are {}", quoted_names())]
 pub struct UnknownMaterial {
-    /// The name asked for.
+    /// The name that was asked for.
     pub name: String,
 }
 
@@ -116,12 +117,12 @@ impl Material {
         PRESETS.iter().map(|preset| preset.name)
     }
 
-    /// The material called `name`; its description says where its numbers are from, and which
-    /// are chosen.
+    /// The preset called `name`; its description names the sources of its numbers, and says
+    /// which are chosen.
     ///
     /// # Errors
     ///
-    /// [`UnknownMaterial`], which says which names there are.
+    /// [`UnknownMaterial`], which lists the known names.
     ///
     /// ```
     /// use palpate_haptics::Material;
@@ -145,7 +146,7 @@ fn contact(stiffness: f64, damping: f64, frictions: (f64, f64)) -> Material {
     Material { stiffness, damping, static_friction, dynamic_friction, ..Material::default() }
 }
 
-/// The same with a tap: amplitude [N·s/m], frequency [Hz], decay [1/s].
+/// The material with a tap: amplitude [N·s/m], frequency [Hz], decay [1/s].
 fn tapped(material: Material, (amplitude, frequency, decay): (f64, f64, f64)) -> Material {
     let impact = Impact { description: None, amplitude, frequency, decay };
     Material { impact: Some(impact), ..material }

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Either kind of servo, where the kind does not matter.
+//! A trait for both kinds of servo.
 
 use super::{Renderer, Servo, UnprotectedServo};
 use crate::protection::Protection;
 
-/// A [`Servo`] or an [`UnprotectedServo`]. Sealed: there is no other.
+/// A [`Servo`] or an [`UnprotectedServo`]. Sealed: no other type implements it.
 ///
-/// This trait is not exported, so that nobody outside the crate reaches the renderer of a
-/// [`Servo`] to exchange it.
+/// The trait is not exported, so that no other crate can replace the renderer of a [`Servo`].
 pub trait AnyServo<const D: usize> {
     #[doc(hidden)]
     fn renderer(&self) -> &Renderer<D>;

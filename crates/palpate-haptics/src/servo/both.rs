@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be done with both kinds of servo, written once.
+//! Methods that both kinds of servo have, written once.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -15,10 +15,11 @@ use palpate_safety::{PointState, TurnState};
 macro_rules! methods_of_both {
     ($servo:ident) => {
         impl<const D: usize> $servo<D> {
-            /// One tick: reads each point's state, moves its proxy, gives its force.
+            /// One tick: for each contact point, takes its state, moves its proxy and computes
+            /// its force.
             ///
-            /// A point that is not finite, or for which there is no state, touches nothing: its
-            /// force is zero, and its proxy waits where it was.
+            /// A point whose state is missing or not finite touches nothing: its force is zero,
+            /// and its proxy stays in place.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field
             /// does; evaluates the field at most [`Probe::budget`](crate::Probe::budget) times a
@@ -29,29 +30,29 @@ macro_rules! methods_of_both {
                 self.renderer.step(states)
             }
 
-            /// Sets how a device that turns is turned in the ticks to come: a tool with a shape
-            /// turns with it. `None`, as at first, for a device that does not turn: the tool
-            /// keeps the device's axes.
+            /// Sets orientation and angular velocity of the device for the next ticks; a tool
+            /// turns with them. `None`, the initial value, is for a device without rotation:
+            /// the tool keeps the device's axes.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn set_turn(&mut self, turn: Option<TurnState<D>>) {
                 self.renderer.set_turn(turn);
             }
 
-            /// Guides every contact point.
+            /// Sets the guides of every contact point.
             pub fn guide(&mut self, guides: &[Guide<D>]) {
                 self.renderer.guide(guides);
             }
 
-            /// Says whether the next tick starts too late.
+            /// Sets whether the next tick starts too late.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn set_late(&mut self, is_late: bool) {
                 self.renderer.set_late(is_late);
             }
 
-            /// Stops all forces and torques: they are zero from the next tick on. Or releases
-            /// them: they rise from nothing.
+            /// Stops all forces and torques from the next tick on, or releases them: they then
+            /// rise from zero.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn stop(&mut self, is_stopped: bool) {
@@ -65,18 +66,17 @@ macro_rules! methods_of_both {
                 self.renderer.set_pose(body, world_from_body);
             }
 
-            /// Lowers the largest force on a contact point to `max_force` [N]; never raises it.
-            /// With a safety chain, a larger force falls as fast as the device's forces may
-            /// change.
+            /// Lowers the force limit of every contact point to `max_force` [N]; never raises
+            /// it. With a safety chain, a larger force falls to the limit at the device's
+            /// largest rate.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn limit_force(&mut self, max_force: f64) {
                 self.renderer.limit_force(max_force);
             }
 
-            /// Lowers the largest torque on a tool's device to `max_torque` [N·m]; never raises
-            /// it. With a safety chain, a larger torque falls as fast as the device's torques may
-            /// change.
+            /// Lowers the torque limit of a tool to `max_torque` [N·m]; never raises it. With a
+            /// safety chain, a larger torque falls to the limit at the device's largest rate.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn limit_torque(&mut self, max_torque: f64) {

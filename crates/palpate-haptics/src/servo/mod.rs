@@ -3,9 +3,9 @@
 
 //! The servo: from device points to forces, once a tick.
 //!
-//! A [`Servo`] is made for a device, and a safety chain stands between every force and the hand.
-//! It is the only kind that the loops of `palpate-loop` run. An [`UnprotectedServo`] has no
-//! chain: it is for tests, and for the step before a servo gets its device.
+//! A [`Servo`] is made for a device, and a safety chain stands between every force and the
+//! hand; the loops of `palpate-loop` run no other kind. An [`UnprotectedServo`] has no safety
+//! chain: it is for tests, and for setting up a servo before its device is known.
 
 mod any;
 mod both;
@@ -28,14 +28,14 @@ use crate::tool::Tool;
 use palpate_safety::Accepted;
 use palpate_safety::{Device, PointState};
 
-/// Renders bodies to the contact points of a device, or to a tool that its hand holds, and
-/// keeps every force within what the device and the hand can bear.
+/// Renders bodies to the contact points of a device, or to a tool, with a safety chain that
+/// keeps every force within the limits of the device.
 ///
-/// What the servo shows of its last tick are the methods of [`Renderer`], which it lends.
+/// The results of the last tick are methods of [`Renderer`], to which a servo dereferences.
 ///
 /// # Examples
 ///
-/// A wall is pressed to a depth of 1/256 m, on a device that gives at most 1 N:
+/// A device that gives at most 1 N presses 1/256 m into a wall:
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
@@ -69,8 +69,8 @@ impl<const D: usize> Servo<D> {
     /// A servo that renders `bodies` to every contact point of `device`, protected by
     /// [`Protection::new`]: 1 kHz, a ball of 2 mm, forces up to the device's largest.
     ///
-    /// A shape alone is one body of the default surface. For other settings, protect an
-    /// [`UnprotectedServo`] as its [`protected`](UnprotectedServo::protected) says.
+    /// A plain shape becomes one body with the default surface. For other settings, make an
+    /// [`UnprotectedServo`] and call [`protected`](UnprotectedServo::protected).
     ///
     /// # Errors
     ///
@@ -103,7 +103,7 @@ impl<const D: usize> Servo<D> {
         UnprotectedServo::new(bodies, device.points(), options)?.protected_for(device.profile())
     }
 
-    /// A servo that renders `bodies` to a tool with a shape, held by `device`; the rest is as
+    /// A servo that renders `bodies` to a tool held by `device`; otherwise as
     /// [`for_device`](Self::for_device).
     ///
     /// # Errors
@@ -118,21 +118,22 @@ impl<const D: usize> Servo<D> {
         UnprotectedServo::with_tool(bodies, tool, options)?.protected_for(device.profile())
     }
 
-    /// What stands between the servo and its device.
+    /// The protection of the device.
     #[must_use]
     pub fn protection(&self) -> &Protection<D> {
         &self.protection
     }
 
-    /// What became of the stiffness and damping of each body on the way to the device. With a
-    /// tool: what became of those felt through it, and second, where the device gives a torque,
-    /// of the coupling's angular ones. Empty on a device that gives no force.
+    /// The accepted stiffness and damping of each body. With a tool: first the translational
+    /// entry, in series with the coupling, and second, if the device gives a torque, the
+    /// rotational entry. Empty for a device that gives no force.
     #[must_use]
     pub fn accepted(&self) -> &[Accepted] {
         &self.accepted
     }
 
-    /// The bodies as the servo's device renders them, for [`replace_bodies`](Self::replace_bodies).
+    /// Scales bodies to what the servo's device renders, for
+    /// [`replace_bodies`](Self::replace_bodies).
     ///
     /// # Errors
     ///
@@ -149,11 +150,12 @@ impl<const D: usize> Servo<D> {
         )
     }
 
-    /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
-    /// where freeing is allowed.
+    /// Replaces the bodies from the next tick on. Returns the old bodies, to be dropped on a
+    /// thread that may free memory.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently; so
-    /// does one that pushes harder on them than on those before, from where it was.
+    /// If the new bodies cover a contact point, its proxy is placed anew and its force rises
+    /// from zero. If they push a contact point harder than the old ones, its force rises from
+    /// the old force.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]
@@ -162,8 +164,8 @@ impl<const D: usize> Servo<D> {
         bodies
     }
 
-    /// Refuses a device that bears less than the one that the servo was made for, or has another
-    /// number of contact points. A loop asks before its first tick.
+    /// Refuses a device with tighter limits than the one that the servo was made for, or with
+    /// another number of contact points. A loop calls this before its first tick.
     ///
     /// # Errors
     ///
@@ -178,11 +180,11 @@ impl<const D: usize> Servo<D> {
         }
     }
 
-    /// Does what [`step`](Self::step) would with `states`, on copies: its only effect is that the
-    /// next tick finds its code and data in the caches. A loop that sleeps between ticks may call
-    /// it until the next tick begins.
+    /// Runs [`step`](Self::step) with `states` on copies, only to load the code and data of the
+    /// next tick into the caches. A loop that sleeps between ticks may call it until the next
+    /// tick begins.
     ///
-    /// It asks fields once more for each call, custom ones too.
+    /// Each call evaluates the fields once more, custom fields included.
     ///
     /// Real-time: as [`step`](Self::step).
     pub fn rehearse(&mut self, states: &[PointState<D>]) {

@@ -1,34 +1,34 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a servo renders with, and how fast.
+//! Rate, probe and force limit of a servo.
 
 use crate::proxy::Probe;
 use palpate_safety::DeviceProfile;
 
-/// What a servo renders with, and how fast.
+/// Rate, probe and force limit of a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
     /// The ball that touches.
     pub probe: Probe,
-    /// The largest force on a contact point [N]; infinite for none.
+    /// The largest force on a contact point [N]; infinite for no limit.
     pub max_force: f64,
-    /// The time over which the force of a contact rises from nothing to all of it, where a
-    /// body covered the device point or moved onto it [s].
+    /// The time over which the force of a contact rises from zero after a body covered the
+    /// device point or moved onto it [s].
     pub rise_time: f64,
 }
 
 impl Default for ServoOptions {
-    /// 1 kHz, a ball of 2 mm, 3.3 N (a desktop stylus), 0.1 s.
+    /// 1 kHz, a ball of 2 mm, 3.3 N (a desktop stylus), rise in 0.1 s.
     fn default() -> Self {
         Self { rate: 1000.0, probe: Probe::default(), max_force: 3.3, rise_time: 0.1 }
     }
 }
 
 impl ServoOptions {
-    /// The defaults, with the largest force of `device` if it has a limit.
+    /// The defaults, with the force limit of `device` if it has one.
     ///
     /// ```
     /// use palpate_haptics::{DeviceProfile, ServoOptions};
@@ -39,7 +39,7 @@ impl ServoOptions {
     #[must_use]
     pub fn of_device(device: &DeviceProfile) -> Self {
         let default = Self::default();
-        // A device without force feedback has a protection that gives no force.
+        // For a device without force feedback, the protection gives no force.
         let has_limit = device.max_force > 0.0 && device.max_force < f64::INFINITY;
         Self {
             max_force: if has_limit { device.max_force } else { default.max_force },

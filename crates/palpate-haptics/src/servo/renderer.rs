@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What both kinds of servo do in a tick: device points in, forces out.
+//! The tick that both kinds of servo share: device points in, forces out.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -21,23 +21,23 @@ use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
-use crate::tool::{CoupledTool, Coupling, HeldTool, Tool};
+use crate::tool::{CoupledTool, Coupling, HeldTool, Sides, Tool};
 use palpate_safety::SafetyReport;
 use palpate_safety::WorkspaceMap;
 use palpate_safety::{PointState, TurnState};
 use palpate_safety::{positive, positive_or_infinite};
 
-/// Bodies fewer than this are all near.
+/// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
 
-/// How far proxies may go in a tick, in motions and radii of the probe: far enough that they
-/// see no horizon.
+/// The largest motion of proxies in a tick, in device motions and probe radii: so large that
+/// the horizon never constrains a proxy.
 const WAYS: f64 = 32.0;
 
-/// Renders bodies to contact points or to a tool, and shows what the last tick did.
+/// Renders bodies to contact points or to a tool, and holds the results of the last tick.
 ///
-/// A [`Servo`](crate::Servo) and an [`UnprotectedServo`](crate::UnprotectedServo) hold one and
-/// lend it: what can be seen of either is here, what can be changed is theirs.
+/// A [`Servo`](crate::Servo) and an [`UnprotectedServo`](crate::UnprotectedServo) dereference
+/// to a renderer: the renderer has the methods that read, the servos those that change.
 #[derive(Clone, Debug)]
 pub struct Renderer<const D: usize> {
     bodies: Bodies<D>,
@@ -49,19 +49,19 @@ pub struct Renderer<const D: usize> {
     tick: u64,
 }
 
-/// What feels the bodies.
+/// What is rendered: contact points or a tool.
 #[derive(Clone, Debug)]
 enum Rendered<const D: usize> {
-    /// Contact points, each on its own.
+    /// Independent contact points.
     Points {
-        /// What a tick is rehearsed on.
+        /// Copies on which a tick is rehearsed.
         doubles: Contacts<D>,
     },
-    /// A tool with a shape, coupled to the one contact point.
+    /// A rigid tool, coupled to the one contact point.
     Tool(Box<CoupledTool<D>>),
 }
 
-/// Contact points and what the last tick made of them.
+/// Contact points with the results of the last tick.
 #[derive(Clone, Debug)]
 struct Contacts<const D: usize> {
     points: Vec<ContactPoint<D>>,
@@ -83,7 +83,7 @@ impl<const D: usize> Contacts<D> {
 }
 
 impl<const D: usize> Renderer<D> {
-    /// Renders `bodies` to `points` contact points.
+    /// A renderer of `bodies` to `points` contact points.
     pub(super) fn of_points(
         bodies: Bodies<D>,
         points: usize,
@@ -110,7 +110,7 @@ impl<const D: usize> Renderer<D> {
         })
     }
 
-    /// Renders `bodies` to a tool with a shape.
+    /// A renderer of `bodies` to a tool.
     pub(super) fn of_tool(
         bodies: Bodies<D>,
         tool: Tool<D>,
@@ -135,13 +135,14 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    /// The tool with a shape that is rendered to; `None` for contact points.
+    /// The tool; `None` if the servo renders contact points.
     #[must_use]
     pub fn tool(&self) -> Option<&Tool<D>> {
         self.coupled_tool().map(|coupled| &coupled.tool)
     }
 
-    /// The tool with a shape after the last tick, as it is held; `None` for contact points.
+    /// The tool after the last tick, with its torque at the device; `None` if the servo renders
+    /// contact points.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -149,20 +150,20 @@ impl<const D: usize> Renderer<D> {
         self.coupled_tool().map(CoupledTool::held)
     }
 
-    /// The torque of the last tick, to be written to a device that turns [N·m]: in its
-    /// coordinates, about the device point. Zero for contact points.
+    /// The torque of the last tick, to be written to a device with rotation [N·m]: in device
+    /// coordinates, about the device point. Zero without a tool.
     #[must_use]
     pub fn torque(&self) -> Vector<f64, 3> {
         self.coupled_tool().map_or(Vector::ZERO, |coupled| coupled.torque)
     }
 
-    /// What is rendered with, and how fast.
+    /// Rate, probe and force limit.
     #[must_use]
     pub fn options(&self) -> &ServoOptions {
         &self.setting.options
     }
 
-    /// What is touched, as it is rendered.
+    /// The bodies, with the stiffness and damping that are rendered.
     #[must_use]
     pub fn bodies(&self) -> &Bodies<D> {
         &self.bodies
@@ -174,19 +175,19 @@ impl<const D: usize> Renderer<D> {
         &self.contacts.touches
     }
 
-    /// The forces of the last tick, to be written to the device [N]: in its coordinates.
+    /// The forces of the last tick, to be written to the device [N], in device coordinates.
     #[must_use]
     pub fn forces(&self) -> &[Vector<f64, D>] {
         &self.contacts.forces
     }
 
-    /// What happened in the last tick.
+    /// The events of the last tick.
     #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.contacts.events
     }
 
-    /// What was done to each body in the last tick.
+    /// Force and torque on each body in the last tick.
     #[must_use]
     pub fn reactions(&self) -> &[Reaction<D>] {
         self.bodies.reactions()
@@ -200,7 +201,7 @@ impl<const D: usize> Renderer<D> {
         self.is_stopped
     }
 
-    /// What the safety chain of every contact point did so far; empty for an
+    /// The report of every contact point's safety chain so far; empty for an
     /// [`UnprotectedServo`](crate::UnprotectedServo).
     #[must_use]
     pub fn safety(&self) -> Vec<SafetyReport> {
@@ -231,19 +232,17 @@ impl<const D: usize> Renderer<D> {
         port.map_or(Energy::default(), Port::energy)
     }
 
-    /// The coupling that was asked of the tool, before any limit of a device; `None` for contact
-    /// points.
+    /// The requested coupling of the tool, before device limits; `None` for contact points.
     pub(crate) fn requested_coupling(&self) -> Option<Coupling> {
         self.coupled_tool().map(|coupled| coupled.requested)
     }
 
-    /// Places the workspace of the device in the world.
+    /// Sets the map between device and world coordinates.
     pub(super) fn set_map(&mut self, map: WorkspaceMap<D>) {
         self.setting.map = map;
     }
 
-    /// Stands `port` between every contact point and the device, and `turning` between a tool
-    /// and a device that turns.
+    /// Sets the port of every contact point, and for a tool the rotational port `turning`.
     pub(super) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
         self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         if let Some(coupled) = self.coupled_tool_mut() {
@@ -283,7 +282,7 @@ impl<const D: usize> Renderer<D> {
         self.bodies.set_pose(body, world_from_body);
     }
 
-    /// Renders `bodies` from the next tick on, and leaves there the bodies rendered so far.
+    /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) {
@@ -330,7 +329,7 @@ impl<const D: usize> Renderer<D> {
         &self.contacts.touches
     }
 
-    /// Gives nothing of what was rendered; after the release, forces rise from nothing.
+    /// Sets all forces to zero; after the release, forces rise from zero.
     #[cold]
     fn withhold(&mut self) {
         let Contacts { points, touches, forces, .. } = &mut self.contacts;
@@ -348,14 +347,14 @@ impl<const D: usize> Renderer<D> {
         events.clear();
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
-            let at = (point, &mut self.bodies);
-            *force = coupled.tick(at, &self.setting, state(states, index), touch);
+            let sides = Sides { point, bodies: &mut self.bodies };
+            *force = coupled.tick(sides, &self.setting, state(states, index), touch);
         }
         let told = coupled.tool.events().iter().take(MOST_EVENTS);
         events.extend(told.map(|event| Event { tick: self.tick, ..*event }));
     }
 
-    /// A tick of contact points, up to its end.
+    /// The contact points' part of a tick.
     ///
     /// Never inlined: rehearsal and tick share one code address, so the rehearsal warms the
     /// instruction cache for the tick.
@@ -377,12 +376,12 @@ impl<const D: usize> Renderer<D> {
                 reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
             }
         }
-        self.bodies.put_back((list, reactions));
+        self.bodies.put_back(list, reactions);
     }
 
-    /// Does what a tick would with `states`, on doubles of the contact points: its only effect
-    /// is that the next tick finds its code and data in the caches. A tool has no double, as to
-    /// copy it would allocate: the bodies alone are asked where it is.
+    /// Runs a tick with `states` on copies of the contact points, only to load the code and
+    /// data of the next tick into the caches. A tool has no copy, because copying a tool would
+    /// allocate: its rehearsal only evaluates the bodies at the tool.
     ///
     /// Real-time: as [`Servo::step`](crate::Servo::step).
     pub(crate) fn rehearse(&mut self, states: &[PointState<D>]) {
@@ -405,7 +404,7 @@ impl<const D: usize> Renderer<D> {
         self.swap_doubles();
     }
 
-    /// Swaps what a tick changes with its doubles.
+    /// Swaps the state that a tick changes with its copies.
     fn swap_doubles(&mut self) {
         if let Rendered::Points { doubles } = &mut self.rendered {
             swap(&mut self.contacts, doubles);
@@ -414,22 +413,26 @@ impl<const D: usize> Renderer<D> {
     }
 }
 
-/// The bodies that are near enough to matter in a tick.
+/// The bodies that a contact can reach in a tick.
 fn nearby<'a, const D: usize>(
     bodies: &'a Bodies<D>,
     hand: impl FnOnce() -> (Point<D>, f64),
     list: &'a mut [u32],
 ) -> Nearby<'a, D> {
-    if bodies.bodies().len() < FEW { bodies.everything() } else { bodies.nearby(hand(), list) }
+    if bodies.bodies().len() < FEW {
+        return bodies.everything();
+    }
+    let (centre, radius) = hand();
+    bodies.nearby(centre, radius, list)
 }
 
-/// The state of a contact point; not finite if it is missing.
+/// The state of a contact point; NaN if it is missing.
 fn state<const D: usize>(states: &[PointState<D>], index: usize) -> PointState<D> {
     states.get(index).copied().unwrap_or(PointState::at_rest(Vector([f64::NAN; D])))
 }
 
-/// A ball around all contact points and where their proxies may go in this tick, as far as
-/// they are finite.
+/// A ball around all finite contact points and the places that their proxies can reach in this
+/// tick.
 fn hand<const D: usize>(
     touches: &[Touch<D>],
     states: &[PointState<D>],
@@ -445,7 +448,7 @@ fn hand<const D: usize>(
     }
     let centre = if count > 0.0 { sum * (1.0 / count) } else { Vector::ZERO };
     let mut radius = 0.0_f64;
-    // One alone is the centre.
+    // With a single point the centre is the point itself.
     if count > 1.0 {
         for (position, _) in known {
             radius = radius.max((position - centre).norm());

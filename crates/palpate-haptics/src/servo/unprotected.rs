@@ -12,13 +12,14 @@ use crate::protection::Protection;
 use crate::tool::Tool;
 use palpate_safety::DeviceProfile;
 
-/// Renders bodies to contact points or to a tool, **without any protection of a device or a
-/// hand** but a largest force.
+/// Renders bodies to contact points or to a tool, **without protection of a device or a hand**
+/// except a force limit.
 ///
-/// It is for tests, for measurements, and for loops that no hand feels. The loops of `palpate-loop`
-/// do not run it: [`protected`](Self::protected) makes a [`Servo`] of it, which they run.
+/// An unprotected servo is for tests, for measurements, and for loops without a hand. The loops
+/// of `palpate-loop` do not run it: [`protected`](Self::protected) turns it into a [`Servo`],
+/// which they run.
 ///
-/// What the servo shows of its last tick are the methods of [`Renderer`], which it lends.
+/// The results of the last tick are methods of [`Renderer`], to which a servo dereferences.
 ///
 /// # Examples
 ///
@@ -49,8 +50,8 @@ pub struct UnprotectedServo<const D: usize> {
 }
 
 impl<const D: usize> UnprotectedServo<D> {
-    /// A servo that renders `bodies` to `points` contact points. A shape alone is one body of
-    /// the default surface.
+    /// A servo that renders `bodies` to `points` contact points. A plain shape becomes one body
+    /// with the default surface.
     ///
     /// # Errors
     ///
@@ -70,14 +71,14 @@ impl<const D: usize> UnprotectedServo<D> {
         })
     }
 
-    /// A servo that renders `bodies` to a tool with a shape, which is coupled to the one contact
-    /// point of a device: its origin is at the device point, its axes are those of the device, or
-    /// of what the hand holds where that [turns](Self::set_turn).
+    /// A servo that renders `bodies` to a rigid tool, coupled to the one contact point of a
+    /// device. The tool's origin is at the device point. Its axes are the handle's if the
+    /// device [turns](Self::set_turn), and the device's otherwise.
     ///
-    /// Rate, rise time and largest force of the servo become the tool's; the probe is not used.
-    /// The [touch](Renderer::touches) is that of the whole tool, with the origin for its proxy,
-    /// the normal and the body of the contact that pushes hardest, and a wanted force that is
-    /// limited already; the rest is in [`tool`](Renderer::tool).
+    /// The tool takes rate, rise time and force limit from `options`; the probe is not used.
+    /// The one [touch](Renderer::touches) describes the whole tool: its proxy is the tool's
+    /// origin, its normal and body are those of the contact that pushes hardest, and its wanted
+    /// force is already limited. The details are in [`tool`](Renderer::tool).
     ///
     /// # Errors
     ///
@@ -85,7 +86,7 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// # Examples
     ///
-    /// A ball of 62.5 mm pressed 2 mm into the ground:
+    /// A ball of 62.5 mm radius, pressed 2 mm into the ground:
     ///
     /// ```
     /// use palpate_field::{Shape, Vector, kernel::HalfSpace};
@@ -106,8 +107,8 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # }
     /// ```
     ///
-    /// A rod of 10 cm is pressed onto the ground by 1 cm and turned by 0.1 rad: it stays flat, and
-    /// its coupling of 1 N·m/rad turns the hand back.
+    /// A rod of 10 cm is pressed 1 cm into the ground while the hand turns by 0.1 rad: the rod
+    /// stays flat, and its coupling of 1 N·m/rad turns the hand back.
     ///
     /// ```
     /// use palpate_field::{Rotation, Shape, Vector, kernel::HalfSpace};
@@ -141,19 +142,20 @@ impl<const D: usize> UnprotectedServo<D> {
         })
     }
 
-    /// A servo for a device: a safety chain stands between every contact point and it. States
-    /// are read and forces written in the coordinates of the device.
+    /// This servo with a safety chain between every contact point and a device. States and
+    /// forces are in device coordinates.
     ///
-    /// Bodies and tool become as soft as the device needs them: see [`Servo::accepted`]. A device
-    /// without force feedback gets no chain and no force.
+    /// Bodies and tool are made as soft as the device requires: see [`Servo::accepted`]. For a
+    /// device without force feedback there is no safety chain and all forces are zero.
     ///
     /// # Errors
     ///
-    /// If a body is refused, or a limit of the profile is not positive.
+    /// [`HapticsError::MaterialRefused`] if a body is refused; [`HapticsError::Number`] if a
+    /// limit of the profile is not positive.
     ///
     /// # Examples
     ///
-    /// A loop of one's own, on a device that renders 1000 N/m:
+    /// A servo for a custom loop, on a device that renders 1000 N/m:
     ///
     /// ```
     /// use palpate_field::{Shape, kernel::Ball};
@@ -162,7 +164,7 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
     /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
-    /// // 0.5 N·s/m bear 1000 N/m at 1 kHz.
+    /// // A damping of 0.5 N·s/m makes 1000 N/m passive at 1 kHz.
     /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
     /// let servo = UnprotectedServo::new(bodies, 1, Default::default())?
     ///     .protected(&Protection::new(device))?;
@@ -195,7 +197,7 @@ impl<const D: usize> UnprotectedServo<D> {
         Ok(Servo { renderer, protection, accepted: bodies.accepted })
     }
 
-    /// The same by the default protection of `profile`.
+    /// This servo with the default protection for `profile`.
     pub(super) fn protected_for(
         self,
         profile: &DeviceProfile,
@@ -203,11 +205,12 @@ impl<const D: usize> UnprotectedServo<D> {
         self.protected(&Protection::new(profile.clone()))
     }
 
-    /// Renders `bodies` from the next tick on. Returns those rendered so far, to be dropped
-    /// where freeing is allowed.
+    /// Replaces the bodies from the next tick on. Returns the old bodies, to be dropped on a
+    /// thread that may free memory.
     ///
-    /// A contact point that the new bodies cover is placed anew, and its force rises gently; so
-    /// does one that pushes harder on them than on those before, from where it was.
+    /// If the new bodies cover a contact point, its proxy is placed anew and its force rises
+    /// from zero. If they push a contact point harder than the old ones, its force rises from
+    /// the old force.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]

@@ -10,18 +10,18 @@ use crate::material::Magnet;
 use crate::error::HapticsError;
 use palpate_safety::positive;
 
-/// The height of the greatest pull, as a part of the reach.
+/// The height of the largest pull, as a part of the reach.
 const PEAK: f64 = 0.25;
 
 /// A pull that snaps the hand onto a surface.
 ///
-/// At the height `h` above the surface the pull rises from nothing at the surface to its
-/// greatest at a quarter of its reach, and falls to nothing at its reach, along straight
-/// lines. It is a function of the height alone, so it gives no energy over a closed path.
+/// With height above the surface, the pull rises linearly from zero to its largest value at a
+/// quarter of the reach, and falls linearly to zero at the reach. The pull depends on the
+/// height alone, so it does no work over a closed path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pull {
     force: f64,
-    /// How far it reaches [m].
+    /// The height at which the pull ends [m].
     pub(crate) reach: f64,
 }
 
@@ -37,7 +37,7 @@ impl Pull {
     pub(crate) fn at(&self, height: f64) -> f64 {
         let part = height / self.reach;
         let share = (part / PEAK).min((1.0 - part) / (1.0 - PEAK));
-        // Written so that NaN pulls nothing.
+        // Written so that NaN gives no pull.
         if share > 0.0 { self.force * share } else { 0.0 }
     }
 }

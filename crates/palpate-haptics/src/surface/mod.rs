@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a body feels like: a [`Material`] made ready for the servo.
+//! The surface of a body: a [`Material`] prepared for the servo.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,7 +13,7 @@ mod strata;
 use crate::material::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
 
-use crate::bend::way_over;
+use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
 use palpate_safety::Impedance;
 use palpate_safety::limited;
@@ -24,18 +24,29 @@ pub(crate) use ring::{Ring, Ringing};
 pub(crate) use ripples::Ripples;
 pub(crate) use strata::{Friction, Strata};
 
-/// How far along a surface its bend below a texture is asked for, as a part of the wavelength:
-/// what differs from the bend at the place, and roundings, stay far below a nanojoule.
+/// The distance at which the curvature below a texture is measured, as a part of the
+/// wavelength: truncation and rounding then stay far below a nanojoule.
 const FAR: f64 = 1e-6;
 
-/// The part of a texture's slope up to which it is solved for on a bent surface.
+/// Relative residual to which a texture's slope on a curved surface is solved.
 const SOLVED: f64 = 1e-8;
 
-/// The most that a hand near the centre of a bend sees a slope steeper than it is: there it would
-/// grow without bound.
+/// The most that curvature steepens the slope of a texture: at a centre of curvature the slope
+/// would grow without bound.
 const STEEPER: f64 = 8.0;
 
-/// A material made ready for the servo.
+/// How a hand presses on a body, in body coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Press<const D: usize> {
+    /// From the device point to the proxy [m].
+    pub(crate) stretch: Vector<f64, D>,
+    /// The velocity of the device point relative to the body [m/s].
+    pub(crate) velocity: Vector<f64, D>,
+    /// The proxy [m].
+    pub(crate) proxy: Point<D>,
+}
+
+/// A material prepared for the servo.
 ///
 /// With the proxy `p`, the device point `x`, the stretch `s = p − x`, its direction
 /// `n = s / ‖s‖` and the velocity `v` of the device point relative to the body, the force on
@@ -49,18 +60,18 @@ const STEEPER: f64 = 8.0;
 ///   Salisbury, "A constraint-based god-object method for haptic display" (1995), section 3.
 /// - The damper `B` acts on the approach alone, so it never pulls the hand in. `B` and the
 ///   viscosity `V` are those of the layer at the depth of the hand.
-/// - A texture of kind *height* is the force of the potential `∫ N` at the depth
-///   `‖s‖ + w(p) − a`, with the height `w` of the wave of amplitude `a` at the proxy: pushed
-///   harder over a crest, and to the side down its slope (Minsky, "Computational haptics",
-///   1995, chapter 4). The crests are at the surface and the troughs below it, so the force
-///   sets in gently wherever the hand comes in. Below a bent surface the proxy goes farther than
-///   the hand, or less far: the slope is that which the hand sees, so a closed path gives no
-///   energy. One of kind *displacement* is part of the body's shape, not of its force.
+/// - A texture of kind *height* is the force of the potential `∫ N` at the depth `‖s‖ + w(p) −
+///   a`, with the height `w` of the wave of amplitude `a` at the proxy: the hand is pushed
+///   harder over a crest, and sideways down its slope (Minsky, "Computational haptics", 1995,
+///   chapter 4). The crests are at the surface and the troughs below it, so the force starts
+///   gently wherever the hand enters. Below a curved surface the proxy moves farther than the
+///   hand, or less far; the slope is converted to displacements of the hand, so a closed path
+///   gives no energy. A texture of kind *displacement* is part of the body's shape, not of its
+///   force.
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
 ///
-/// A friction never is a force of its own: it holds the proxy back (see
-/// [`Proxy`](crate::Proxy)).
+/// Friction is not a force of its own: it holds the proxy back (see [`Proxy`](crate::Proxy)).
 ///
 /// # Examples
 ///
@@ -101,7 +112,7 @@ impl<const D: usize> TryFrom<Material> for Surface<D> {
 }
 
 impl<const D: usize> Surface<D> {
-    /// Makes a material ready.
+    /// Prepares a material.
     ///
     /// # Errors
     ///
@@ -166,13 +177,13 @@ impl<const D: usize> Surface<D> {
         self.strata.impedances()
     }
 
-    /// The same with stiffness and damping of all layers `factor` times as large.
+    /// This surface with stiffness and damping of all layers multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self { strata: self.strata.scaled(factor), ..self.clone() }
     }
 
-    /// The shape with a relief of its texture, if it has one.
+    /// The shape with the surface's texture of kind *displacement*, if there is one.
     ///
     /// # Errors
     ///
@@ -183,26 +194,22 @@ impl<const D: usize> Surface<D> {
         Ok(shape.displaced(Shape::from_kernel(relief.clone()), height)?)
     }
 
-    /// The force on the hand [N] for a `stretch` from device point to proxy [m], a `velocity`
-    /// of the device point relative to the body [m/s], and the place of the proxy in the body,
-    /// in the body's coordinates.
+    /// The force on the hand [N], in body coordinates.
     ///
-    /// `level` is how many layers the hand went through. `turn` is how the surface's unit normal
-    /// turns along a way from the proxy, as it does in the first so many metres of it: asked of
-    /// textures alone, at most once for each dimension of the surface.
+    /// `level` is the number of punctured layers. `turn(displacement, distance)` gives the
+    /// change of the unit normal along a displacement from the proxy, extrapolated from the
+    /// first `distance` metres. Only textures call it, at most once per dimension of the
+    /// surface.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[inline(always)]
     pub(crate) fn force(
         &self,
         level: usize,
-        stretch: Vector<f64, D>,
-        velocity: Vector<f64, D>,
-        (proxy_in_body, mut turn): (
-            Point<D>,
-            impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
-        ),
+        press: Press<D>,
+        mut turn: impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
     ) -> Vector<f64, D> {
+        let Press { stretch, velocity, proxy } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
         let drag = velocity * -layer.viscosity;
@@ -212,15 +219,16 @@ impl<const D: usize> Surface<D> {
         let normal = stretch * (1.0 / depth);
         let (mut push, mut slope) = (depth, Vector::ZERO);
         if let Some(ripples) = &self.ripples {
-            let (height, gradient) = ripples.at(proxy_in_body);
-            // Crests above the surface would push at once with all their height where a hand
-            // enters, and take nothing back where it leaves through a trough.
+            let (height, gradient) = ripples.at(proxy);
+            // If crests rose above the surface, a hand that enters at a crest would feel a jump
+            // of force, and a hand that leaves through a trough would not give the energy back.
             push = (depth + height - ripples.height()).max(0.0);
-            // Along the surface alone: across it the wave does not change the depth.
+            // Only the gradient along the surface counts: across the surface the wave does not
+            // change the depth.
             let along = gradient - normal * gradient.dot(normal);
-            // Below a bent surface the proxy goes farther than the hand, or less far.
+            // Below a curved surface the proxy moves farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
-            let seen = way_over(|way| turn(way, far), along, (depth, SOLVED));
+            let seen = surface_displacement(|way| turn(way, far), along, depth, SOLVED);
             slope = limited(seen.unwrap_or(along), STEEPER * along.norm());
         }
         let spring = self.strata.force(level, push);
@@ -228,7 +236,7 @@ impl<const D: usize> Surface<D> {
         normal * (spring + layer.damping * approach) - slope * spring + drag
     }
 
-    /// What an impact at `speed` [m/s] along the normal starts, at `rate` ticks a second [Hz].
+    /// The ringing that an impact at `speed` [m/s] along the normal starts, at `rate` [Hz].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn ringing(&self, speed: f64, rate: f64) -> Ringing {
@@ -237,8 +245,8 @@ impl<const D: usize> Surface<D> {
 }
 
 impl<const D: usize> Default for Surface<D> {
-    /// Smooth, 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m
-    /// of its own.
+    /// Smooth, 500 N/m and 1 N·s/m: firm, and passive at 1 kHz on a device with 1.25 N·s/m of
+    /// physical damping.
     fn default() -> Self {
         let material =
             Material { static_friction: 0.0, dynamic_friction: 0.0, ..Material::default() };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a tap on a surface rings like.
+//! Ringing after a tap on a surface.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -10,7 +10,7 @@ use crate::material::Impact;
 use crate::error::HapticsError;
 use palpate_safety::{not_negative, positive};
 
-/// A ring below this part of its first amplitude is over.
+/// Ringing ends below this part of its first amplitude.
 const SILENCE: f64 = 1e-4;
 
 /// A decaying sinusoid for each tap: `a · v · exp(−d·t) · sin(2π·f·t)` for a tap at normal
@@ -31,15 +31,15 @@ impl Ring {
         })
     }
 
-    /// What a tap at `speed` [m/s] starts, at `rate` ticks a second [Hz].
+    /// The ringing that a tap at `speed` [m/s] starts, at `rate` [Hz].
     ///
-    /// Above half the rate there is nothing to be heard of a sinusoid but its alias, so it is
-    /// silent; so is what is too loud for numbers.
+    /// A frequency above half the rate would only produce its alias, so the tap is silent; so
+    /// is a tap whose amplitude overflows.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn struck(&self, speed: f64, rate: f64) -> Ringing {
         let loudest = self.amplitude * speed;
-        // Twice that is what both parts of a phasor may add up to.
+        // Both parts of the phasor may add up to twice the amplitude.
         if self.frequency >= 0.5 * rate || !(2.0 * loudest).is_finite() {
             return Ringing::SILENT;
         }
@@ -54,7 +54,7 @@ impl Ring {
     }
 }
 
-/// A ring under way: a phasor that turns and shrinks with each tick.
+/// Ringing in progress: a phasor that rotates and decays with each tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ringing {
     /// The force along the normal [N].
@@ -68,7 +68,7 @@ impl Ringing {
     pub(crate) const SILENT: Self =
         Self { force: 0.0, quadrature: 0.0, turn: (0.0, 0.0), silence: 0.0 };
 
-    /// The force of this tick along the normal [N], and on to the next.
+    /// The force of this tick along the normal [N]; advances to the next tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn step(&mut self) -> f64 {
@@ -107,8 +107,8 @@ mod tests {
         assert_eq!(ring.struck(0.5, 150.0), Ringing::SILENT);
     }
 
-    /// A blow at nearly the largest number, as of a device gone wrong, once rang without end as no
-    /// number, which took all its force from the spring. Found by fuzzing.
+    /// A tap at nearly the largest number, as from a broken device, would ring as NaN without
+    /// end and remove the force of the spring. Found by fuzzing.
     #[test]
     fn no_blow_rings_without_end() {
         let impact =

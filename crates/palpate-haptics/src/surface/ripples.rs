@@ -12,7 +12,7 @@ use palpate_field::{Kernel, Point, Promise, Vector};
 use crate::error::HapticsError;
 use palpate_safety::{NumberError, positive};
 
-/// Roundings of a wave's phase: of the products, their sum and the sine.
+/// Rounding errors of a wave, from the products of the phase, their sum and the sine.
 const ROUNDINGS: f64 = 16.0;
 
 /// A wave through space, in a body's coordinates: `a · sin(2π u·p / λ)` along a direction `u`,
@@ -29,7 +29,7 @@ pub(crate) struct Ripples<const D: usize> {
 enum Waves<const D: usize> {
     /// Along one wave vector [rad/m].
     Plane([f64; D]),
-    /// Along all axes, by this number [rad/m].
+    /// Along all axes, with this wave number [rad/m].
     Product(f64),
 }
 
@@ -52,12 +52,12 @@ impl<const D: usize> Ripples<D> {
         Ok(Self { amplitude, wavelength, waves: Waves::Plane((unit * number).0) })
     }
 
-    /// How far the wave rises [m].
+    /// The amplitude of the wave [m].
     pub(crate) fn height(&self) -> f64 {
         self.amplitude
     }
 
-    /// How far its crests are apart [m].
+    /// The distance between crests [m].
     pub(crate) fn wavelength(&self) -> f64 {
         self.wavelength
     }
@@ -84,8 +84,9 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
     }
 
     fn promise(&self) -> Promise<D> {
-        // All of a product's slopes together are at most that of one: the squares of the
-        // cosines and the products of sines that go with them sum to at most 1.
+        // The gradient of a product wave is no longer than that of a plane wave along one axis:
+        // the squares of the cosines, each times the squared sines of the other axes, sum to at
+        // most 1.
         let number = match &self.waves {
             Waves::Plane(along) => Vector(*along).norm(),
             Waves::Product(number) => *number,

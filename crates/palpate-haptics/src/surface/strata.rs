@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Layers by depth: stiffness, damping, friction, and where they give way.
+//! The layers of a material by depth: stiffness, damping, friction, and pop-through.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -11,41 +11,41 @@ use crate::error::HapticsError;
 use palpate_safety::Impedance;
 use palpate_safety::{not_negative, positive};
 
-/// What a layer without a spring counts as [N/m]: no hand feels it.
+/// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
 const LEAST_STIFFNESS: f64 = 1e-9;
 
 /// Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Friction {
-    /// Greatest tangential over normal force while sticking.
+    /// Largest ratio of tangential to normal force while sticking.
     pub(crate) fixed: f64,
-    /// Tangential over normal force while slipping.
+    /// Ratio of tangential to normal force while slipping.
     pub(crate) slipping: f64,
 }
 
-/// When a surface gives way.
+/// The condition under which a layer gives way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PopThrough {
-    /// The force from which it no longer holds [N].
+    /// The force at which the layer gives way [N].
     pub(crate) force: f64,
-    /// How far away the hand must be before it holds again [m].
+    /// The distance that the hand must keep from the body before the layer is restored [m].
     pub(crate) distance: f64,
 }
 
-/// What is felt from a depth on.
+/// A layer: properties from a depth on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stratum {
-    /// How deep below the surface it begins [m].
+    /// The depth below the surface at which the layer begins [m].
     pub(crate) depth: f64,
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
     pub(crate) friction: Friction,
     pub(crate) viscosity: f64,
-    /// When its top gives way.
+    /// The condition under which the layer's top gives way.
     pub(crate) pop_through: Option<PopThrough>,
 }
 
-/// The layers of a material, the outermost first; there is one at least.
+/// The layers of a material, the outermost first; at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Strata {
     outermost: Stratum,
@@ -53,7 +53,7 @@ pub(crate) struct Strata {
 }
 
 impl Strata {
-    /// The layers of a material that was checked.
+    /// The layers of a material, with checked numbers.
     pub(crate) fn new(material: &Material) -> Result<Self, HapticsError> {
         let strata = Self::of(material);
         let mut above = 0.0;
@@ -73,7 +73,8 @@ impl Strata {
         Ok(strata)
     }
 
-    /// The layers of a material, unchecked: what a layer leaves out is as in the one above.
+    /// The layers of a material, unchecked. A property that a layer omits is inherited from the
+    /// layer above.
     pub(crate) fn of(material: &Material) -> Self {
         let pop_through = |pop: &Option<crate::material::PopThrough>| {
             pop.as_ref().map(|pop| PopThrough { force: pop.force, distance: pop.distance })
@@ -115,7 +116,7 @@ impl Strata {
     pub(crate) fn impedances(
         &self,
     ) -> impl Iterator<Item = Result<Impedance, HapticsError>> + '_ {
-        // A layer without a spring still has a damper to be accepted.
+        // A layer without a spring still has a damper, which must be accepted.
         self.all().map(|layer| {
             let stiffness = layer.stiffness.max(LEAST_STIFFNESS);
             Ok(Impedance::new(stiffness, layer.damping)?)
@@ -142,8 +143,8 @@ impl Strata {
         }
     }
 
-    /// The layer whose top holds a hand that went through `level` of them; none if that was
-    /// the last.
+    /// The layer whose top constrains the proxy after `level` layers were punctured; `None`
+    /// after the last one.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn top(&self, level: usize) -> Option<&Stratum> {
@@ -168,18 +169,18 @@ impl Strata {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force(&self, level: usize, depth: f64) -> f64 {
-        self.integral((level, f64::INFINITY), depth)
+        self.integral(level, f64::INFINITY, depth)
     }
 
-    /// The force of the springs `depth` [m] below the surface, none of them stiffer than `most`
-    /// [N/m].
+    /// The force of the springs `depth` [m] below the surface, with every stiffness limited to
+    /// `most` [N/m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn force_up_to(&self, most: f64, depth: f64) -> f64 {
-        self.integral((0, most), depth)
+        self.integral(0, most, depth)
     }
 
-    fn integral(&self, (level, most): (usize, f64), depth: f64) -> f64 {
+    fn integral(&self, level: usize, most: f64, depth: f64) -> f64 {
         let top = self.top(level).unwrap_or(&self.outermost);
         let (mut force, mut stiffness, mut from) = (0.0, top.stiffness.min(most), 0.0);
         for layer in self.deeper.iter().skip(level) {

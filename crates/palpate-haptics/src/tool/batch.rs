@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Points of a shell that are looked at together: as [`Nearby`] does one by one, in blocks.
+//! Evaluation of a shell's points in blocks, where [`Nearby`] evaluates them one by one.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -10,7 +10,7 @@ use palpate_field::{BLOCK, Block, Gradients, Point, Pose, Vector};
 use super::shell::Shell;
 use crate::nearby::Nearby;
 
-/// A point of the shell, when it was last looked at. World coordinates.
+/// The last evaluation of a shell point, in world coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<const D: usize> {
     /// Its centre [m].
@@ -21,7 +21,7 @@ pub(super) struct Seen<const D: usize> {
     pub(super) body: u32,
 }
 
-/// Points that are looked at together.
+/// Points that are evaluated together.
 #[derive(Clone, Debug)]
 pub(super) struct Batch<const D: usize> {
     pub(super) count: usize,
@@ -30,7 +30,7 @@ pub(super) struct Batch<const D: usize> {
     seen: [Seen<D>; BLOCK],
     block: Block<f64, D, BLOCK>,
     answers: Gradients<f64, D, BLOCK>,
-    /// Which points are asked of a body.
+    /// The points for which a body is evaluated.
     lanes: [usize; BLOCK],
 }
 
@@ -57,7 +57,8 @@ impl<const D: usize> Batch<D> {
     ) {
         self.count = 0;
         let places = self.numbers.iter_mut().zip(&mut self.radii).zip(&mut self.seen);
-        // The places first: a number that finds none would be lost.
+        // Places come first in the zip: otherwise a number would be consumed when no place is
+        // left.
         for (((number, radius), seen), next) in places.zip(numbers) {
             let Some(point) = shell.points().get(next as usize) else { continue };
             (*number, *radius) = (next, point.radius);
@@ -66,12 +67,12 @@ impl<const D: usize> Batch<D> {
         }
     }
 
-    /// Asks all that is near: as [`Nearby::gradient`], in blocks.
+    /// Evaluates all near bodies with gradients: [`Nearby::gradient`] in blocks.
     pub(super) fn ask(&mut self, nearby: &Nearby<'_, D>) {
         self.ask_for(nearby, true);
     }
 
-    /// Asks for gaps alone, which costs less; gradients say nothing.
+    /// Evaluates gaps only, which costs less; gradients are left undefined.
     pub(super) fn ask_gaps(&mut self, nearby: &Nearby<'_, D>) {
         self.ask_for(nearby, false);
     }
@@ -90,7 +91,7 @@ impl<const D: usize> Batch<D> {
             let mut asked = 0;
             let points = self.seen.iter().take(self.count).enumerate();
             for (lane, seen) in points {
-                // Written so that NaN is looked at.
+                // Written so that NaN is evaluated.
                 if seen.gap < f64::INFINITY && body.above_ball(seen.centre) >= seen.gap {
                     continue;
                 }

@@ -1,28 +1,29 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where a body that moves takes a tool that rests on it.
+//! Carrying: a moving body takes a tool that rests on it along.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::Pose;
 
 use super::Tool;
+use super::scan::{Path, Surroundings};
 use super::settle::Lengths;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
-/// What it takes to look around before the way, as a part of the budget: a tick that is carried
-/// has to come to rest with what is left.
+/// The part of the budget for evaluations before the carried motion; the tool must come to rest
+/// with the remainder.
 const SHARE: f64 = 0.25;
 
-/// A body that would carry the tool to a place this many times as far from the origin leaves it
-/// behind: so far away, rounding would hide what is here.
+/// A body does not carry the tool to a place this many times as far from the origin as it is
+/// now: so far away, rounding would hide the bodies.
 const FARTHEST: f64 = 1e3;
 
 impl<const D: usize> Tool<D> {
-    /// The motion of the body that the tool rests on, at a tool at `start`; none if it did not
-    /// move, or moved too far.
+    /// The motion that the body under the tool gives to a tool at `start`; `None` if the body
+    /// did not move, or moved too far.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn carrier(
@@ -35,30 +36,34 @@ impl<const D: usize> Tool<D> {
         let carried = body.carried_pose(start)?;
         let far = |pose: &Pose<D>| pose.translation.norm();
         let here = far(start).max(far(device)).max(nearby.size().unwrap_or(0.0));
-        // Written so that NaN is left behind.
+        // Written so that NaN is not carried.
         let is_near = far(&carried) <= FARTHEST * (here + self.shell().reach());
         is_near.then(|| Twist::between(start, &carried))
     }
 
-    /// Where the tool is that is carried from `start`: as far as no body is in the way. Bodies are
-    /// where they are after the tick, and points that they push are on their way out.
+    /// The pose of a tool carried from `start`, up to the first body in the way. Bodies have
+    /// their poses after the tick; points inside them are being pushed out and do not stop the
+    /// motion.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most the evaluations that
     /// the budget has left.
     pub(super) fn carried(
         &mut self,
         nearby: &Nearby<'_, D>,
-        (start, carry): (Pose<D>, &Twist<D>),
+        start: Pose<D>,
+        carry: &Twist<D>,
         lengths: Lengths,
     ) -> Pose<D> {
         let length = carry.way(self.shell.reach());
         let horizon = length + lengths.skin;
-        if !self.scan.look(&self.shell, nearby, &start, (carry, horizon, SHARE)) {
+        let surroundings = Surroundings { shell: &self.shell, nearby };
+        let path = Path { pose: &start, twist: carry };
+        if !self.scan.look(surroundings, path, horizon, SHARE) {
             return start;
         }
-        let way = (&start, carry);
-        let part = self.scan.sweep((&self.shell, nearby), way, lengths.skin, 1.0);
-        // Before what stops it, not a skin deep in it: friction holds a tool that is outside.
+        let part = self.scan.sweep(surroundings, path, lengths.skin, 1.0);
+        // Stop before the obstacle instead of a skin deep in it, because friction only holds a
+        // tool that is outside.
         let short = if part < 1.0 { lengths.skin / length } else { 0.0 };
         let carried = carry.part((part - short).max(0.0));
         self.scan.moved(&carried);

@@ -1,24 +1,26 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The motion closest to a wished one that satisfies linear constraints.
+//! The motion closest to a desired one under linear constraints.
 //!
-//! Goldfarb and Idnani, "A numerically stable dual method for solving strictly convex
-//! quadratic programs" (1983), for the identity as matrix: from the wish on, the most violated
-//! constraint is made to hold, and those that pull no more are let go. With at most six
-//! constraints at a time their dual vectors are kept instead of a factorisation.
+//! The dual active-set method of Goldfarb and Idnani, "A numerically stable dual method for
+//! solving strictly convex quadratic programs" (1983), with the identity as matrix. Starting at
+//! the desired motion, the most violated constraint becomes active, and constraints with a
+//! negative multiplier become inactive. At most six constraints are active at a time, so their
+//! dual vectors are kept instead of a factorisation.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-/// Degrees of freedom of a rigid motion, and the most constraints that hold it.
+/// Degrees of freedom of a rigid motion, and the most active constraints.
 pub(super) const FREEDOMS: usize = 6;
 
-/// Constraints that are made to hold one after the other. Contacts of a hull take ten or so;
-/// who has not found the answer by then has a wish that nearly all constraints forbid.
+/// The most constraints activated one after the other. Contacts of a hull take about ten; a
+/// search that is not finished after this many has a desired motion that nearly all constraints
+/// forbid.
 const MOST_TURNS: usize = 48;
 
-/// A constraint is a sum of those that hold if this part of its squared length or less lies
-/// beyond them.
+/// A constraint counts as linearly dependent on the active ones if at most this part of its
+/// squared length is orthogonal to them.
 const DEPENDENT: f64 = 1e-12;
 
 /// All motions `u` with `along·u ≥ least`.
@@ -28,19 +30,19 @@ pub(super) struct Row {
     pub(super) least: f64,
 }
 
-/// A constraint that holds with equality.
+/// An active constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Held {
-    /// Which row.
+    /// The index of the row.
     pub(super) row: usize,
-    /// How much of it pushes: the wish is left by the sum of `push · along`.
+    /// The multiplier: the sum of `push · along` separates the motion from the desired one.
     pub(super) push: f64,
     along: [f64; FREEDOMS],
-    /// Of length 1 along its own row, and square to the others that hold.
+    /// The dual vector: its product with its own row is 1, and with the other active rows 0.
     dual: [f64; FREEDOMS],
 }
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Closest {
     /// The motion.
@@ -56,18 +58,18 @@ impl Closest {
         Self { motion: wish, held: [none; FREEDOMS], count: 0 }
     }
 
-    /// The constraints that keep the motion from the wish.
+    /// The active constraints, which keep the motion from the desired one.
     pub(super) fn held(&self) -> impl Iterator<Item = &Held> {
         self.held.iter().take(self.count)
     }
 
-    /// Makes one more row hold; `false` if those that hold forbid it.
+    /// Activates one more row; `false` if it is infeasible together with the active rows.
     fn hold(&mut self, index: usize, row: &Row) -> bool {
         let mut push = 0.0;
         for _ in 0..=FREEDOMS {
             let beyond = self.beyond(row.along);
             let squared = dot(&beyond, &beyond);
-            // How far it may be pushed until one of those that hold pulls.
+            // The largest step before the multiplier of an active row becomes negative.
             let (mut most, mut first) = (f64::INFINITY, 0);
             for (k, held) in self.held().enumerate() {
                 let response = dot(&held.dual, &row.along);
@@ -102,10 +104,10 @@ impl Closest {
         false
     }
 
-    /// The part of a row that is square to all that hold.
+    /// The part of a row that is orthogonal to all active rows.
     fn beyond(&self, along: [f64; FREEDOMS]) -> [f64; FREEDOMS] {
         let mut beyond = along;
-        // Twice: the second time takes away what rounding left.
+        // Twice, because the second pass removes rounding errors of the first.
         for _ in 0..2 {
             let before = beyond;
             for held in self.held() {
@@ -139,17 +141,18 @@ impl Closest {
     }
 }
 
-/// The motion closest to `wish` that satisfies all `rows` up to `slack`; where they have none
-/// in common, one that satisfies some.
+/// The motion closest to `wish` that satisfies all `rows` up to `slack`; if no motion does, one
+/// that satisfies some of them.
 ///
 /// # Derivation
 ///
-/// Minimise `‖u − w‖²` under `aᵢ·u ≥ bᵢ`. With the rows of a set held, `u = w + Σ λᵢ aᵢ`; the
-/// answer is the set with all `λ ≥ 0` and all rows satisfied (Karush, Kuhn and Tucker). Pushing
-/// one more row `a` by `t` moves `u` by `t z`, with the part `z` of `a` square to those held,
-/// and takes `t dᵢ·a` from their `λᵢ`, with duals `dᵢ·aⱼ = δᵢⱼ`.
+/// Minimise `‖u − w‖²` under `aᵢ·u ≥ bᵢ`. For a set of active rows, `u = w + Σ λᵢ aᵢ`; the
+/// answer is the set with all `λ ≥ 0` and all rows satisfied (Karush, Kuhn and Tucker).
+/// Increasing the multiplier of one more row `a` by `t` moves `u` by `t z`, where `z` is the
+/// part of `a` orthogonal to the active rows, and subtracts `t dᵢ·a` from their `λᵢ`, with
+/// duals `dᵢ·aⱼ = δᵢⱼ`.
 ///
-/// Real-time: allocates nothing, takes no lock, cannot panic; at most 48 rows are pushed.
+/// Real-time: allocates nothing, takes no lock, cannot panic; activates at most 48 rows.
 pub(super) fn closest(wish: [f64; FREEDOMS], rows: &[Row], slack: f64) -> Closest {
     let mut found = Closest::free(wish);
     for _ in 0..MOST_TURNS {
@@ -219,7 +222,7 @@ mod tests {
             let wish = six()?;
             let mut rows = Vec::new();
             for _ in 0..20 {
-                // All hold at zero, so that there is an answer.
+                // Every row admits the zero motion, so that a solution exists.
                 let along = six()?;
                 let least = -0.1 * along.iter().map(|x| x * x).sum::<f64>();
                 rows.push(Row { along, least });

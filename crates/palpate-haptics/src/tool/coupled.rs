@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A tool that a servo renders instead of contact points: it is coupled to the one contact point
-//! of a device, and uses that point's way to the device.
+//! A tool that a servo renders instead of contact points. It is coupled to the one contact
+//! point of a device, and its force goes through that point's port.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -12,38 +12,39 @@ use super::twist::Twist;
 use super::{Coupling, Tool, ToolState};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
-use crate::contact_point::{ContactPoint, Setting, Touch};
+use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::protection::TurningPort;
 use crate::servo::ServoOptions;
 use palpate_safety::limited;
-use palpate_safety::{Both, WrenchChain, WrenchState};
 use palpate_safety::{PointState, TurnState};
+use palpate_safety::{SpatialVector, WrenchChain, WrenchState};
 
-/// A tool after a tick, as rows of a trace and snapshots have it. World coordinates.
+/// A tool after a tick, for traces and snapshots. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldTool<const D: usize> {
-    /// Where the tool is: `world_from_tool`.
+    /// The pose of the tool: `world_from_tool`.
     pub pose: Pose<D>,
-    /// How it is turned against the device: along the axis, as long as the angle [rad]; in the
-    /// plane about z alone.
+    /// The rotation vector of the device relative to the tool [rad]; in the plane only z is
+    /// used.
     pub turn: Vector<f64, 3>,
-    /// The torque about the tool's origin that is wanted on the hand [N·m]; in the plane about z
-    /// alone.
+    /// The wanted torque on the hand about the tool's origin [N·m]; in the plane only z is
+    /// used.
     pub torque: Vector<f64, 3>,
-    /// The torque that is given to the hand by a device that turns [N·m]; none by another.
+    /// The torque that the device gives to the hand [N·m]; `None` for a device without
+    /// rotation.
     pub given: Option<Vector<f64, 3>>,
-    /// Contacts that push.
+    /// The number of contacts that push.
     pub contacts: u32,
-    /// How far the tool's surface may be from balls that are known to be outside [m].
+    /// How far the tool's surface may be from shell balls that are proven outside [m].
     pub resolution: f64,
     /// `true` if the budget did not allow all levels of the shell.
     pub is_degraded: bool,
-    /// `true` if bodies cover the tool: it touches nothing.
+    /// `true` if bodies cover the tool; it then gives no force.
     pub is_covered: bool,
 }
 
 impl<const D: usize> Tool<D> {
-    /// After the last tick.
+    /// The tool after the last tick.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
@@ -61,7 +62,7 @@ impl<const D: usize> Tool<D> {
         }
     }
 
-    /// The same at a servo's rate, with its rise time and largest force.
+    /// This tool with a servo's rate, rise time and force limit.
     pub(crate) fn of_servo(mut self, servo: &ServoOptions) -> Self {
         let ServoOptions { rate, max_force, rise_time, .. } = *servo;
         self.options.rate = rate;
@@ -70,7 +71,7 @@ impl<const D: usize> Tool<D> {
         self
     }
 
-    /// Lowers the largest force [N].
+    /// Lowers the force limit [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit_force(&mut self, max_force: f64) {
@@ -78,21 +79,27 @@ impl<const D: usize> Tool<D> {
     }
 }
 
-/// A tool coupled to the contact point of a servo, and how it turns with the device.
+/// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
+pub(crate) struct Sides<'a, const D: usize> {
+    pub(crate) point: &'a mut ContactPoint<D>,
+    pub(crate) bodies: &'a mut Bodies<D>,
+}
+
+/// A tool coupled to the contact point of a servo, with the rotation of the device.
 #[derive(Clone, Debug)]
 pub(crate) struct CoupledTool<const D: usize> {
     pub(crate) tool: Tool<D>,
-    /// The coupling that was requested, before any limit of a device.
+    /// The requested coupling, before device limits.
     pub(crate) requested: Coupling,
-    /// How the device is turned; `None` if it does not turn.
+    /// Orientation and angular velocity of the device; `None` for a device without rotation.
     pub(crate) turn: Option<TurnState<D>>,
-    /// What is between the tool and a device that turns; `None` without protection.
+    /// The rotational port to the device; `None` without protection.
     pub(crate) port: Option<TurningPort<D>>,
-    /// The largest torque without protection [N·m].
+    /// The torque limit without protection [N·m].
     max_torque: f64,
     /// The torque to write to the device [N·m].
     pub(crate) torque: Vector<f64, 3>,
-    /// The same in the world; none on a device that does not turn.
+    /// The written torque in world coordinates; `None` for a device without rotation.
     given: Option<Vector<f64, 3>>,
 }
 
@@ -110,12 +117,12 @@ impl<const D: usize> CoupledTool<D> {
         HeldTool { given: self.given, ..self.tool.held() }
     }
 
-    /// The chain of force and torque; none of a device that gives no torque.
+    /// The safety chain of force and torque; `None` for a device that gives no torque.
     pub(crate) fn chain(&mut self) -> Option<&mut WrenchChain<D>> {
         self.port.as_mut().and_then(|port| port.chain.as_mut())
     }
 
-    /// Touches other bodies from the next tick on, through the coupling that they need.
+    /// Touches other bodies from the next tick on, with their accepted coupling.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn adopt(&mut self, bodies: &AcceptedBodies<D>) {
@@ -123,12 +130,12 @@ impl<const D: usize> CoupledTool<D> {
         if let Some(coupling) = bodies.coupling {
             self.tool.coupling = coupling;
         }
-        if let Some((chain, accepted)) = self.chain().zip(bodies.wrench()) {
-            chain.renew(accepted);
+        if let Some((chain, (along, about))) = self.chain().zip(bodies.wrench()) {
+            chain.renew(along, about);
         }
     }
 
-    /// Lowers the largest force [N].
+    /// Lowers the force limit [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit_force(&mut self, max_force: f64) {
@@ -138,7 +145,7 @@ impl<const D: usize> CoupledTool<D> {
         }
     }
 
-    /// Gives no torque in this tick.
+    /// Sets the torque of this tick to zero.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn withhold(&mut self) {
@@ -146,7 +153,7 @@ impl<const D: usize> CoupledTool<D> {
         self.given = self.given.map(|_| Vector::ZERO);
     }
 
-    /// Lowers the largest torque [N·m].
+    /// Lowers the torque limit [N·m].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit_torque(&mut self, max_torque: f64) {
@@ -158,17 +165,18 @@ impl<const D: usize> CoupledTool<D> {
     }
 
     /// One tick of the tool coupled to `point`, from the state of the device to the force to
-    /// write to it [N], in its coordinates; the torque to write is kept. The touch is that of the
-    /// whole tool.
+    /// write [N], both in device coordinates; the torque to write is stored. `touch` describes
+    /// the whole tool.
     ///
     /// Real-time: as [`Tool::step`].
     pub(crate) fn tick(
         &mut self,
-        (point, bodies): (&mut ContactPoint<D>, &mut Bodies<D>),
+        sides: Sides<'_, D>,
         setting: &Setting<D>,
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
+        let Sides { point, bodies } = sides;
         let map = &setting.map;
         let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
         let (turn, angle) = match &mut self.port {
@@ -204,20 +212,21 @@ impl<const D: usize> CoupledTool<D> {
             let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
             let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
             let state = WrenchState {
-                position: Both { along: at_device.position, about: angle },
-                velocity: Both { along: at_device.velocity, about: spin },
+                position: SpatialVector { along: at_device.position, about: angle },
+                velocity: SpatialVector { along: at_device.velocity, about: spin },
                 free_force: map.force_to_device(free),
                 is_late: setting.is_late,
             };
-            let given = chain.step(Both { along: force, about: torque }, &state);
+            let given = chain.step(SpatialVector { along: force, about: torque }, &state);
             self.torque = given.about;
             touch.force = map.force_to_world(given.along);
             given.along
         } else {
-            // Of a port without a chain, the device gives no torque.
+            // A port without a safety chain belongs to a device that gives no torque.
             let most = if self.port.is_some() { 0.0 } else { self.max_torque };
             self.torque = limited(torque, most);
-            point.give(setting, at_device, touch, (free, false))
+            let free = FreeForce { force: free, placed: false };
+            point.give(setting, at_device, touch, free)
         };
         self.given = turn.map(|_| map.torque_to_world(self.torque));
         force
@@ -225,7 +234,7 @@ impl<const D: usize> CoupledTool<D> {
 }
 
 impl<const D: usize> ContactPoint<D> {
-    /// The force of the guides [N]; none where a number is not finite.
+    /// The force of the guides [N]; zero if a number is not finite.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn guided(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {

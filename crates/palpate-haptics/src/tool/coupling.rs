@@ -1,36 +1,34 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What hangs a tool on the hand.
+//! The virtual coupling between hand and tool.
 
 use super::state::ToolOptions;
 use crate::error::HapticsError;
 use palpate_safety::Impedance;
 use palpate_safety::positive;
 
-/// The spring and damper between hand and tool as they are rendered: those of the
-/// [options](ToolOptions), or softer ones, where the device of a [`Servo`](crate::Servo)
-/// device needs them.
+/// The rendered spring and damper between hand and tool: as requested in the
+/// [options](ToolOptions), or softer if the device of a [`Servo`](crate::Servo) requires it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupling {
-    /// [N/m].
+    /// The stiffness [N/m].
     pub stiffness: f64,
-    /// [N·s/m].
+    /// The damping [N·s/m].
     pub damping: f64,
-    /// [N·m/rad].
+    /// The angular stiffness [N·m/rad].
     pub angular_stiffness: f64,
-    /// [N·m·s/rad].
+    /// The angular damping [N·m·s/rad].
     pub angular_damping: f64,
-    /// The part of their arms on which the bodies' dampers turn the hand, in [0, 1]. As they
-    /// see less of how it turns, and turn it by less, what is left takes energy from it as
-    /// before.
+    /// The factor on the lever arms of the bodies' dampers, in [0, 1]. The factor applies both
+    /// to the sensed velocity and to the applied torque, which keeps the dampers dissipative.
     pub arms: f64,
-    /// The longest arm on which a body's damper can act: the tool's reach [m].
+    /// The longest lever arm of a body's damper: the tool's reach [m].
     longest_arm: f64,
 }
 
 impl Coupling {
-    /// As `options` have it, for a tool that reaches as far as `reach` [m].
+    /// The coupling that `options` request, for a tool with this `reach` [m].
     ///
     /// # Errors
     ///
@@ -51,19 +49,21 @@ impl Coupling {
         })
     }
 
-    /// A radian as a length, so that the coupling is as stiff about axes as along them [m].
+    /// The length of a radian that makes the coupling equally stiff in translation and rotation
+    /// [m].
     pub(crate) fn unit(&self) -> f64 {
         (self.angular_stiffness / self.stiffness).sqrt()
     }
 
-    /// What the hand feels along axes of a body like that.
+    /// The translational stiffness and damping that the hand feels of a body with the impedance
+    /// `body`.
     pub(crate) fn on(&self, body: Impedance) -> Result<Impedance, HapticsError> {
         let stiffness = self.stiffness.min(body.stiffness());
         Ok(Impedance::new(stiffness, self.damping + body.damping())?)
     }
 
-    /// What it feels about axes, where bodies bear a `part` of the coupling, and have a
-    /// `damping` [N·s/m] on the longest arm on which it acts.
+    /// The angular stiffness and damping that the hand feels, if bodies bear `part` of the
+    /// coupling and have a `damping` [N·s/m] on the longest lever arm.
     pub(crate) fn turning_on(
         &self,
         part: f64,
@@ -73,20 +73,20 @@ impl Coupling {
         Ok(Impedance::new(self.angular_stiffness * part, damping)?)
     }
 
-    /// What a `damping` [N·s/m] is about axes, on the longest arm [N·m·s/rad].
+    /// The angular damping of a `damping` [N·s/m] on the longest lever arm [N·m·s/rad].
     pub(crate) fn damping_on_arms(&self, damping: f64) -> f64 {
         let arm = self.arms * self.longest_arm;
         damping * arm * arm
     }
 
-    /// The same, `factor` times as stiff and as damped.
+    /// This coupling with stiffness and damping multiplied by `factor`.
     #[must_use]
     pub(crate) fn softened(self, factor: f64) -> Self {
         let (stiffness, damping) = (self.stiffness * factor, self.damping * factor);
         Self { stiffness, damping, ..self.softened_about_axes(factor) }
     }
 
-    /// The same, `factor` times as stiff and as damped about axes.
+    /// This coupling with angular stiffness and damping multiplied by `factor`.
     #[must_use]
     pub(crate) fn softened_about_axes(self, factor: f64) -> Self {
         Self {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the hand feels of a tool at rest, and what is done to the bodies.
+//! Force and torque of a tool on the hand, and its reactions on the bodies.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -18,17 +18,17 @@ use crate::nearby::Nearby;
 use palpate_safety::part_of;
 use palpate_safety::{cross, in_place, in_space};
 
-/// What the bodies that push make of the coupling.
+/// The response of the pushing bodies to the coupling.
 struct Yielding<const D: usize> {
-    /// The part of the coupling's force that they bear, in [0, 1].
+    /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
-    /// The force of their own dampers [N].
+    /// The force of the bodies' own dampers [N].
     force: Vector<f64, D>,
-    /// Its torque about the tool's origin [N·m].
+    /// The torque of this force about the tool's origin [N·m].
     torque: Vector<f64, 3>,
 }
 
-/// A contact before this tick, as far as events tell of it.
+/// The contact of the tick before, as events need it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     body: Option<u32>,
@@ -43,7 +43,8 @@ impl Before {
 }
 
 impl<const D: usize> Tool<D> {
-    /// What is felt where the tool rests, which was at `before` in the last tick.
+    /// Writes force and torque of the tool at its new rest pose; its pose in the last tick was
+    /// `before`.
     pub(super) fn write_touch(
         &mut self,
         nearby: &Nearby<'_, D>,
@@ -71,7 +72,7 @@ impl<const D: usize> Tool<D> {
         self.tell_changes(was, speed);
     }
 
-    /// Where it rests, and how well that is known.
+    /// Writes the rest pose and the contacts, and what is proven about them.
     fn write_rest(&mut self, device: &ToolState<D>) {
         let (rest, touch) = (&self.settler.rest, &mut self.touch);
         touch.device = device.pose;
@@ -97,13 +98,14 @@ impl<const D: usize> Tool<D> {
             let radius = point.map_or(0.0, |point| point.radius);
             let point_a = push.centre - push.normal * radius;
             let point_b = push.centre - push.normal * (radius + push.gap);
-            // One point of the tool touches one body once, so that the two name the contact.
+            // A point of the tool touches a body at most once, so point and body identify the
+            // contact.
             let id = u64::from(push.body) << 32 | u64::from(push.point);
             touch.contacts.push(Contact::new(point_a, point_b, -push.normal).with_id(id));
         }
     }
 
-    /// The force and the torque of a tool that moved by `moved` in this tick.
+    /// Writes force and torque of a tool that moved by `moved` in this tick.
     fn write_force(&mut self, nearby: &Nearby<'_, D>, device: &ToolState<D>, moved: &Twist<D>) {
         let has_new_bodies = std::mem::take(&mut self.has_new_bodies);
         let before = self.effort();
@@ -143,18 +145,19 @@ impl<const D: usize> Tool<D> {
         self.part = part;
     }
 
-    /// Force and torque on the hand in one number, with angles as lengths [N].
+    /// The norm of force and torque together, where a radian counts as a length [N].
     fn effort(&self) -> f64 {
         let (force, torque) = (self.touch.force, self.touch.torque);
         let torque = torque * (1.0 / self.coupling.unit());
         (force.dot(force) + torque.dot(torque)).sqrt()
     }
 
-    /// How the bodies that push yield to a stretch of the coupling, each as much as it pushes.
+    /// The response of the bodies to a stretch of the coupling, weighted by how much each
+    /// pushes.
     ///
-    /// With `d = √(‖v‖² + ℓ²‖ω‖²)` for the depth, a body bears `∫ min(K, K_body)` over it: a
-    /// function of the distance from the device to the nearest pose that is free, so that the
-    /// force of one body has a potential, and no steeper than the coupling.
+    /// At the depth `d = √(‖v‖² + ℓ²‖ω‖²)` a body bears `∫ min(K, K_body)` over the depth. This
+    /// is a function of the distance from the device's pose to the nearest free pose, so the
+    /// force of one body has a potential, and is no stiffer than the coupling.
     fn yielding(
         &self,
         nearby: &Nearby<'_, D>,
@@ -171,7 +174,7 @@ impl<const D: usize> Tool<D> {
             let Some(body) = nearby.body(push.body) else { continue };
             let strata = &body.surface().strata;
             let borne = strata.force_up_to(stiffness, depth) / (stiffness * depth);
-            // Written so that NaN, of no depth, is all of it.
+            // Written so that NaN, from zero depth, gives one.
             part += share * if borne < 1.0 { borne } else { 1.0 };
             let layer = strata.at(0, depth);
             let velocity = self.speed_at(nearby, push, device, arms);
@@ -184,13 +187,12 @@ impl<const D: usize> Tool<D> {
         Yielding { part, force, torque }
     }
 
-    /// How far a stretch of the coupling is, with angles as lengths [m].
+    /// The norm of a stretch of the coupling, where a radian counts as a length [m].
     fn depth(&self, stretch: &Twist<D>) -> f64 {
         stretch.stacked(self.coupling.unit()).iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    /// How fast the hand moves the place of a contact, on a part of its arm, as its body sees it
-    /// [m/s].
+    /// The velocity of the hand at a contact relative to its body, on a scaled lever arm [m/s].
     fn speed_at(
         &self,
         nearby: &Nearby<'_, D>,
@@ -203,7 +205,7 @@ impl<const D: usize> Tool<D> {
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }
 
-    /// How fast a body moves at a place [m/s].
+    /// The velocity of a body at a place [m/s].
     fn body_velocity(
         &self,
         nearby: &Nearby<'_, D>,
@@ -216,7 +218,7 @@ impl<const D: usize> Tool<D> {
         }
     }
 
-    /// Tells of what is new since the last tick.
+    /// Emits the events of this tick.
     pub(super) fn tell_changes(&mut self, was: Before, speed: f64) {
         let is = Before::of(&self.touch);
         let mut tell = |body, kind| {
@@ -236,8 +238,8 @@ impl<const D: usize> Tool<D> {
         }
     }
 
-    /// Gives the bodies what the hand gets, the other way: to each what its contacts push, and
-    /// its share of what dampers and limits change.
+    /// Applies the opposite of the hand's force and torque to the bodies: to each the push of
+    /// its contacts, and its share of what dampers and limits change.
     pub(super) fn react(&self, nearby: &Nearby<'_, D>, reactions: &mut [Reaction<D>]) {
         if !self.touch.contact {
             return;
@@ -273,7 +275,7 @@ fn hardest<const D: usize>(pushes: &[Push<D>]) -> Option<&Push<D>> {
     })
 }
 
-/// The same with a damper that at most takes away what the spring pushes.
+/// The motion with its damper limited so that it at most cancels the spring's push.
 fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
     let Some(along) = motion.spring.normalized() else {
         return Motion { damper: Vector::ZERO, ..motion };
@@ -283,7 +285,7 @@ fn not_pulling<const N: usize>(motion: Motion<N>) -> Motion<N> {
     Motion { damper, ..motion }
 }
 
-/// The same with one more damper.
+/// The motion with one more damper.
 fn and_damper<const N: usize>(motion: Motion<N>, damper: Vector<f64, N>) -> Motion<N> {
     Motion { damper: motion.damper + damper, ..motion }
 }

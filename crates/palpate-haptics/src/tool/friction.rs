@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Coulomb friction of a tool: it sticks, or the device is held back.
+//! Coulomb friction of a tool: the tool sticks, or its goal is held back.
 //!
-//! A contact pushes with any force in its cone, spanned by `n + μ t` for unit vectors `t` along
-//! the surface: two in the plane, eight in space. The tool sticks if forces of the cones of the
-//! contacts that held it balance the coupling, which is to say that the closest motion with
-//! `(n + μ t)·Δ ≥ −gap` for all of them, contacts as rows of a rigid motion, is none (Stewart
-//! and Trinkle 1996; as a convex problem Anitescu, "Optimization-based simulation of nonsmooth
-//! rigid multibody dynamics", 2006). Where it is not, that problem would lift the tool off the
-//! surface as it slips; so only its friction is kept, as a part of what contacts push without
-//! that lift: it holds back the pose that the tool, without friction, then goes to. For one contact this is the friction cone of a
-//! [`Proxy`](crate::Proxy). A tool that sticks does not move at all, so it never creeps.
+//! A contact pushes with any force in its friction cone, spanned by `n + μ t` for unit vectors
+//! `t` along the surface: two in the plane, eight in space. The tool sticks if forces in the
+//! cones of the last tick's contacts balance the coupling. Equivalently, the closest motion
+//! that satisfies `(n + μ t)·Δ ≥ −gap` for all contacts is zero (Stewart and Trinkle 1996; as a
+//! convex problem Anitescu, "Optimization-based simulation of nonsmooth rigid multibody
+//! dynamics", 2006). When the tool slips, the convex problem would also lift it off the
+//! surface. So only its friction is used, scaled to what contacts push without that lift: the
+//! friction shifts the goal towards which the tool then moves without friction. For one contact
+//! this is the friction cone of a [`Proxy`](crate::Proxy). A tool that sticks does not move at
+//! all, so it never creeps.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -20,14 +21,14 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use palpate_field::{Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
-use super::scan::Scan;
+use super::scan::{Path, Scan};
 use super::settle::{Lengths, Push, Settler, stacked_along};
 use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::surface::Friction;
 use palpate_safety::{cross, in_place, in_space};
 
-/// Directions along a surface, as parts of two that are square to one another.
+/// Directions along a surface, in a basis of two orthogonal ones.
 const AROUND: [(f64, f64); MOST_AROUND] = [
     (1.0, 0.0),
     (-1.0, 0.0),
@@ -39,21 +40,21 @@ const AROUND: [(f64, f64); MOST_AROUND] = [
     (-FRAC_1_SQRT_2, -FRAC_1_SQRT_2),
 ];
 
-/// How many of them there are in space.
+/// The number of directions in space.
 pub(super) const MOST_AROUND: usize = 8;
 
-/// The tool sticks if it would move by this part of the way to the device or less: above what
-/// rounding leaves of a balance.
+/// The tool sticks if it would move by at most this part of the displacement to the device:
+/// more than the rounding error of a balance of forces.
 const STUCK: f64 = 1e-9;
 
-/// What friction does in a tick.
+/// The effect of friction in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Hold<const D: usize> {
-    /// There is none.
+    /// No friction acts.
     None,
-    /// The tool stays where it is.
+    /// The tool does not move.
     Stick,
-    /// The tool goes to another goal.
+    /// The tool slips towards another goal.
     Slip(Pose<D>),
 }
 
@@ -62,35 +63,37 @@ pub(super) enum Hold<const D: usize> {
 pub(super) struct Cone<const D: usize> {
     push: Push<D>,
     friction: Friction,
-    /// Along the surface.
+    /// Orthonormal directions along the surface.
     sides: [Vector<f64, D>; 2],
 }
 
 impl<const D: usize> Settler<D> {
-    /// What the friction of the contacts that pushed in the last tick does to a tool at `pose`,
-    /// of which all rows were made for `wish`.
+    /// The friction of the last tick's contacts on a tool that would move along `path`, for
+    /// which all rows were made.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn hold_back(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish): (&Pose<D>, &Twist<D>),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
         lengths: Lengths,
     ) -> Hold<D> {
+        let Path { pose, twist: wish } = path;
         let away = wish.stacked(lengths.unit);
-        if !self.find_cones((scan, nearby), (pose, wish), length(&away)) {
+        if !self.find_cones(scan, nearby, path, length(&away)) {
             return Hold::None;
         }
-        let found = self.solve((pose, away), lengths, self.is_slipping);
+        let found = self.solve(pose, away, lengths, self.is_slipping);
         let moves = length(&found.motion);
         // Written so that NaN sticks.
         if moves.is_nan() || moves <= (STUCK * length(&away)).max(lengths.tolerance) {
             self.list_pushes(&found);
             return Hold::Stick;
         }
-        // A tool that slipped before has been tried with what it slips with.
+        // A tool that slipped in the last tick was already solved with its dynamic friction.
         let found =
-            if self.is_slipping { found } else { self.solve((pose, away), lengths, true) };
+            if self.is_slipping { found } else { self.solve(pose, away, lengths, true) };
         let mut friction = [0.0; FREEDOMS];
         for held in found.held() {
             let Some((cone, row)) = self.cone_of(held.row) else { continue };
@@ -103,26 +106,28 @@ impl<const D: usize> Settler<D> {
         let pushes = |found: &Closest| found.held().map(|held| held.push).sum::<f64>();
         self.rows.truncate(self.plain);
         let flat = closest(sum(away, friction, 1.0), &self.rows, lengths.slack());
-        // Written so that NaN, of no push at all, is none.
+        // Written so that NaN, from zero push, gives zero.
         let part = (pushes(&flat) / pushes(&found)).clamp(0.0, 1.0).max(0.0);
         let target = sum(away, friction, part);
         Hold::Slip(Twist::unstacked(target, lengths.unit).moved(pose))
     }
 
-    /// The cone that a row is of.
+    /// The cone that a row belongs to.
     fn cone_of(&self, row: usize) -> Option<(&Cone<D>, &Row)> {
         let index = row.checked_sub(self.plain)? / around::<D>();
         Some((self.cones.get(index)?, self.rows.get(row)?))
     }
 
-    /// Lists the contacts that held the tool; `false` if none of them has friction at that depth
-    /// [m].
+    /// Lists the friction cones of the last tick's contacts; `false` if none of them has
+    /// friction at this depth [m].
     fn find_cones(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish): (&Pose<D>, &Twist<D>),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
         depth: f64,
     ) -> bool {
+        let Path { pose, twist: wish } = path;
         self.cones.clear();
         let mut has_friction = false;
         for number in self.held.iter().take(FREEDOMS) {
@@ -143,10 +148,11 @@ impl<const D: usize> Settler<D> {
         has_friction
     }
 
-    /// The closest motion to the wish with cones of friction.
+    /// The closest motion to the desired one under friction cones.
     fn solve(
         &mut self,
-        (pose, wish): (&Pose<D>, [f64; FREEDOMS]),
+        pose: &Pose<D>,
+        wish: [f64; FREEDOMS],
         lengths: Lengths,
         is_slipping: bool,
     ) -> Closest {
@@ -165,7 +171,7 @@ impl<const D: usize> Settler<D> {
         closest(wish, &self.rows, lengths.slack())
     }
 
-    /// Notes what pushes the tool that sticks.
+    /// Records the pushes on a tool that sticks.
     fn list_pushes(&mut self, found: &Closest) {
         for held in found.held() {
             let cone = held.row.checked_sub(self.plain).map(|row| row / around::<D>());
@@ -180,13 +186,13 @@ impl<const D: usize> Settler<D> {
     }
 }
 
-/// How many directions along a surface there are.
+/// The number of directions along a surface.
 fn around<const D: usize>() -> usize {
     if D == 2 { 2 } else { MOST_AROUND }
 }
 
-/// Two unit vectors along a surface, the first the way that a point goes by its wish; in the
-/// plane the second is none.
+/// Two unit vectors along a surface, the first along the desired motion of a point; in the
+/// plane the second is zero.
 fn along_surface<const D: usize>(
     normal: Vector<f64, D>,
     wish: &Twist<D>,
@@ -194,7 +200,7 @@ fn along_surface<const D: usize>(
 ) -> [Vector<f64, D>; 2] {
     let way = wish.of_point(arm);
     let flat = |v: Vector<f64, D>| (v - normal * v.dot(normal)).normalized();
-    // An axis that is far from the normal.
+    // The coordinate axis farthest from the normal.
     let steepest = |k: usize| normal.0.get(k).copied().unwrap_or(1.0).abs();
     let axis = (1..D).fold(0, |best, k| if steepest(k) < steepest(best) { k } else { best });
     let first = flat(way).or_else(|| flat(Vector::unit(axis))).unwrap_or(Vector::ZERO);

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Tools with a shape: felt as a whole, with force and torque.
+//! Rigid tools: rendered as a whole, with force and torque.
 //!
-//! The hand holds the device; a spring and a damper in all degrees of freedom, the *virtual
-//! coupling* of Colgate, Stanley and Brown, "Issues in the haptic display of tool use" (1995),
-//! hang a rigid tool on it. The tool has no mass: in each tick it is where spring and contacts
-//! are in balance (Wan and McNeely, "Quasi-static approximation for 6-DoF haptic rendering",
-//! 2003), which is the pose of least spring energy that the bodies allow.
+//! The hand holds the device. The *virtual coupling* of Colgate, Stanley and Brown, "Issues in
+//! the haptic display of tool use" (1995), a spring and a damper in all degrees of freedom,
+//! connects a rigid tool to the device. The tool has no mass: in each tick it is where spring
+//! and contacts balance (Wan and McNeely, "Quasi-static approximation for 6-DoF haptic
+//! rendering", 2003), the pose of least spring energy that the bodies allow.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -35,44 +35,46 @@ use palpate_field::{Pose, Vector};
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
-use crate::nearby::{Nearby, Pierced};
+use crate::nearby::{Nearby, Punctured};
 use crate::sampler::Sampler;
-pub(crate) use coupled::CoupledTool;
 pub use coupled::HeldTool;
+pub(crate) use coupled::{CoupledTool, Sides};
 pub use coupling::Coupling;
 use felt::Before;
 use room::Room;
-use scan::Scan;
-use settle::{Lengths, Settler};
+use scan::{Scan, Surroundings};
+use settle::{Ends, Lengths, Settler};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{ToolOptions, ToolState, ToolTouch};
 use twist::Twist;
 
-/// Bodies fewer than this are all near.
+/// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
 
-/// How far the tool may go in a tick, in motions: far enough that it sees no horizon.
+/// The largest motion of the tool in a tick, in device motions: so large that the horizon never
+/// constrains it.
 const WAYS: f64 = 4.0;
 
-/// How far points of the tool are likely to go in a tick, in motions of the device: as far. A
-/// tool that goes farther is cut short there, and looks farther in its next turn.
+/// The expected motion of the tool's points in a tick, in device motions. A tool that would
+/// move farther is stopped there, and evaluates a larger neighbourhood in its next iteration.
 const LIKELY: f64 = 1.0;
 
-/// And in skins, where the device rests and the tool does not yet.
+/// The least expected motion, in skins, for a tool that still moves while the device rests.
 const LIKELY_SKINS: f64 = 0.25;
 
-/// The tool rests where the next motion is below this part of the device's in this tick: what is
-/// left of it is made up for in the next, and none where the hand rests.
+/// The tool rests when its next motion is below this part of the device's motion in this tick.
+/// The next tick corrects the remainder, which is zero when the hand rests.
 const AT_REST: f64 = 1e-3;
 
-/// The skin of points without a radius, as a part of the tool's reach. Larger slides faster;
-/// walls thinner than two skins would not hold the tool.
+/// The skin of points without a radius, as a part of the tool's reach. A larger skin speeds up
+/// slides, but the tool crosses walls thinner than two skins.
 const SKIN: f64 = 1e-3;
 
-/// Events of a tool in a tick at most: a leave and a touch, or a change of its hold.
+/// The most events of a tool in a tick: a leave and a touch, or a slip or stick.
 const MOST_EVENTS: usize = 2;
 
-/// A rigid tool that the hand moves, and that bodies stop.
+/// A rigid tool that is coupled to the hand and stopped by bodies: a god-object with six
+/// degrees of freedom.
 ///
 /// The tool's pose `X` is the one closest to the device's pose `Y` that keeps every point of its
 /// [`Shell`] outside the bodies: the least of the coupling's energy
@@ -81,52 +83,53 @@ const MOST_EVENTS: usize = 2;
 /// E = K/2 ‖v‖² + κ/2 ‖ω‖²
 /// ```
 ///
-/// with the way `v` between the origins [m], the rotation `ω` between the axes [rad], and the
-/// stiffness `K` [N/m] and `κ` [N·m/rad] of the coupling. The force on the hand and the torque
-/// about the tool's origin are those of spring and damper,
+/// with the displacement `v` between the origins [m], the rotation vector `ω` between the axes
+/// [rad], and the stiffness `K` [N/m] and `κ` [N·m/rad] of the coupling. Spring and damper give
+/// the force on the hand and the torque about the tool's origin,
 ///
 /// ```text
 /// F = −K v − B (u_device − u_tool)        τ = −κ ω − β (Ω_device − Ω_tool)
 /// ```
 ///
-/// with the velocities `u` [m/s] and `Ω` [rad/s] that the device says, and those of the tool from
-/// its last two poses; this damper acts in contact alone and never makes the hand be pulled in.
+/// with the velocities `u` [m/s] and `Ω` [rad/s] of the device as read, and those of the tool
+/// from its last two poses. The damper acts only in contact and never pulls the hand in.
 ///
-/// # What is felt of a material
+/// # How materials are rendered
 ///
-/// Where the tool rests does not depend on how soft the bodies are: rigid bodies meet, and the
-/// coupling yields. How much it gives does. With the depth `d = √(‖v‖² + (κ/K) ‖ω‖²)`, which is
-/// the distance from the device's pose to the nearest free one, a body bears of the coupling's
-/// force and torque, damper and all, the part
+/// The rest pose does not depend on the stiffness of the bodies: tool and bodies meet as rigid
+/// bodies, and the coupling is stretched. The force does depend on it. With the depth `d =
+/// √(‖v‖² + (κ/K) ‖ω‖²)`, the distance from the device's pose to the nearest free pose, a body
+/// scales the coupling's force and torque, damper included, by
 ///
 /// ```text
 /// s(d) = ∫₀ᵈ min(K, K_body) / (K d)
 /// ```
 ///
-/// with the stiffness `K_body` of its layer at each depth: a body that is softer than the coupling
-/// is felt as a contact point feels it, a harder one as the coupling. So a tool that touches one
-/// body without friction feels the force of a potential; of several, each counts as much as it
-/// pushes. The damping and the viscosity of the layer act at the place of each contact, as much
-/// as it pushes, on the device's velocity relative to the body; its friction holds the tool back.
+/// with the stiffness `K_body` of its layer at each depth: a body softer than the coupling
+/// feels as it does to a contact point, a harder one as stiff as the coupling. The force of one
+/// body without friction therefore has a potential; several bodies are weighted by how much
+/// each pushes. The damping and the viscosity of a layer act at each contact, with the same
+/// weight, on the device's velocity relative to the body; friction holds the tool back.
 ///
-/// Not felt are: layers that give way, which would have to give way under a part of the tool
-/// alone; magnets, whose pull is that of a place and not of a surface; textures of kind *height*
-/// and rings of impacts, which are those of one contact, and contacts of a tool come and go from
-/// point to point. Textures of kind *displacement* are part of a body's shape.
+/// A tool does not render: pop-through, because a layer would have to give way under a part of
+/// the tool only; magnets, because their pull acts at a point; textures of kind *height* and
+/// ringing, because they belong to a single contact, and a tool's contacts change from point to
+/// point. Textures of kind *displacement* are part of a body's shape and are rendered.
 ///
 /// # What is promised
 ///
-/// - *Nothing is crossed.* However fast the tool comes, on its way no point of the shell that is
-///   looked at dips deeper than its radius, or, without one, than 1e-3 of the tool's reach; at
-///   rest its ball is outside up to 1e-9 of the size of the scene.
-/// - *It lags, if it must.* A tick takes six turns at most, and stops where the next motion is
-///   below a thousandth of the device's; the next tick goes on from there.
-/// - *Out of budget it gets coarser.* A tick looks at fewer levels of the shell, and says so:
-///   [`ToolTouch::points_known`], [`ToolTouch::resolution`], [`ToolTouch::is_degraded`].
+/// - *No surface is crossed.* At any speed, no point of the evaluated shell dips deeper than
+///   its radius, or, without a radius, than 1e-3 of the tool's reach. At rest every evaluated
+///   ball is outside up to 1e-9 of the size of the scene.
+/// - *The tool may lag.* A tick takes at most six iterations, and stops when the next motion is
+///   below a thousandth of the device's; the next tick continues from there.
+/// - *With too small a budget the tool gets coarser.* The tick evaluates fewer levels of the
+///   shell, and reports this: [`ToolTouch::points_known`], [`ToolTouch::resolution`],
+///   [`ToolTouch::is_degraded`].
 ///
-/// A body that moves carries the tool that rests on it, as far as no other one is in the way. One
-/// that meets the tool is not followed on its way: it pushes the tool out from where it is after
-/// the tick. So it should move less in a tick than half of what it is thick.
+/// A moving body carries a tool that rests on it until another body is in the way. The motion
+/// of a body that hits the tool is not swept: the body pushes the tool out from its pose after
+/// the tick. So a body should move less in a tick than half its thickness.
 ///
 /// # Examples
 ///
@@ -157,16 +160,16 @@ pub struct Tool<const D: usize> {
     coupling: Coupling,
     scan: Scan<D>,
     settler: Settler<D>,
-    /// Where the tool is; none before the first tick.
+    /// The pose of the tool; `None` before the first tick.
     pose: Option<Pose<D>>,
-    /// The part of the force that is given, in [0, 1].
+    /// The rendered part of the force, in [0, 1].
     rise: f64,
     /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
-    /// The bodies are others than in the tick before.
+    /// Whether the bodies were replaced since the last tick.
     has_new_bodies: bool,
     touch: ToolTouch<D>,
-    /// How fast the device moves relative to the body that pushes hardest [m/s].
+    /// The velocity of the device relative to the body that pushes hardest [m/s].
     hand_velocity: Vector<f64, D>,
     /// The body that the tool rests on.
     carrier: Option<u32>,
@@ -177,7 +180,7 @@ pub struct Tool<const D: usize> {
 }
 
 impl<const D: usize> Tool<D> {
-    /// A tool that starts where the device first is.
+    /// A tool that starts at the device's first pose.
     ///
     /// # Errors
     ///
@@ -205,30 +208,30 @@ impl<const D: usize> Tool<D> {
         })
     }
 
-    /// The same with another largest torque on the hand [N·m]; infinite for none.
+    /// This tool with another torque limit [N·m]; infinite for no limit.
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if it is not positive.
+    /// [`HapticsError::Number`] if the limit is not positive.
     pub fn with_max_torque(mut self, max_torque: f64) -> Result<Self, HapticsError> {
         self.options.max_torque = max_torque;
         self.options.check()?;
         Ok(self)
     }
 
-    /// What it touches with.
+    /// The shell.
     #[must_use]
     pub fn shell(&self) -> &Shell<D> {
         &self.shell
     }
 
-    /// How it was to hang on the hand.
+    /// The options, with the requested coupling before device limits.
     #[must_use]
     pub fn options(&self) -> &ToolOptions {
         &self.options
     }
 
-    /// How it hangs on the hand.
+    /// The rendered coupling, after device limits.
     #[must_use]
     pub fn coupling(&self) -> &Coupling {
         &self.coupling
@@ -240,14 +243,14 @@ impl<const D: usize> Tool<D> {
         &self.touch
     }
 
-    /// What happened in the last tick; the tool counts as contact point 0.
+    /// The events of the last tick; the tool counts as contact point 0.
     #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// Forgets what is known of the bodies: the next tick touches other ones. A larger force of
-    /// theirs rises from the one before over [`ToolOptions::rise_time`].
+    /// Forgets the bodies, which are replaced before the next tick. If the new bodies push
+    /// harder, the force rises from the old force over [`ToolOptions::rise_time`].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn forget_bodies(&mut self) {
@@ -255,19 +258,20 @@ impl<const D: usize> Tool<D> {
         self.has_new_bodies = true;
     }
 
-    /// What was known of the bodies does not hold any more.
+    /// Discards all evaluations of the bodies.
     fn lose_bodies(&mut self) {
         self.scan.forget();
         self.carrier = None;
     }
 
-    /// One tick: moves the tool as far towards `device` as `bodies` let it, and gives the force
-    /// and torque on the hand. [`Bodies::reactions`] then says what was done to each body.
+    /// One tick: moves the tool towards `device` as far as `bodies` let it, and computes force
+    /// and torque on the hand. Afterwards [`Bodies::reactions`] holds force and torque on each
+    /// body.
     ///
-    /// A body that moved pushes the tool out of its way. A tool that does not get out of the
-    /// bodies, since it starts within them or one moved far over it, touches nothing until it
-    /// is out; then its force rises over [`ToolOptions::rise_time`]. A device pose that is not
-    /// finite moves nothing and touches nothing.
+    /// A moving body pushes the tool out of its way. A tool that cannot get out of the bodies,
+    /// because it starts inside or a body moved far over it, touches nothing until it is out;
+    /// then its force rises over [`ToolOptions::rise_time`]. If the device's pose is not
+    /// finite, the tool stays in place and touches nothing.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; at
     /// most [`ToolOptions::budget`] evaluations.
@@ -276,10 +280,10 @@ impl<const D: usize> Tool<D> {
         let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         if device.is_usable() {
-            self.follow(bodies, (&mut list, &mut reactions), device);
+            self.follow(bodies, &mut list, &mut reactions, device);
         } else {
             if bodies.has_moved {
-                // What moves meanwhile is not where it was when the hand comes back.
+                // Bodies that move in this tick make earlier evaluations invalid.
                 self.lose_bodies();
             }
             let was = Before::of(&self.touch);
@@ -287,7 +291,7 @@ impl<const D: usize> Tool<D> {
             self.hand_velocity = Vector::ZERO;
             self.tell_changes(was, 0.0);
         }
-        bodies.put_back((list, reactions));
+        bodies.put_back(list, reactions);
         bodies.settle();
         self.tick += 1;
         &self.touch
@@ -296,7 +300,8 @@ impl<const D: usize> Tool<D> {
     fn follow(
         &mut self,
         bodies: &Bodies<D>,
-        (list, reactions): (&mut [u32], &mut [Reaction<D>]),
+        list: &mut [u32],
+        reactions: &mut [Reaction<D>],
         device: &ToolState<D>,
     ) {
         let start = self.pose.unwrap_or(device.pose);
@@ -306,7 +311,7 @@ impl<const D: usize> Tool<D> {
             bodies.everything()
         } else {
             let way = WAYS * motion.way(reach);
-            bodies.nearby((start.translation, reach + way), list)
+            bodies.nearby(start.translation, reach + way, list)
         };
         if nearby.has_moved() {
             self.scan.forget();
@@ -314,15 +319,15 @@ impl<const D: usize> Tool<D> {
         let carry = self.carrier(&nearby, &start, &device.pose);
         let moved = Twist::between(&self.touch.device, &device.pose).way(reach);
         let moved = carry.map_or(moved, |carry| moved.max(carry.way(reach)));
-        let lengths = self.lengths(&nearby, &start, (&motion, moved));
+        let lengths = self.lengths(&nearby, &start, &motion, moved);
         self.scan.begin(&self.shell, self.options.budget);
-        let start =
-            carry.map_or(start, |carry| self.carried(&nearby, (start, &carry), lengths));
-        let parts = (&self.shell, &mut self.scan, &nearby);
-        self.settler.settle(parts, (start, device.pose), lengths);
+        let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
+        let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
+        let ends = Ends { start, goal: device.pose };
+        self.settler.settle(&mut self.scan, surroundings, ends, lengths);
         let rest = &self.settler.rest;
         if self.pose.is_none() && rest.pose != device.pose {
-            // It was placed.
+            // The tool was placed anew.
             self.rise = if rest.pushes.is_empty() { 1.0 } else { 0.0 };
         }
         if !rest.is_outside {
@@ -339,13 +344,13 @@ impl<const D: usize> Tool<D> {
         &self,
         nearby: &Nearby<'_, D>,
         start: &Pose<D>,
-        (motion, moved): (&Twist<D>, f64),
+        motion: &Twist<D>,
+        moved: f64,
     ) -> Lengths {
         let reach = self.shell.reach();
         let way = motion.way(reach);
         let extent = start.translation.norm() + reach + way;
-        let place = (nearby, Pierced::default());
-        let sampler = Sampler::new(place, self.radius, 0, extent);
+        let sampler = Sampler::new(nearby, Punctured::default(), self.radius, 0, extent);
         let unit = self.coupling.unit();
         let skin = sampler.skin().max(SKIN * reach);
         let horizon = LIKELY * moved + LIKELY_SKINS * skin;

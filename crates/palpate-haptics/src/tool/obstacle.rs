@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where a tool of a fixed orientation cannot be: the obstacle of its configuration space.
+//! The configuration-space obstacle of a tool of fixed orientation.
 
 use palpate_field::{Rotation, Shape};
 
@@ -9,8 +9,9 @@ use super::Shell;
 use crate::error::HapticsError;
 
 impl<const D: usize> Shell<D> {
-    /// Where the origin of a tool turned by `rotation` cannot be, as a field `g` of that origin:
-    /// in the region where `g` is at most the [radius](crate::ShellPoint::radius) of its points.
+    /// The configuration-space obstacle of this shell turned by `rotation`: a field `g` of the
+    /// tool's origin. The tool touches the shape where `g` is at most the
+    /// [radius](crate::ShellPoint::radius) of its points.
     ///
     /// Lozano-Pérez, "Spatial planning: a configuration space approach" (1983). With the centres
     /// `c` of the first `points` of the shell, one at least, and the field `f` of `shape`,
@@ -19,8 +20,8 @@ impl<const D: usize> Shell<D> {
     /// g(x) = min f(x + R c)
     /// ```
     ///
-    /// So a [`Tour`](crate::Tour) over it, with that radius for its probe's, is one over `shape`
-    /// that presses the tool as deep as a probe.
+    /// A [`Tour`](crate::Tour) over the obstacle, with the points' radius as probe radius, is a
+    /// tour of the tool over `shape`, as deep as that of a probe.
     ///
     /// # Errors
     ///
@@ -34,7 +35,7 @@ impl<const D: usize> Shell<D> {
     /// let ball = Shape::from_kernel(Ball::new(0.05)?);
     /// let rod = Shell::capsule([Vector([0.0, 0.0]), Vector([0.0, 0.1])], 0.01, 11)?;
     /// let obstacle = rod.obstacle(&Rotation::identity(), &ball, 11)?;
-    /// // 0.02 m below the lower end of the ball, the upper end of the rod is as far away.
+    /// // The upper end of the rod is 0.02 m below the lower end of the ball.
     /// assert!((obstacle.distance(Vector([0.0, -0.17])) - 0.02).abs() < 1e-15);
     /// assert!((obstacle.distance(Vector([0.0, 0.07])) - 0.02).abs() < 1e-15);
     /// # Ok(())

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The shell of a shape: balls and capsules as they are, anything else as points on its surface.
+//! The shell of a shape: exact for balls and capsules, points on the surface for other shapes.
 
 use palpate_field::kernel::Argument;
 use palpate_field::node::Primitive;
@@ -10,18 +10,18 @@ use palpate_field::{Node, Point, Pose, Shape, Vector};
 use super::Shell;
 use crate::error::HapticsError;
 
-/// The balls of a capsule are this part of its radius apart: then its sides are 3 % of the
-/// radius from them at most.
+/// The spacing of the balls of a capsule, as a part of its radius: its sides are then at most 3
+/// % of the radius away from the balls.
 const SPACING: f64 = 0.5;
 
-/// Balls of a capsule at most: those of one thinner than a hair are farther apart.
+/// The most balls of a capsule; those of a capsule thinner than a hair are farther apart.
 const MOST_BALLS: f64 = 512.0;
 
 impl<const D: usize> Shell<D> {
-    /// The shell of `shape`, thicker by `radius` [m].
+    /// The shell of `shape`, thickened by `radius` [m].
     ///
-    /// A ball and a capsule are felt as they are, also where they are placed; the surface of any
-    /// other shape as that many `points` ([`Shell::from_field`]).
+    /// A ball or a capsule, placed or not, becomes an exact shell; any other shape becomes
+    /// `points` points on its surface ([`Shell::from_field`]).
     ///
     /// Not for the servo: it allocates.
     ///
@@ -65,7 +65,8 @@ fn rod<const D: usize>(
     Shell::capsule([from, to], radius, steps as usize + 1)
 }
 
-/// The segment and the radius of a ball or a capsule, if a shape is one, placed by a pose.
+/// The segment and the radius of a ball or a capsule, placed by a pose; `None` for other
+/// shapes.
 fn segment_of<const D: usize>(
     shape: &Shape<D>,
     world_from_shape: Pose<D>,

@@ -7,13 +7,13 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A list with room for all that it will ever hold, and so are its clones: those of a `Vec` have
-/// room for what is in it alone.
+/// A list with a fixed capacity that its clones keep; a cloned `Vec` has capacity only for its
+/// content.
 #[derive(Debug, Default)]
 pub(super) struct Room<T>(Vec<T>);
 
 impl<T> Room<T> {
-    /// An empty list for so many.
+    /// An empty list with this capacity.
     pub(super) fn with_capacity(count: usize) -> Self {
         Self(Vec::with_capacity(count))
     }

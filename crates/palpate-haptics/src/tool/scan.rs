@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What is known of a shell's points: how far they are from the bodies, and for how long that
-//! answers.
+//! The distances of a shell's points from the bodies, and how long each remains valid.
 //!
-//! A rigid motion that moves the tool's origin by `v` and turns it by `ω` moves a point `ρ` from
-//! the origin by at most `‖v‖ + ‖ω‖ρ`. So a cluster whose least gap was `g` touches nothing
-//! before that sum has grown by `g / L`, and is not asked again until then (Mirtich,
-//! "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3; for shells,
-//! Johnson, Willemsen and Cohen, "Six degree-of-freedom haptic rendering using spatialized normal
-//! cone search", 2005, keep what is near likewise).
-//! Of a cluster that is asked again, only those points are that could touch by their own gaps and
-//! the ways they went themselves, which are often shorter.
+//! A rigid motion that moves the tool's origin by `v` and rotates the tool by `ω` moves a point
+//! `ρ` from the origin by at most `‖v‖ + ‖ω‖ρ`. So a cluster whose least gap was `g` cannot
+//! touch before the sum of these motions has grown by `g / L`, and is not evaluated until then
+//! (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3; for
+//! shells, Johnson, Willemsen and Cohen, "Six degree-of-freedom haptic rendering using
+//! spatialized normal cone search", 2005, also keep the near points). Within such a cluster,
+//! only those points are evaluated that could touch by their own gaps and their own motions,
+//! which are often shorter.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -24,32 +23,33 @@ use super::sweep::March;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
-/// When a point was looked at.
+/// When a point was evaluated.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
-    /// At which pose.
+    /// The number of the pose.
     stamp: u64,
-    /// The reading of its cluster's clock before which it touches nothing.
+    /// The reading of the cluster's clock before which the point cannot touch.
     free_until: f64,
 }
 
 impl Mark {
     const NONE: Self = Self { stamp: 0, free_until: f64::NEG_INFINITY };
 
-    /// `true` if it was looked at since the bodies are where they are.
+    /// `true` if the point was evaluated since the bodies last changed.
     fn is_known(&self) -> bool {
         self.stamp > 0
     }
 }
 
-/// What is known of a cluster: until when none of its points touches anything.
+/// The validity of a cluster's evaluations: until when none of its points can touch.
 #[derive(Clone, Copy, Debug)]
 struct Look {
-    /// At which pose it was looked at.
+    /// The number of the pose at which the cluster was evaluated.
     stamp: u64,
-    /// Of all its points.
+    /// The clock reading before which none of its points can touch.
     free_until: f64,
-    /// Of those that were not looked at then, since they were too far away.
+    /// The same for the points that were not evaluated at that pose because they were too far
+    /// away.
     rest_until: f64,
 }
 
@@ -57,25 +57,42 @@ impl Look {
     const NONE: Self =
         Self { stamp: 0, free_until: f64::NEG_INFINITY, rest_until: f64::NEG_INFINITY };
 
-    /// Until when what was not looked at where the tool is touches nothing.
+    /// The clock reading before which no point can touch that was not evaluated at the present
+    /// pose.
     fn unseen_until(&self, stamp: u64) -> f64 {
         if self.stamp == stamp { self.rest_until } else { self.free_until }
     }
 }
 
-/// A cluster to look at now.
+/// The shell that moves, and the bodies near it.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'a, const D: usize> {
+    pub(super) shell: &'a Shell<D>,
+    pub(super) nearby: &'a Nearby<'a, D>,
+}
+
+/// A motion of the tool.
+#[derive(Clone, Copy)]
+pub(super) struct Path<'a, const D: usize> {
+    /// The pose at the start.
+    pub(super) pose: &'a Pose<D>,
+    /// The motion from there.
+    pub(super) twist: &'a Twist<D>,
+}
+
+/// A cluster to evaluate now.
 #[derive(Clone, Copy, Debug)]
 struct Due {
     cluster: u32,
-    /// How many points are near once those of this cluster are.
+    /// The end of this cluster's points in the list of near points.
     end: usize,
-    /// Until when its points touch nothing that were looked at here before.
+    /// The clock reading before which the points evaluated earlier at this pose cannot touch.
     seen_until: f64,
-    /// And those that are not looked at.
+    /// The same for the points that are not evaluated.
     rest_until: f64,
 }
 
-/// How far the tool went and turned so far; grows only.
+/// The total translation and rotation of the tool so far, which only grow.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clock {
     way: f64,
@@ -83,35 +100,35 @@ struct Clock {
 }
 
 impl Clock {
-    /// What a motion adds.
+    /// The translation and rotation of one motion.
     fn of<const D: usize>(twist: &Twist<D>) -> Self {
         Self { way: twist.linear.norm(), turn: twist.angular.norm() }
     }
 
-    /// How far a point `arm` from the origin may have gone.
+    /// The largest total motion of a point at distance `arm` from the origin.
     fn at(&self, arm: f64) -> f64 {
         self.way + self.turn * arm
     }
 }
 
-/// What is known of a shell.
+/// The evaluations of a shell.
 #[derive(Clone, Debug)]
 pub(super) struct Scan<const D: usize> {
     points: Vec<Seen<D>>,
     marks: Vec<Mark>,
     looks: Vec<Look>,
     clock: Clock,
-    /// Of the present pose.
+    /// The number of the present pose.
     stamp: u64,
-    /// Clusters to look at now.
+    /// Clusters to evaluate now.
     due: Room<Due>,
-    /// The points that were looked at where the tool is.
+    /// The points that were evaluated at the present pose.
     near: Room<u32>,
-    /// Levels that are still looked at in this tick.
+    /// Levels of the shell that are evaluated in this tick.
     levels: usize,
     budget: u32,
     evaluations: u32,
-    /// Points that are followed on their way.
+    /// Points whose motion is swept.
     pub(super) marches: Room<March>,
     pub(super) batch: Box<Batch<D>>,
 }
@@ -136,19 +153,19 @@ impl<const D: usize> Scan<D> {
         }
     }
 
-    /// A new tick: all levels, and a budget.
+    /// Begins a tick with all levels and a budget.
     pub(super) fn begin(&mut self, shell: &Shell<D>, budget: u32) {
         (self.levels, self.budget, self.evaluations) = (shell.levels.len(), budget, 0);
     }
 
-    /// The bodies are other ones, or elsewhere: nothing is known any more.
+    /// Discards all evaluations, because the bodies changed.
     pub(super) fn forget(&mut self) {
         self.looks.fill(Look::NONE);
         self.marks.fill(Mark::NONE);
         self.leave();
     }
 
-    /// The tool is elsewhere.
+    /// Records a motion of the tool.
     pub(super) fn moved(&mut self, twist: &Twist<D>) {
         let motion = Clock::of(twist);
         self.clock.way += motion.way;
@@ -156,18 +173,18 @@ impl<const D: usize> Scan<D> {
         self.leave();
     }
 
-    /// Nothing was looked at where the tool is now.
+    /// Begins a new pose, at which no point is evaluated yet.
     fn leave(&mut self) {
         self.stamp += 1;
         self.near.clear();
     }
 
-    /// Evaluations in this tick.
+    /// The number of evaluations in this tick.
     pub(super) fn evaluations(&self) -> u32 {
         self.evaluations
     }
 
-    /// How many levels are looked at in this tick.
+    /// The number of levels that are evaluated in this tick.
     pub(super) fn levels(&self) -> usize {
         self.levels
     }
@@ -182,24 +199,25 @@ impl<const D: usize> Scan<D> {
         self.evaluations += evaluations;
     }
 
-    /// What is known of a point.
+    /// The last evaluation of a point.
     pub(super) fn point(&self, number: u32) -> Option<&Seen<D>> {
         self.points.get(number as usize)
     }
 
-    /// Looks at all points that the tool at `pose` could touch with in a motion like `twist`
-    /// that moves no point by more than `horizon` [m]; at those of fewer levels if there are
-    /// more than `share` of what the budget has left allow. `false` if it does not allow the
-    /// first level.
+    /// Evaluates all points that could touch a body if the tool makes a motion like `path`, limited to `horizon` [m] for every point. If these points need more than
+    /// `share` of the remaining budget, fewer levels are evaluated; `false` if the budget does
+    /// not suffice for the first level.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn look(
         &mut self,
-        shell: &Shell<D>,
-        nearby: &Nearby<'_, D>,
-        pose: &Pose<D>,
-        (twist, horizon, share): (&Twist<D>, f64, f64),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
+        horizon: f64,
+        share: f64,
     ) -> bool {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
         self.due.clear();
         let (left, begin, stamp) = (f64::from(self.left()), self.near.len(), self.stamp);
         let mut is_enough = true;
@@ -222,7 +240,7 @@ impl<const D: usize> Scan<D> {
                     seen_until = least(seen_until, mark.free_until);
                     continue;
                 }
-                // Written so that NaN is looked at, here and below.
+                // Written so that NaN is evaluated, here and below.
                 let is_free = |until_then: f64| until_then > until;
                 if !is_free(mark.free_until) && mark.is_known() {
                     let i = number as usize;
@@ -253,7 +271,7 @@ impl<const D: usize> Scan<D> {
         is_enough
     }
 
-    /// Looks at the points near from the place `begin` on, of the clusters that are due.
+    /// Evaluates the near points from index `begin` on, of the clusters that are due.
     fn evaluate(
         &mut self,
         shell: &Shell<D>,
@@ -297,17 +315,18 @@ impl<const D: usize> Scan<D> {
         }
     }
 
-    /// The points that were looked at where the tool is, with their numbers.
+    /// The points that were evaluated at the present pose, with their numbers.
     pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
         self.near.iter().filter_map(|i| Some((*i, self.points.get(*i as usize)?)))
     }
 
-    /// The least gap of what was looked at where the tool is [m].
+    /// The least gap of the points evaluated at the present pose [m].
     pub(super) fn least_gap(&self) -> f64 {
         self.seen().fold(f64::INFINITY, |gap, (_, point)| least(gap, point.gap))
     }
 
-    /// The part of a motion that those points allow which were not looked at here.
+    /// The part of a motion in which no point can touch that was not evaluated at the present
+    /// pose.
     pub(super) fn free_part(&self, shell: &Shell<D>, twist: &Twist<D>) -> f64 {
         let (mut part, motion) = (1.0_f64, Clock::of(twist));
         for (cluster, look) in shell.clusters.iter().zip(&self.looks) {
@@ -315,7 +334,7 @@ impl<const D: usize> Scan<D> {
                 break;
             }
             let until = look.unseen_until(self.stamp);
-            // Written so that NaN allows nothing.
+            // Written so that NaN allows no motion.
             let remaining = (until - self.clock.at(cluster.arm)).max(0.0);
             let way = motion.at(cluster.arm);
             if way > remaining {
@@ -325,7 +344,7 @@ impl<const D: usize> Scan<D> {
         part
     }
 
-    /// How many points are known to touch nothing they should not, where the tool is.
+    /// The number of points that are proven outside at the present pose.
     pub(super) fn known(&self, shell: &Shell<D>) -> u32 {
         let known = shell.clusters.iter().zip(&self.looks).filter(|(cluster, look)| {
             look.stamp == self.stamp || look.free_until >= self.clock.at(cluster.arm)
@@ -334,7 +353,7 @@ impl<const D: usize> Scan<D> {
     }
 }
 
-/// The lesser of two; NaN if one is.
+/// The lesser of two numbers; NaN if either is.
 #[inline]
 fn least(a: f64, b: f64) -> f64 {
     if a.is_nan() || b >= a { a } else { b }
@@ -351,7 +370,8 @@ impl<const D: usize> Shell<D> {
 mod tests {
     use super::*;
 
-    /// Once, a value after NaN hid it, and a tool was outside of a field that said nothing.
+    /// A number after NaN must not hide it: a tool would count as outside although the field
+    /// gave no value.
     #[test]
     fn a_gap_that_is_no_number_stays_the_least() {
         let gaps = [1.0, f64::NAN, 2.0];

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where a tool comes to rest: as close to the device as the bodies let it.
+//! The search for the rest pose of a tool: the free pose closest to the device's pose.
 //!
-//! The *closeness* of two poses is the energy of the spring between them, `‖v‖² + ℓ²‖ω‖²` with
-//! the length `ℓ` whose square is angular over linear stiffness. Each turn looks at the points
-//! that could touch, replaces the bodies there by their tangent planes, and goes to the closest
-//! pose that all planes allow: the quasi-statics of Ortega, Redon and Coquillart, "A six
-//! degree-of-freedom god-object method for haptic display of rigid bodies with surface
-//! properties" (2007), with positions for accelerations, until it stays. On the way no point may
-//! dip deeper than a skin, which evaluations prove as for a [`Proxy`](crate::Proxy); at rest
-//! none may be inside.
+//! The distance of two poses is the energy of the spring between them, `‖v‖² + ℓ²‖ω‖²`, where
+//! `ℓ²` is angular over linear stiffness. Each iteration evaluates the points that could touch,
+//! replaces the bodies there by their tangent planes, and moves to the closest pose that all
+//! planes allow, until the pose no longer changes: the quasi-statics of Ortega, Redon and
+//! Coquillart, "A six degree-of-freedom god-object method for haptic display of rigid bodies
+//! with surface properties" (2007), with positions instead of accelerations. During a motion no
+//! point may dip deeper than a skin, which evaluations prove as for a [`Proxy`](crate::Proxy);
+//! at rest no point may be inside.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -20,58 +20,61 @@ use super::batch::Seen;
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::friction::{Cone, Hold, MOST_AROUND};
 use super::room::Room;
-use super::scan::Scan;
-use super::shell::Shell;
+use super::scan::{Path, Scan, Surroundings};
 use super::twist::Twist;
 use crate::nearby::Nearby;
 use palpate_safety::{cross, in_space};
 
-/// Turns of a tick. Sliding takes three or four; the rest is for strikes and creases.
-const MOST_TURNS: usize = 6;
+/// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
+/// creases.
+const MOST_ITERATIONS: usize = 6;
 
-/// In these last turns, a tool that is not outside goes straight out instead of on: where it
-/// turns much, each turn ends a little inside.
-const LAST_TURNS: usize = 3;
+/// In these last iterations, a tool that is not outside moves straight out instead of on: with
+/// large rotations, each iteration ends a little inside.
+const LAST_ITERATIONS: usize = 3;
 
-/// What the first look may take of the budget, and each further one of what is left.
+/// The part of the budget that the first evaluation of the shell may use; later ones may use
+/// the same part of the remainder.
 const FIRST_SHARE: f64 = 0.25;
 const SHARE: f64 = 0.5;
 
-/// After a turn that was cut short by its horizon, the next looks this many times as far.
+/// After an iteration that its horizon limited, the next horizon is this many times as far.
 const FARTHER: f64 = 4.0;
 
-/// After any other turn, the next looks at most this many times as far as that one would have
-/// gone: motions get shorter, and where one grows, it is cut short and looks farther. Less
-/// would cut short more often, more looks at what nothing comes to.
+/// After any other iteration, the next horizon is at most this multiple of the last desired
+/// motion, because motions get shorter; one that grows is limited and evaluated farther. A
+/// smaller factor would limit more often, a larger one would evaluate points that nothing
+/// reaches.
 const NEXT: f64 = 1.5;
 
-/// Constraints are satisfied up to this part of the tolerance.
+/// The accuracy of constraints, as a part of the tolerance.
 const SLACK: f64 = 1e-3;
 
-/// Below this part of the Lipschitz constant a gradient says nothing about the surface.
+/// A gradient shorter than this part of the Lipschitz constant says nothing about the surface.
 const LEAST_SLOPE: f64 = 0.1;
 
-/// The most that one turn turns the tool among contacts [rad]: their planes turn with it.
+/// The largest rotation of one iteration in contact [rad]: the tangent planes change with the
+/// rotation.
 const MOST_ANGLE: f64 = 0.3;
 
-/// What a tool lives with in a tick.
+/// Lengths of a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lengths {
-    /// How long one radian is [m]: ℓ.
+    /// The length that a radian counts as, ℓ [m].
     pub(super) unit: f64,
-    /// How deep a point may rest [m].
+    /// The largest depth of a point at rest [m].
     pub(super) tolerance: f64,
-    /// The tool rests where the next motion is less [m].
+    /// The tool rests when its next motion is shorter than this [m].
     pub(super) still: f64,
-    /// How deep a point may dip on its way [m].
+    /// The largest depth of a point during a motion [m].
     pub(super) skin: f64,
-    /// How far points are likely to move in this tick [m]: what is farther from the bodies is
-    /// looked at only if they do.
+    /// The expected motion of points in this tick [m]: points farther from the bodies are
+    /// evaluated only if the motion is longer.
     pub(super) horizon: f64,
 }
 
 impl Lengths {
-    /// How much a constraint may be violated by [m].
+    /// The largest violation of a constraint [m].
     pub(super) fn slack(&self) -> f64 {
         SLACK * self.tolerance
     }
@@ -87,21 +90,21 @@ pub(super) struct Push<const D: usize> {
     /// The distance from the ball to the body, to first order [m].
     pub(super) gap: f64,
     pub(super) body: u32,
-    /// Its force over the stiffness [m].
+    /// The push: force over stiffness [m].
     pub(super) push: f64,
 }
 
-/// Where a tool rests.
+/// A rest pose of a tool.
 #[derive(Clone, Debug)]
 pub(super) struct Rest<const D: usize> {
     pub(super) pose: Pose<D>,
-    /// What pushes it there.
+    /// The points that push the tool there.
     pub(super) pushes: Room<Push<D>>,
-    /// Points known to be outside.
+    /// The number of points proven outside.
     pub(super) known: u32,
-    /// `true` if every point that was looked at is outside.
+    /// `true` if every evaluated point is outside.
     pub(super) is_outside: bool,
-    /// How far from the goal, squared [m²].
+    /// The squared distance from the goal [m²].
     energy: f64,
 }
 
@@ -117,17 +120,36 @@ impl<const D: usize> Rest<D> {
     }
 }
 
-/// Room for a tick.
+/// The ends of a motion.
+#[derive(Clone, Copy)]
+pub(super) struct Ends<const D: usize> {
+    /// The pose from which the tool starts.
+    pub(super) start: Pose<D>,
+    /// The pose towards which the tool moves.
+    pub(super) goal: Pose<D>,
+}
+
+/// A free pose that may become the rest pose.
+#[derive(Clone, Copy)]
+struct Candidate<'a, const D: usize> {
+    pose: &'a Pose<D>,
+    /// The squared distance from the goal [m²].
+    energy: f64,
+    /// The number of points proven outside.
+    known: u32,
+}
+
+/// The search, with memory for a tick.
 #[derive(Clone, Debug)]
 pub(super) struct Settler<const D: usize> {
     pub(super) rows: Room<Row>,
-    /// Of which point each of the first rows is; those after them are of cones of friction.
+    /// The points of the first rows; the later rows belong to friction cones.
     numbers: Room<u32>,
-    /// How many rows there are without those of friction.
+    /// The number of rows before those of friction.
     pub(super) plain: usize,
-    /// Points that pushed in the tick before.
+    /// Points that pushed in the last tick.
     pub(super) held: Room<u32>,
-    /// Contacts with friction.
+    /// The friction cones of contacts.
     pub(super) cones: Room<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
@@ -147,33 +169,36 @@ impl<const D: usize> Settler<D> {
         }
     }
 
-    /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) says where it came to.
+    /// Moves the tool from `start` towards `goal`; [`rest`](Self::rest) then holds the rest
+    /// pose.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_TURNS`] turns,
-    /// and the evaluations that `scan` has left.
+    /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_ITERATIONS`]
+    /// iterations, and the evaluations that `scan` has left.
     pub(super) fn settle(
         &mut self,
-        (shell, scan, nearby): (&Shell<D>, &mut Scan<D>, &Nearby<'_, D>),
-        (start, goal): (Pose<D>, Pose<D>),
-        lengths: Lengths,
+        scan: &mut Scan<D>,
+        surroundings: Surroundings<'_, D>,
+        ends: Ends<D>,
+        mut lengths: Lengths,
     ) {
-        let mut horizon = lengths.horizon;
-        let (mut pose, mut goal) = (start, goal);
+        let Surroundings { shell, nearby } = surroundings;
+        let Ends { start: mut pose, mut goal } = ends;
         self.held.clear();
         self.held.extend(self.rest.pushes.iter().map(|push| push.point));
         self.rest.pushes.clear();
         self.rest.energy = f64::INFINITY;
         self.rest.is_outside = false;
-        for turn in 0..MOST_TURNS {
+        for iteration in 0..MOST_ITERATIONS {
             let mut wish = Twist::between(&pose, &goal);
-            let share = if turn == 0 { FIRST_SHARE } else { SHARE };
-            if !scan.look(shell, nearby, &pose, (&wish, horizon, share)) {
+            let share = if iteration == 0 { FIRST_SHARE } else { SHARE };
+            let path = Path { pose: &pose, twist: &wish };
+            if !scan.look(surroundings, path, lengths.horizon, share) {
                 break;
             }
             let is_outside = scan.least_gap() >= -lengths.tolerance;
-            self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
-            if turn == 0 && is_outside {
-                match self.hold_back((scan, nearby), (&pose, &wish), lengths) {
+            self.make_rows(scan, nearby, path, lengths);
+            if iteration == 0 && is_outside {
+                match self.hold_back(scan, nearby, path, lengths) {
                     Hold::None => self.is_slipping = false,
                     Hold::Stick => {
                         self.is_slipping = false;
@@ -185,53 +210,52 @@ impl<const D: usize> Settler<D> {
                         self.is_slipping = true;
                         goal = held_back;
                         wish = Twist::between(&pose, &goal);
-                        if !scan.look(shell, nearby, &pose, (&wish, horizon, SHARE)) {
+                        let path = Path { pose: &pose, twist: &wish };
+                        if !scan.look(surroundings, path, lengths.horizon, SHARE) {
                             break;
                         }
-                        self.make_rows((scan, nearby), (&pose, &wish, horizon, lengths));
+                        self.make_rows(scan, nearby, path, lengths);
                     }
                 }
                 self.rows.truncate(self.plain);
             }
-            let goes_out = !is_outside && turn + LAST_TURNS >= MOST_TURNS;
+            let goes_out = !is_outside && iteration + LAST_ITERATIONS >= MOST_ITERATIONS;
             let target = if goes_out { [0.0; FREEDOMS] } else { wish.stacked(lengths.unit) };
             let found = closest(target, &self.rows, lengths.slack());
             if is_outside {
-                self.keep(scan, (&pose, &wish, lengths.unit), &found, scan.known(shell));
+                let (energy, known) = (wish.squared(lengths.unit), scan.known(shell));
+                self.keep(scan, &found, Candidate { pose: &pose, energy, known });
             }
             let is_free = !goes_out && found.held().next().is_none();
             let twist =
                 if is_free { wish } else { Twist::unstacked(found.motion, lengths.unit) };
             // Written so that NaN rests.
             let goes_on = twist.way(shell.reach) > if is_free { 0.0 } else { lengths.still };
-            if !goes_on || turn + 1 == MOST_TURNS {
+            if !goes_on || iteration + 1 == MOST_ITERATIONS {
                 break;
             }
-            let is_all = horizon >= wish.way(shell.reach);
+            let is_all = lengths.horizon >= wish.way(shell.reach);
             let most = if is_free { 1.0 } else { twist.part_up_to(MOST_ANGLE) };
-            let way = (&pose, &twist);
-            let part = scan.sweep((shell, nearby), way, lengths.skin, most);
+            let path = Path { pose: &pose, twist: &twist };
+            let part = scan.sweep(surroundings, path, lengths.skin, most);
             scan.moved(&twist.part(part));
             if is_free && part >= 1.0 {
                 pose = goal;
                 if is_all && self.rows.is_empty() {
-                    // Nothing that could touch: proven free, without another look.
-                    self.keep(
-                        scan,
-                        (&pose, &Twist::between(&pose, &goal), 1.0),
-                        &found,
-                        scan.known(shell),
-                    );
+                    // No point could touch: the goal is proven free without further evaluation.
+                    let energy = Twist::between(&pose, &goal).squared(1.0);
+                    let known = scan.known(shell);
+                    self.keep(scan, &found, Candidate { pose: &pose, energy, known });
                     break;
                 }
             } else {
                 pose = twist.part(part).moved(&pose);
             }
             let way = twist.way(shell.reach);
-            if part < 1.0 && part * way > 0.5 * horizon {
-                horizon *= FARTHER;
+            if part < 1.0 && part * way > 0.5 * lengths.horizon {
+                lengths.horizon *= FARTHER;
             } else {
-                horizon = horizon.min((NEXT * way).max(lengths.still));
+                lengths.horizon = lengths.horizon.min((NEXT * way).max(lengths.still));
             }
         }
         if self.rest.is_outside {
@@ -244,19 +268,22 @@ impl<const D: usize> Settler<D> {
         }
     }
 
-    /// The tangent planes of all points that the wish could bring to the surface.
+    /// The tangent planes of all points that the desired motion could bring to the surface.
     fn make_rows(
         &mut self,
-        (scan, nearby): (&Scan<D>, &Nearby<'_, D>),
-        (pose, wish, horizon, lengths): (&Pose<D>, &Twist<D>, f64, Lengths),
+        scan: &Scan<D>,
+        nearby: &Nearby<'_, D>,
+        path: Path<'_, D>,
+        lengths: Lengths,
     ) {
+        let Path { pose, twist: wish } = path;
         self.rows.clear();
         self.numbers.clear();
         let lipschitz = nearby.lipschitz();
         let (linear, angular) = (wish.linear.norm(), wish.angular.norm());
         for (number, seen) in scan.seen() {
             let arm = seen.centre - pose.translation;
-            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(horizon) {
+            if seen.gap > lipschitz * (linear + angular * arm.norm()).min(lengths.horizon) {
                 continue;
             }
             let slope = seen.gradient.norm();
@@ -271,15 +298,9 @@ impl<const D: usize> Settler<D> {
         self.plain = self.rows.len();
     }
 
-    /// Keeps a pose that is outside if it is the closest so far.
-    fn keep(
-        &mut self,
-        scan: &Scan<D>,
-        (pose, wish, unit): (&Pose<D>, &Twist<D>, f64),
-        found: &Closest,
-        known: u32,
-    ) {
-        let energy: f64 = wish.stacked(unit).iter().map(|x| x * x).sum();
+    /// Keeps a free pose if it is the closest so far.
+    fn keep(&mut self, scan: &Scan<D>, found: &Closest, candidate: Candidate<'_, D>) {
+        let Candidate { pose, energy, known } = candidate;
         if energy.is_nan() || energy >= self.rest.energy {
             return;
         }
@@ -303,7 +324,7 @@ impl<const D: usize> Settler<D> {
     }
 }
 
-/// How a motion of the tool moves a point `arm` from its origin along `normal`, as a row.
+/// The row that gives the motion along `normal` of a point at `arm` from the tool's origin.
 pub(super) fn stacked_along<const D: usize>(
     arm: Point<D>,
     normal: Vector<f64, D>,

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a tool touches with: balls all over it, in levels of detail.
+//! The shell of a tool: balls all over its surface, in levels of detail.
 //!
 //! McNeely, Puterbaugh and Troy, "Six degree-of-freedom haptic rendering using voxel sampling"
-//! (1999), touch with a shell of points; Barbič and James, "Six-DoF haptic rendering of contact
-//! between geometrically complex reduced deformable models" (2008), nest shells in one another,
-//! so that a tick that runs out of time has seen a coarser one.
+//! (1999), render a tool as a shell of points. Barbič and James, "Six-DoF haptic rendering of
+//! contact between geometrically complex reduced deformable models" (2008), nest shells of
+//! different density, so that a tick that runs out of time has at least evaluated a coarse one.
 
 use std::ops::Range;
 
@@ -20,39 +20,40 @@ use palpate_safety::{NumberError, not_negative, positive};
 /// The most points of a shell.
 pub const MOST_POINTS: usize = 8192;
 
-/// Points of the first level; each further one has [`FINER`] times as many as those before.
+/// Points of the first level; each further level has [`FINER`] times as many as all before.
 pub(super) const FIRST_LEVEL: usize = 16;
 const FINER: usize = 4;
 
-/// Points of a cluster at most. Fewer are skipped more precisely, more with less work.
+/// The most points of a cluster. Small clusters are skipped more precisely, large ones with
+/// less work.
 const CLUSTER: usize = 16;
 
 /// One of the balls of a shell, in the tool's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShellPoint<const D: usize> {
-    /// Its centre [m].
+    /// The centre [m].
     pub centre: Point<D>,
-    /// Its radius [m].
+    /// The radius [m].
     pub radius: f64,
 }
 
-/// Points of a level that are close to one another.
+/// Neighbouring points of a level.
 #[derive(Clone, Debug)]
 pub(super) struct Cluster {
-    /// Which, in [`Shell::order`].
+    /// The range of points in [`Shell::order`].
     pub(super) members: Range<usize>,
-    /// Of which level.
+    /// The level.
     pub(super) level: usize,
     /// The farthest centre from the tool's origin [m].
     pub(super) arm: f64,
 }
 
-/// The surface of a tool as balls, so ordered that the first few are a coarser shell.
+/// The surface of a tool as balls, ordered so that every prefix is a coarser shell.
 ///
-/// Each point is farthest from all before it. The shell's
-/// [`resolution`](Self::resolution) says how far the tool's surface may be from its balls: a
-/// field of Lipschitz constant `L` that is at least `r` at the centre of each ball of radius `r`
-/// is at least `(1 − L) r − L·resolution` at all points of the tool.
+/// Each point is the one farthest from all before it. The [`resolution`](Self::resolution) is
+/// the largest distance of the tool's surface from the balls: if a field of Lipschitz constant
+/// `L` is at least `r` at the centre of each ball of radius `r`, it is at least `(1 − L) r −
+/// L·resolution` at all points of the tool.
 ///
 /// # Examples
 ///
@@ -75,12 +76,12 @@ pub struct Shell<const D: usize> {
     points: Vec<ShellPoint<D>>,
     /// The resolution of each prefix [m].
     resolutions: Vec<f64>,
-    /// How many points each level ends at.
+    /// The number of points up to the end of each level.
     pub(super) levels: Vec<usize>,
     pub(super) clusters: Vec<Cluster>,
     /// Numbers of points, cluster by cluster.
     pub(super) order: Vec<u32>,
-    /// The farthest that a ball reaches from the tool's origin [m].
+    /// The largest distance of a ball's far side from the tool's origin [m].
     pub(super) reach: f64,
 }
 
@@ -101,10 +102,10 @@ impl<const D: usize> Shell<D> {
         Self::new(vec![ShellPoint { centre: Vector::ZERO, radius }], vec![0.0])
     }
 
-    /// All points within `radius` of the segment between two points [m], as `count` balls along
-    /// it.
+    /// A capsule, all points within `radius` of the segment between two points [m], as `count`
+    /// balls.
     ///
-    /// Where the balls are `s` apart, the surface is `√(r² + s²/4) − r` from them at most.
+    /// With a spacing `s`, the surface is at most `√(r² + s²/4) − r` away from the balls.
     ///
     /// # Errors
     ///
@@ -138,8 +139,8 @@ impl<const D: usize> Shell<D> {
         Self::new(points, covers.into_iter().map(bulge).collect())
     }
 
-    /// The elements of a mesh, as `count` balls of `radius` about points of it [m]; the tool is
-    /// that much thicker than the mesh. Zero makes them points.
+    /// The elements of a mesh, as `count` balls of `radius` [m] about points of the mesh; the
+    /// tool is thicker than the mesh by the radius. A radius of zero makes points.
     ///
     /// # Errors
     ///
@@ -155,16 +156,16 @@ impl<const D: usize> Shell<D> {
         Self::sampled(&of_mesh(mesh, count), count, radius)
     }
 
-    /// The surface of a field, as `count` balls of `radius` about points of it [m]; the tool is
-    /// that much thicker than the field. Zero makes them points.
+    /// The surface of a field, as `count` balls of `radius` [m] about points of the surface;
+    /// the tool is thicker than the shape by the radius. A radius of zero makes points.
     ///
-    /// The resolution is proven for fields that are exact.
+    /// The resolution is proven for exact fields.
     ///
     /// # Errors
     ///
     /// [`HapticsError::Number`] if the radius is negative or not finite, or the count not in 1
-    /// to 8192; [`HapticsError::NothingToTouchWith`] if the field has no bounds or no surface in
-    /// them.
+    /// to 8192; [`HapticsError::NothingToTouchWith`] if the field is unbounded or no surface
+    /// was found.
     pub fn from_field(
         shape: &Shape<D>,
         count: usize,
@@ -178,7 +179,7 @@ impl<const D: usize> Shell<D> {
 
     fn sampled(samples: &Samples<D>, count: usize, radius: f64) -> Result<Self, HapticsError> {
         let (points, covers) = chosen(samples, count, radius);
-        // The balls reach as far beyond the surface as they are large.
+        // The balls reach beyond the sampled surface by their radius.
         Self::new(points, covers.into_iter().map(|cover| (cover - radius).max(0.0)).collect())
     }
 
@@ -215,21 +216,21 @@ impl<const D: usize> Shell<D> {
         Ok(Self { points, resolutions, levels, clusters, order, reach })
     }
 
-    /// Its points, each the farthest from those before.
+    /// The points, each the farthest from those before.
     #[must_use]
     pub fn points(&self) -> &[ShellPoint<D>] {
         &self.points
     }
 
-    /// How far the surface of the tool may be from the first `count` balls [m]; infinite if
-    /// that is none.
+    /// The largest distance of the tool's surface from the first `count` balls [m]; infinite
+    /// for zero balls.
     #[must_use]
     pub fn resolution(&self, count: usize) -> f64 {
         let last = count.min(self.resolutions.len()).checked_sub(1);
         last.and_then(|last| self.resolutions.get(last)).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The farthest that the tool reaches from its origin [m].
+    /// The largest distance of a point of the tool from its origin [m].
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.reach
@@ -245,7 +246,7 @@ fn check_count(count: usize, least: usize) -> Result<(), HapticsError> {
     Err(HapticsError::Number(NumberError { parameter, rule, value: count as f64, unit }))
 }
 
-/// The farthest points first, and how far the surface is from them and those before [m].
+/// Points in farthest-first order, and the distance of the surface from each prefix [m].
 fn chosen<const D: usize>(
     samples: &Samples<D>,
     count: usize,
@@ -255,7 +256,7 @@ fn chosen<const D: usize>(
     order.map(|(centre, away)| (ShellPoint { centre, radius }, away + samples.spacing)).unzip()
 }
 
-/// Halves points along their widest axis until they are few enough for a cluster.
+/// Splits points along their widest axis until they fit a cluster.
 fn split<const D: usize>(
     points: &[ShellPoint<D>],
     numbers: &mut [u32],

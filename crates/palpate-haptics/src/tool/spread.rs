@@ -1,24 +1,24 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Points spread over surfaces: samples of meshes and fields, and the order in which the first
-//! few of them cover the whole best.
+//! Points spread over surfaces: samples of meshes and fields, ordered so that every prefix
+//! covers the whole surface.
 
 use palpate_field::{Aabb, Point, Shape, Vector};
 use palpate_mesh::Mesh;
 
-/// Samples to choose from, for each point that is chosen.
+/// Samples per chosen point.
 const CHOICE: f64 = 4.0;
 
-/// Parts of an element's edge at most.
+/// The most parts of an element's edge.
 const MOST_PARTS: f64 = 512.0;
 
-/// A sample is farther than another if it is by this factor: rounding decides no order, so
-/// tools of all sizes have the same points.
+/// A sample counts as farther only by this factor, so that rounding does not decide the order
+/// and tools of all sizes have the same points.
 const MORE: f64 = 1.0 + 1e-9;
 
-/// The farthest that a point of a triangle is from its corners, in longest edges: 1/√3, in an
-/// equilateral one.
+/// The largest distance of a point of a triangle from its nearest corner, in longest edges:
+/// 1/√3, in an equilateral triangle.
 const FROM_CORNERS: f64 = 0.577_350_27;
 
 /// Samples of a surface.
@@ -26,11 +26,11 @@ const FROM_CORNERS: f64 = 0.577_350_27;
 pub(super) struct Samples<const D: usize> {
     /// The samples [m].
     pub(super) points: Vec<Point<D>>,
-    /// No point of the surface is farther from all of them [m].
+    /// Every point of the surface is within this distance of a sample [m].
     pub(super) spacing: f64,
 }
 
-/// Samples of all elements of a mesh, their corners among them, enough to choose `count` from.
+/// Samples of all elements of a mesh, corners included, enough to choose `count` points.
 pub(super) fn of_mesh<const N: usize, const D: usize>(
     mesh: &Mesh<N, D>,
     count: usize,
@@ -43,7 +43,7 @@ pub(super) fn of_mesh<const N: usize, const D: usize>(
     for corners in corners {
         let [first, others @ ..] = corners.as_slice() else { continue };
         let length = longest_edge(&corners);
-        // Written so that an element without extent has its corners.
+        // Written so that a degenerate element still gives its corners.
         let parts = (length / edge).ceil().clamp(1.0, MOST_PARTS);
         longest = longest.max(length / parts);
         let steps = parts as u32;
@@ -68,7 +68,7 @@ pub(super) fn of_mesh<const N: usize, const D: usize>(
     Samples { points, spacing }
 }
 
-/// Length of a segment, area of a triangle.
+/// The length of a segment or the area of a triangle.
 fn extent<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 {
     match *corners.as_slice() {
         [a, b] => (b - a).norm(),
@@ -88,8 +88,8 @@ fn longest_edge<const N: usize, const D: usize>(corners: &[Point<D>; N]) -> f64 
 
 /// Samples of the surface of a field in a box: a lattice, projected.
 ///
-/// The spacing is that of a field that is exact: the nearest lattice point is within half a
-/// diagonal of a cell, and its projection no farther from it.
+/// The spacing holds for exact fields: the nearest lattice point is within half a cell's
+/// diagonal, and its projection is no farther from it.
 pub(super) fn of_field<const D: usize>(
     shape: &Shape<D>,
     bounds: &Aabb<D>,
@@ -123,12 +123,12 @@ pub(super) fn of_field<const D: usize>(
     Samples { points, spacing: diagonal }
 }
 
-/// Points in the order in which each is the farthest from all before, the first being the
-/// farthest from the middle; and for each how far the samples were from those before and are
-/// from those up to it [m]. At most `count`, and none twice.
+/// Points in farthest-first order: the first is the farthest from the middle, each other the
+/// farthest from all before. With each point, the largest distance of a sample from the points
+/// before it and from the points up to it [m]. At most `count` points, without repetition.
 ///
 /// Gonzalez, "Clustering to minimize the maximum intercluster distance" (1985): the first `k`
-/// cover the samples at most twice as coarsely as any `k` points can.
+/// points cover the samples within twice the smallest radius that any `k` points achieve.
 pub(super) fn farthest_first<const D: usize>(
     samples: &[Point<D>],
     count: usize,

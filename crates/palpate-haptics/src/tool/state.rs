@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What goes into a tick of a tool, and what comes out of it.
+//! The input and the result of a tool's tick.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -13,36 +13,36 @@ use super::shell::FIRST_LEVEL;
 use crate::error::HapticsError;
 use palpate_safety::{NumberError, not_negative, positive};
 
-/// How a tool hangs on the hand, and what a tick may cost.
+/// The requested virtual coupling of a tool, its limits, and the budget of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
     /// The coupling's stiffness [N/m].
     pub stiffness: f64,
-    /// The coupling's angular stiffness [N·m/rad]; `K ρ² / 2` with the tool's reach `ρ` if
-    /// none.
+    /// The coupling's angular stiffness [N·m/rad]; `None` means `K ρ² / 2` with the tool's
+    /// reach `ρ`.
     pub angular_stiffness: Option<f64>,
     /// The coupling's damping [N·s/m].
     pub damping: f64,
     /// The coupling's angular damping [N·m·s/rad].
     pub angular_damping: f64,
-    /// The largest force on the hand [N]; infinite for none.
+    /// The largest force on the hand [N]; infinite for no limit.
     pub max_force: f64,
-    /// The largest torque on the hand [N·m]; infinite for none.
+    /// The largest torque on the hand [N·m]; infinite for no limit.
     pub max_torque: f64,
-    /// The most evaluations of the bodies a tick; at least 32.
+    /// The most evaluations of the bodies in a tick; at least 32.
     pub budget: u32,
-    /// The time over which the force rises from nothing to all of it, where bodies covered the
-    /// tool [s].
+    /// The time over which the force rises from zero after bodies covered the tool [s].
     pub rise_time: f64,
 }
 
 impl ToolOptions {
-    /// The same with a damping of `ratio` on what the hand holds, of `mass` [kg] and moment of
-    /// inertia `inertia` [kg·m²]: `2 ζ √(K m)` and `2 ζ √(κ I)`. A ratio of 1 is critical.
+    /// These options with the damping ratio `ratio` (ζ) for a handle of `mass` [kg] and moment
+    /// of inertia `inertia` [kg·m²]: `2 ζ √(K m)` and `2 ζ √(κ I)`. A ratio of 1 is critical
+    /// damping.
     ///
-    /// Without an angular stiffness there is no angular damping.
+    /// Without an angular stiffness the angular damping is zero.
     ///
     /// ```
     /// use palpate_haptics::ToolOptions;
@@ -59,7 +59,7 @@ impl ToolOptions {
         Self { damping, angular_damping, ..self }
     }
 
-    /// Checks all but the stiffnesses.
+    /// Checks all options except the stiffnesses.
     pub(super) fn check(&self) -> Result<(), HapticsError> {
         positive("rate", self.rate, "Hz")?;
         positive("rise_time", self.rise_time, "s")?;
@@ -87,8 +87,8 @@ impl ToolOptions {
 }
 
 impl Default for ToolOptions {
-    /// 1 kHz; 500 N/m, and critical damping of 0.5 g on it, 1 N·s/m; 3.3 N and 0.2 N·m; 16 384
-    /// evaluations; 0.1 s.
+    /// 1 kHz; 500 N/m and 1 N·s/m, which damps 0.5 g critically; 3.3 N and 0.2 N·m; 16 384
+    /// evaluations; rise in 0.1 s.
     fn default() -> Self {
         Self {
             rate: 1000.0,
@@ -104,14 +104,14 @@ impl Default for ToolOptions {
     }
 }
 
-/// The device that holds a tool, as read in a tick. World coordinates.
+/// The state of the device that holds a tool, as read in a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolState<const D: usize> {
-    /// Where the device would have the tool: `world_from_tool`.
+    /// The goal of the tool, the device's pose: `world_from_tool`.
     pub pose: Pose<D>,
-    /// How fast its origin moves [m/s].
+    /// The velocity of the origin [m/s].
     pub velocity: Vector<f64, D>,
-    /// How fast it turns [rad/s]; in the plane about z alone.
+    /// The angular velocity [rad/s]; in the plane only z is used.
     pub angular_velocity: Vector<f64, 3>,
 }
 
@@ -122,7 +122,7 @@ impl<const D: usize> ToolState<D> {
         Self { pose, velocity: Vector::ZERO, angular_velocity: Vector::ZERO }
     }
 
-    /// `true` if all numbers can be computed with.
+    /// `true` if all numbers are finite and poses at most 1e15 m away.
     pub(super) fn is_usable(&self) -> bool {
         // Written so that NaN fails.
         self.pose.is_finite()
@@ -135,38 +135,38 @@ impl<const D: usize> ToolState<D> {
 /// A tool after a tick. World coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToolTouch<const D: usize> {
-    /// Where the device would have the tool.
+    /// The device's pose: the goal of the tool.
     pub device: Pose<D>,
-    /// Where the tool is; the device's pose itself in free space.
+    /// The tool's pose; equal to the device's pose in free space.
     pub pose: Pose<D>,
-    /// How fast the tool's origin moved in this tick [m/s].
+    /// The velocity of the tool's origin in this tick [m/s].
     pub velocity: Vector<f64, D>,
     /// The force on the hand [N], always finite.
     pub force: Vector<f64, D>,
-    /// The torque on the hand about the tool's origin [N·m], always finite; in the plane about
-    /// z alone.
+    /// The torque on the hand about the tool's origin [N·m], always finite; in the plane only z
+    /// is used.
     pub torque: Vector<f64, 3>,
     /// `true` if bodies keep the tool from the device's pose.
     pub contact: bool,
-    /// The body that pushes hardest, by its number; none without contact.
+    /// The index of the body that pushes hardest; `None` without contact.
     pub body: Option<u32>,
-    /// The unit normal of that body where it pushes, pointing out; zero without contact.
+    /// The outward unit normal of that body at the contact; zero without contact.
     pub normal: Vector<f64, D>,
     /// The contacts that push, at most six: from the tool (a) to a body (b).
     pub contacts: Vec<Contact<D>>,
-    /// `true` if the tool moves along the bodies against friction; `false` if friction holds it,
-    /// or there is none.
+    /// `true` if the tool slips; `false` if it sticks, or if there is no friction.
     pub is_slipping: bool,
-    /// `true` if the tool is in the bodies and did not get out in this tick: it touches
-    /// nothing.
+    /// `true` if the tool is inside bodies and did not get out in this tick; it then gives no
+    /// force.
     pub is_covered: bool,
-    /// Points of the shell.
+    /// The number of points of the shell.
     pub points: u32,
-    /// How many of them are known to be outside where the tool is: looked at in this tick, or
-    /// so far away in an earlier one that the tool has not come there since.
+    /// The number of points that are proven outside at the tool's pose: evaluated in this tick,
+    /// or so far away in an earlier tick that the tool cannot have reached the bodies since.
     pub points_known: u32,
-    /// How far the tool's surface may be from balls that are known to be outside [m]: where
-    /// fields have a Lipschitz constant of 1, nothing of the tool is deeper. See [`Shell`].
+    /// The largest distance of the tool's surface from shell balls that are proven outside [m].
+    /// With fields of Lipschitz constant 1, no part of the tool is deeper than this. See
+    /// [`Shell`].
     ///
     /// [`Shell`]: crate::Shell
     pub resolution: f64,
@@ -198,7 +198,7 @@ impl<const D: usize> ToolTouch<D> {
         }
     }
 
-    /// Nothing is felt, and nothing was looked at.
+    /// Resets the touch: no contact, no force, no evaluated points.
     pub(super) fn lose(&mut self) {
         (self.force, self.torque, self.velocity) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
         (self.contact, self.body, self.evaluations) = (false, None, 0);

@@ -1,69 +1,82 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How far a motion is proven free.
+//! Sweeping: the part of a motion that is proven free.
 //!
-//! A value `g` at a point proves that nothing within `(g + s) / L` of it is as deep as the skin
-//! `s`, before it and behind. Where that does not cover the way of a point, it is asked further
-//! on, and halfway where two answers leave a hole: conservative advancement (Mirtich 1996) from
-//! both sides, for all points at once. Xu and Barbič, "6-DoF haptic rendering using continuous
-//! collision detection between points and signed distance fields" (2017), follow points likewise.
+//! A value `g` at a point proves that no point within `(g + s) / L` of it is deeper than the
+//! skin `s`. If this does not cover the path of a point, the field is evaluated further along
+//! the path, and halfway between two evaluations that leave a gap: conservative advancement
+//! (Mirtich 1996) from both ends, for all points at once. Xu and Barbič, "6-DoF haptic
+//! rendering using continuous collision detection between points and signed distance fields"
+//! (2017), also sweep points.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_field::Pose;
+use super::scan::{Path, Scan, Surroundings};
 
-use super::scan::Scan;
-use super::shell::Shell;
-use super::twist::Twist;
-use crate::nearby::Nearby;
-
-/// A motion that values at its start prove for this part of it needs no evaluations on the way.
-/// Less ends turns early, and a turn costs more than the few points in its way.
+/// If the evaluations at the start prove this part of a motion, the motion stops there and no
+/// point is swept. A smaller part would end iterations early, and an iteration costs more than
+/// sweeping a few points.
 const WORTH_GOING: f64 = 0.75;
 
-/// Poses on a way at most.
+/// The most poses on a path.
 const MOST_STEPS: u32 = 64;
 
-/// On the way of a point, values prove that it does not dip deeper than this part of a skin.
+/// The depth that swept points may reach, as a part of a skin.
 const DIPS: f64 = 0.75;
 
-/// A way whose steps would be below this part of a skin is not free.
+/// A path whose steps fall below this part of a skin counts as blocked.
 const MET: f64 = 0.125;
 
-/// A point on its way.
+/// A point that is being swept.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct March {
     number: u32,
-    /// The length of its way [m].
+    /// The length of its path [m].
     way: f64,
-    /// The part of it that is proven.
+    /// The proven part of the path.
     covered: f64,
 }
 
+/// What ends a sweep.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// The part of the motion to prove.
+    whole: f64,
+    /// How deep points may dip [m].
+    dips: f64,
+    /// Shorter steps end the sweep [m].
+    least: f64,
+    /// The Lipschitz constant of the field.
+    lipschitz: f64,
+}
+
 impl<const D: usize> Scan<D> {
-    /// The part of a motion, `most` at most, on which no point dips deeper than the skin.
+    /// The part of a motion, at most `most`, in which no point dips deeper than the skin.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most 64 evaluations a point,
     /// and what the budget has left.
     pub(super) fn sweep(
         &mut self,
-        (shell, nearby): (&Shell<D>, &Nearby<'_, D>),
-        (pose, twist): (&Pose<D>, &Twist<D>),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
         skin: f64,
         most: f64,
     ) -> f64 {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         let whole = self.free_part(shell, twist).min(most);
         let (linear, angle) = (twist.linear.norm(), twist.angular.norm());
         let (mut proven, mut marches) = (whole, std::mem::take(&mut self.marches));
         marches.clear();
         for (number, seen) in self.seen() {
-            // Points that are deeper than a skin already are on their way out.
+            // Points that are already deeper than a skin are moving out.
             if seen.gap <= -skin {
                 continue;
             }
-            // To half a skin; from below, half of the way to a whole one.
+            // A point may go down to half a skin; from below that, half of the way to a whole
+            // skin.
             let room = (seen.gap + 0.5 * skin).max(0.5 * (seen.gap + skin)) / lipschitz;
             let way = linear + angle * (seen.centre - pose.translation).norm();
             if way * whole > room && marches.len() < marches.capacity() {
@@ -73,29 +86,31 @@ impl<const D: usize> Scan<D> {
             }
         }
         if proven < WORTH_GOING * whole {
-            let lengths = (DIPS * skin, MET * skin, lipschitz);
-            proven = self.follow((shell, nearby), (pose, twist, whole), &mut marches, lengths);
+            let limits = Limits { whole, dips: DIPS * skin, least: MET * skin, lipschitz };
+            proven = self.follow(surroundings, path, &mut marches, limits);
         }
         self.marches = marches;
         proven
     }
 
-    /// Follows points on their way until the `whole` part of it is proven; the part that is. They
-    /// may dip by the first of the lengths, and the second is too little to go on [m].
+    /// Sweeps points until `limits` end it, and returns the proven part of the motion.
     fn follow(
         &mut self,
-        (shell, nearby): (&Shell<D>, &Nearby<'_, D>),
-        (pose, twist, whole): (&Pose<D>, &Twist<D>, f64),
+        surroundings: Surroundings<'_, D>,
+        path: Path<'_, D>,
         marches: &mut [March],
-        (dips, least, lipschitz): (f64, f64, f64),
+        limits: Limits,
     ) -> f64 {
+        let Surroundings { shell, nearby } = surroundings;
+        let Path { pose, twist } = path;
+        let Limits { whole, dips, least, lipschitz } = limits;
         let proven = |marches: &[March]| {
             marches.iter().fold(whole, |least, march| least.min(march.covered))
         };
         let mut step = proven(marches);
         for _ in 0..MOST_STEPS {
             let covered = proven(marches);
-            // Written so that NaN ends.
+            // Written so that NaN ends the sweep.
             if covered.is_nan() || covered >= whole {
                 break;
             }

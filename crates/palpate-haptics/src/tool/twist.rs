@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Small rigid motions, and what leads from one pose to another.
+//! Rigid motions as displacement and rotation vector.
 //!
-//! Rotations are vectors along their axis, as long as their angle [rad]; in the plane along z.
+//! A rotation vector lies along the axis with the angle as length [rad]; in the plane along z.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -11,17 +11,17 @@ use palpate_field::{Pose, Vector};
 
 use palpate_safety::{cross, in_place, in_space, turn_between, turned};
 
-/// How a pose changes: its origin moves, then it turns about it. World axes.
+/// A change of a pose: the origin moves, then the pose rotates about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Twist<const D: usize> {
-    /// How far the origin goes [m].
+    /// The displacement of the origin [m].
     pub(super) linear: Vector<f64, D>,
-    /// How far it turns [rad]; in the plane about z alone.
+    /// The rotation vector [rad]; in the plane only z is used.
     pub(super) angular: Vector<f64, 3>,
 }
 
 impl<const D: usize> Twist<D> {
-    /// What leads from one pose to another.
+    /// The twist from one pose to another.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn between(from: &Pose<D>, to: &Pose<D>) -> Self {
@@ -37,13 +37,14 @@ impl<const D: usize> Twist<D> {
         Self { linear: self.linear * part, angular: self.angular * part }
     }
 
-    /// The part of the motion that turns by an angle [rad] at most.
+    /// The largest part, at most one, of the motion that rotates by at most the angle `most`
+    /// [rad].
     pub(super) fn part_up_to(&self, most: f64) -> f64 {
         let angle = self.angular.norm();
         if angle > most { most / angle } else { 1.0 }
     }
 
-    /// A pose after the motion.
+    /// The pose after the motion.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn moved(&self, pose: &Pose<D>) -> Pose<D> {
@@ -51,24 +52,29 @@ impl<const D: usize> Twist<D> {
         Pose::new(rotation, pose.translation + self.linear)
     }
 
-    /// How far a point `arm` from the origin may go [m].
+    /// The largest displacement of a point at distance `arm` from the origin [m].
     #[inline]
     pub(super) fn way(&self, arm: f64) -> f64 {
         self.linear.norm() + self.angular.norm() * arm
     }
 
-    /// How a point `arm` from the origin goes, to first order [m].
+    /// The displacement of a point at `arm` from the origin, to first order [m].
     pub(super) fn of_point(&self, arm: Vector<f64, D>) -> Vector<f64, D> {
         self.linear + in_place(cross(self.angular, in_space(arm)))
     }
 
-    /// As one vector, with angles as lengths: one radian is `unit` [m].
+    /// The motion as one vector, in which a radian counts as the length `unit` [m].
     pub(super) fn stacked(&self, unit: f64) -> [f64; 6] {
         let ([x, y, z], [a, b, c]) = (in_space(self.linear).0, (self.angular * unit).0);
         [x, y, z, a, b, c]
     }
 
-    /// Undoes [`stacked`](Self::stacked).
+    /// The squared length of the motion, in which a radian counts as the length `unit` [m²].
+    pub(super) fn squared(&self, unit: f64) -> f64 {
+        self.stacked(unit).iter().map(|x| x * x).sum()
+    }
+
+    /// The inverse of [`stacked`](Self::stacked).
     pub(super) fn unstacked([x, y, z, a, b, c]: [f64; 6], unit: f64) -> Self {
         let angular = Vector([a, b, c]) * (1.0 / unit);
         Self { linear: in_place(Vector([x, y, z])), angular }
