@@ -30,7 +30,7 @@ pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 
 use channel::{Channel, TickInput};
 pub(crate) use limits::Limits;
-use passivity::{Passivity, PassivityOptions, Seen};
+use passivity::{Passivity, PassivityOptions, PortMotion};
 pub(crate) use wrench::{PerMotion, SpatialVector, WrenchChain, WrenchState};
 
 use crate::device::DeviceProfile;
@@ -233,7 +233,7 @@ impl<const D: usize> SafetyChain<D> {
         // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, is_late, start, .. } = *state;
-        let seen = Seen { position, velocity, has_start: start < 1.0 };
+        let seen = PortMotion { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let input = TickInput { is_sound, is_late, start };
         let (force, left) = self.channel.step(observed, state.free_force, &input);

@@ -15,7 +15,7 @@ use palpate_field::Vector;
 
 use super::channel::{Channel, TickInput};
 use super::limits::Limits;
-use super::passivity::{InnerProduct, Passivity, PassivityOptions, Seen};
+use super::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use super::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
 use crate::error::{HapticsError, not_negative};
 
@@ -226,7 +226,7 @@ impl<const D: usize> WrenchChain<D> {
             && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let seen = Seen { position, velocity, has_start: false };
+        let seen = PortMotion { position, velocity, has_start: false };
         let as_lengths = wanted.turning(1.0 / unit);
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
