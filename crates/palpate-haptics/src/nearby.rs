@@ -66,7 +66,7 @@ impl Punctured {
 
 /// The field at a place.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<const D: usize> {
+pub(crate) struct FieldValue<const D: usize> {
     /// The field [m].
     pub(crate) distance: f64,
     /// The gradient of the field.
@@ -158,15 +158,16 @@ impl<'a, const D: usize> Nearby<'a, D> {
 
     /// The field and its gradient at a point, and the body whose field is least there.
     #[inline]
-    pub(crate) fn gradient(&self, p: Point<D>, punctured: &Punctured) -> Seen<D> {
+    pub(crate) fn gradient(&self, p: Point<D>, punctured: &Punctured) -> FieldValue<D> {
         if let ([body], true) = (self.bodies.bodies(), punctured.is_empty()) {
             let (distance, gradient) = body.distance_gradient(p);
-            return Seen { distance, gradient, body: 0 };
+            return FieldValue { distance, gradient, body: 0 };
         }
         let way = p - self.centre;
         let length = way.norm();
         let inwards = if length > 0.0 { way * (-1.0 / length) } else { Vector::ZERO };
-        let mut least = Seen { distance: self.horizon - length, gradient: inwards, body: 0 };
+        let mut least =
+            FieldValue { distance: self.horizon - length, gradient: inwards, body: 0 };
         for (index, body) in self.all() {
             let above = body.above_ball(p);
             if above >= least.distance {
@@ -174,7 +175,8 @@ impl<'a, const D: usize> Nearby<'a, D> {
             }
             let Some(layer_depth) = layer_depth(body, punctured.level(index)) else { continue };
             let (distance, gradient) = body.distance_gradient(p);
-            let mut seen = Seen { distance: distance + layer_depth, gradient, body: index };
+            let mut seen =
+                FieldValue { distance: distance + layer_depth, gradient, body: index };
             if body.is_below_ball
                 && above > seen.distance
                 && let Some(ball) = body.ball

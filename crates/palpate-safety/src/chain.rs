@@ -16,7 +16,7 @@ use crate::error::{SafetyError, not_negative, positive};
 use crate::finite;
 use crate::impedance::Impedance;
 use crate::limits::Limits;
-use crate::passivity::{Passivity, PassivityOptions, PassivityReport, Seen};
+use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
@@ -215,7 +215,7 @@ impl<const D: usize> SafetyChain<D> {
         // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, is_late, start, .. } = *state;
-        let seen = Seen { position, velocity, has_start: start < 1.0 };
+        let seen = PortMotion { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let input = TickInput { is_sound, is_late, start };
         let (force, left) = self.channel.step(observed, state.free_force, &input);

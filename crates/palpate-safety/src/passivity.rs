@@ -60,7 +60,7 @@ impl<const D: usize> InnerProduct for Vector<f64, D> {
 
 /// Position and velocity of a device in a tick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<V> {
+pub(crate) struct PortMotion<V> {
     pub(crate) position: V,
     pub(crate) velocity: V,
     /// Whether the force [starts](super::PortState::start) to rise, because a body moved onto
@@ -195,7 +195,7 @@ impl<V: InnerProduct> Passivity<V> {
     /// is returned unchanged.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn observed(&mut self, wanted: V, state: &Seen<V>, is_sound: bool) -> V {
+    pub(crate) fn observed(&mut self, wanted: V, state: &PortMotion<V>, is_sound: bool) -> V {
         if is_sound {
             return self.limit(wanted, state);
         }
@@ -206,7 +206,7 @@ impl<V: InnerProduct> Passivity<V> {
     /// The force that may be written in place of `wanted`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn limit(&mut self, wanted: V, state: &Seen<V>) -> V {
+    fn limit(&mut self, wanted: V, state: &PortMotion<V>) -> V {
         let way = self.last.map_or(V::ZERO, |last| state.position - last.position);
         if let Some(last) = self.last {
             self.observe(&last, wanted, way);
@@ -291,7 +291,7 @@ impl<V: InnerProduct> Passivity<V> {
     }
 
     /// The part of `wanted` that gives out no more than the balance and the reserve.
-    fn part(&self, wanted: V, held: V, way: V, state: &Seen<V>) -> f64 {
+    fn part(&self, wanted: V, held: V, way: V, state: &PortMotion<V>) -> f64 {
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve).max(0.0);
         let compliance = self.compliance;
@@ -369,7 +369,7 @@ mod tests {
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
         for (position, force) in held {
             let position = Vector([position, 0.0]);
-            let state = Seen { position, velocity: Vector::ZERO, has_start: false };
+            let state = PortMotion { position, velocity: Vector::ZERO, has_start: false };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));
         }

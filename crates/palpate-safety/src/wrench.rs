@@ -16,7 +16,7 @@ use palpate_field::Vector;
 use crate::channel::{Channel, TickInput};
 use crate::error::{SafetyError, not_negative};
 use crate::limits::Limits;
-use crate::passivity::{InnerProduct, Passivity, PassivityOptions, Seen};
+use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
 
 /// A translational and a rotational vector: force [N] and torque [N·m], position [m] and angle
@@ -230,7 +230,7 @@ impl<const D: usize> WrenchChain<D> {
             && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let seen = Seen { position, velocity, has_start: false };
+        let seen = PortMotion { position, velocity, has_start: false };
         let as_lengths = wanted.turning(1.0 / unit);
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.

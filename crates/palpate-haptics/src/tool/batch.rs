@@ -12,7 +12,7 @@ use crate::nearby::Nearby;
 
 /// The last evaluation of a shell point, in world coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen<const D: usize> {
+pub(super) struct Evaluation<const D: usize> {
     /// Its centre [m].
     pub(super) centre: Point<D>,
     /// The field less the point's radius [m].
@@ -27,7 +27,7 @@ pub(super) struct Batch<const D: usize> {
     pub(super) count: usize,
     numbers: [u32; BLOCK],
     radii: [f64; BLOCK],
-    seen: [Seen<D>; BLOCK],
+    seen: [Evaluation<D>; BLOCK],
     block: Block<f64, D, BLOCK>,
     answers: Gradients<f64, D, BLOCK>,
     /// The points for which a body is evaluated.
@@ -36,7 +36,8 @@ pub(super) struct Batch<const D: usize> {
 
 impl<const D: usize> Batch<D> {
     pub(super) fn boxed() -> Box<Self> {
-        let nothing = Seen { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
+        let nothing =
+            Evaluation { centre: Vector::ZERO, gap: 0.0, gradient: Vector::ZERO, body: 0 };
         Box::new(Self {
             count: 0,
             numbers: [0; BLOCK],
@@ -68,16 +69,16 @@ impl<const D: usize> Batch<D> {
     }
 
     /// Evaluates all near bodies with gradients: [`Nearby::gradient`] in blocks.
-    pub(super) fn ask(&mut self, nearby: &Nearby<'_, D>) {
-        self.ask_for(nearby, true);
+    pub(super) fn evaluate(&mut self, nearby: &Nearby<'_, D>) {
+        self.evaluate_with(nearby, true);
     }
 
     /// Evaluates gaps only, which costs less; gradients are left undefined.
-    pub(super) fn ask_gaps(&mut self, nearby: &Nearby<'_, D>) {
-        self.ask_for(nearby, false);
+    pub(super) fn evaluate_gaps(&mut self, nearby: &Nearby<'_, D>) {
+        self.evaluate_with(nearby, false);
     }
 
-    fn ask_for(&mut self, nearby: &Nearby<'_, D>, has_gradients: bool) {
+    fn evaluate_with(&mut self, nearby: &Nearby<'_, D>, has_gradients: bool) {
         let is_all = nearby.horizon == f64::INFINITY;
         for seen in self.seen.iter_mut().take(self.count) {
             (seen.gap, seen.gradient, seen.body) = (f64::INFINITY, Vector::ZERO, 0);
@@ -139,7 +140,7 @@ impl<const D: usize> Batch<D> {
         }
     }
 
-    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
+    pub(super) fn results(&self) -> impl Iterator<Item = (u32, &Evaluation<D>)> {
         self.numbers.iter().copied().zip(&self.seen).take(self.count)
     }
 }

@@ -19,7 +19,7 @@ use palpate_safety::part_of;
 use palpate_safety::{cross, in_place, in_space};
 
 /// The response of the pushing bodies to the coupling.
-struct Yielding<const D: usize> {
+struct BodyResponse<const D: usize> {
     /// The part of the coupling's force that the bodies bear, in [0, 1].
     part: f64,
     /// The force of the bodies' own dampers [N].
@@ -53,7 +53,7 @@ impl<const D: usize> Tool<D> {
     ) {
         let was = Before::of(&self.touch);
         self.write_rest(device);
-        let rest = &self.settler.rest;
+        let rest = &self.rest_search.rest;
         let moved = Twist::between(before, &rest.pose);
         self.touch.velocity = moved.linear * self.options.rate;
         let hardest = hardest(&rest.pushes).filter(|_| self.touch.contact).copied();
@@ -74,11 +74,11 @@ impl<const D: usize> Tool<D> {
 
     /// Writes the rest pose and the contacts, and what is proven about them.
     fn write_rest(&mut self, device: &ToolState<D>) {
-        let (rest, touch) = (&self.settler.rest, &mut self.touch);
+        let (rest, touch) = (&self.rest_search.rest, &mut self.touch);
         touch.device = device.pose;
         touch.pose = rest.pose;
         touch.contact = rest.is_outside && !rest.pushes.is_empty();
-        touch.is_slipping = touch.contact && self.settler.is_slipping;
+        touch.is_slipping = touch.contact && self.rest_search.is_slipping;
         touch.is_covered = !rest.is_outside;
         touch.evaluations = self.scan.evaluations();
         touch.points_known = rest.known;
@@ -111,17 +111,17 @@ impl<const D: usize> Tool<D> {
         let before = self.effort();
         if !self.touch.contact {
             (self.touch.force, self.touch.torque) = (Vector::ZERO, Vector::ZERO);
-            if self.settler.rest.is_outside {
+            if self.rest_search.rest.is_outside {
                 self.rise = 1.0;
             }
             return;
         }
         let (options, coupling) = (&self.options, &self.coupling);
         let stretch = Twist::between(&device.pose, &self.touch.pose);
-        let yielding = self.yielding(nearby, device, &stretch);
+        let body_response = self.body_response(nearby, device, &stretch);
         let velocity = device.velocity - self.touch.velocity;
         let spins = device.angular_velocity - moved.angular * options.rate;
-        let part = yielding.part;
+        let part = body_response.part;
         let force = Motion {
             spring: stretch.linear * (coupling.stiffness * part),
             damper: velocity * (-coupling.damping * part),
@@ -130,8 +130,8 @@ impl<const D: usize> Tool<D> {
             spring: stretch.angular * (coupling.angular_stiffness * part),
             damper: spins * (-coupling.angular_damping * part),
         };
-        let force = and_damper(not_pulling(force), yielding.force);
-        let torque = and_damper(not_pulling(torque), yielding.torque);
+        let force = and_damper(not_pulling(force), body_response.force);
+        let torque = and_damper(not_pulling(torque), body_response.torque);
         self.touch.force = damped(&force, options.max_force) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
         if has_new_bodies {
@@ -158,16 +158,16 @@ impl<const D: usize> Tool<D> {
     /// At the depth `d = √(‖v‖² + ℓ²‖ω‖²)` a body bears `∫ min(K, K_body)` over the depth. This
     /// is a function of the distance from the device's pose to the nearest free pose, so the
     /// force of one body has a potential, and is no stiffer than the coupling.
-    fn yielding(
+    fn body_response(
         &self,
         nearby: &Nearby<'_, D>,
         device: &ToolState<D>,
         stretch: &Twist<D>,
-    ) -> Yielding<D> {
+    ) -> BodyResponse<D> {
         let (mut part, mut force, mut torque) = (0.0, Vector::ZERO, Vector::ZERO);
         let Coupling { stiffness, arms, .. } = self.coupling;
         let depth = self.depth(stretch);
-        let pushes = &self.settler.rest.pushes;
+        let pushes = &self.rest_search.rest.pushes;
         let whole: f64 = pushes.iter().map(|push| push.push).sum();
         for push in pushes {
             let share = push.push / whole;
@@ -184,7 +184,7 @@ impl<const D: usize> Tool<D> {
             force += damper * share;
             torque += cross(arm, in_space(damper * share));
         }
-        Yielding { part, force, torque }
+        BodyResponse { part, force, torque }
     }
 
     /// The norm of a stretch of the coupling, where a radian counts as a length [m].
@@ -244,7 +244,7 @@ impl<const D: usize> Tool<D> {
         if !self.touch.contact {
             return;
         }
-        let pushes = &self.settler.rest.pushes;
+        let pushes = &self.rest_search.rest.pushes;
         let origin = self.touch.pose.translation;
         let stiffness = self.coupling.stiffness * self.part * self.rise;
         let mut force = self.touch.force;

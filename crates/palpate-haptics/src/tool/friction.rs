@@ -22,7 +22,7 @@ use palpate_field::{Pose, Vector};
 
 use super::closest::{Closest, FREEDOMS, Row, closest};
 use super::scan::{Path, Scan};
-use super::settle::{Lengths, Push, Settler, stacked_along};
+use super::settle::{Lengths, Push, RestSearch, stacked_along};
 use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::surface::Friction;
@@ -67,7 +67,7 @@ pub(super) struct Cone<const D: usize> {
     sides: [Vector<f64, D>; 2],
 }
 
-impl<const D: usize> Settler<D> {
+impl<const D: usize> RestSearch<D> {
     /// The friction of the last tick's contacts on a tool that would move along `path`, for
     /// which all rows were made.
     ///

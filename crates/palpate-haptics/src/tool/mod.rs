@@ -17,10 +17,10 @@ mod closest;
 mod coupled;
 mod coupling;
 mod felt;
+mod fixed_list;
 mod friction;
 mod obstacle;
 mod of_shape;
-mod room;
 mod scan;
 mod settle;
 #[expect(clippy::indexing_slicing, reason = "made at set-up, never in a tick")]
@@ -41,9 +41,9 @@ pub use coupled::HeldTool;
 pub(crate) use coupled::{CoupledTool, Sides};
 pub use coupling::Coupling;
 use felt::Before;
-use room::Room;
+use fixed_list::FixedList;
 use scan::{Scan, Surroundings};
-use settle::{Ends, Lengths, Settler};
+use settle::{Ends, Lengths, RestSearch};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
 pub use state::{ToolOptions, ToolState, ToolTouch};
 use twist::Twist;
@@ -159,7 +159,7 @@ pub struct Tool<const D: usize> {
     options: ToolOptions,
     coupling: Coupling,
     scan: Scan<D>,
-    settler: Settler<D>,
+    rest_search: RestSearch<D>,
     /// The pose of the tool; `None` before the first tick.
     pose: Option<Pose<D>>,
     /// The rendered part of the force, in [0, 1].
@@ -173,7 +173,7 @@ pub struct Tool<const D: usize> {
     hand_velocity: Vector<f64, D>,
     /// The body that the tool rests on.
     carrier: Option<u32>,
-    events: Room<Event>,
+    events: FixedList<Event>,
     tick: u64,
     /// The least radius of the shell's points [m].
     radius: f64,
@@ -192,7 +192,7 @@ impl<const D: usize> Tool<D> {
         Ok(Self {
             coupling,
             scan: Scan::new(&shell),
-            settler: Settler::new(shell.points().len()),
+            rest_search: RestSearch::new(shell.points().len()),
             pose: None,
             rise: 1.0,
             part: 1.0,
@@ -200,7 +200,7 @@ impl<const D: usize> Tool<D> {
             touch: ToolTouch::new(shell.points().len()),
             hand_velocity: Vector::ZERO,
             carrier: None,
-            events: Room::with_capacity(MOST_EVENTS),
+            events: FixedList::with_capacity(MOST_EVENTS),
             tick: 0,
             radius: radii.fold(f64::INFINITY, f64::min),
             shell,
@@ -324,8 +324,8 @@ impl<const D: usize> Tool<D> {
         let start = carry.map_or(start, |carry| self.carried(&nearby, start, &carry, lengths));
         let surroundings = Surroundings { shell: &self.shell, nearby: &nearby };
         let ends = Ends { start, goal: device.pose };
-        self.settler.settle(&mut self.scan, surroundings, ends, lengths);
-        let rest = &self.settler.rest;
+        self.rest_search.settle(&mut self.scan, surroundings, ends, lengths);
+        let rest = &self.rest_search.rest;
         if self.pose.is_none() && rest.pose != device.pose {
             // The tool was placed anew.
             self.rise = if rest.pushes.is_empty() { 1.0 } else { 0.0 };

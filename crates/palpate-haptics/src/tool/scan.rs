@@ -16,23 +16,23 @@
 
 use palpate_field::{Pose, Vector};
 
-use super::batch::{Batch, Seen};
-use super::room::Room;
+use super::batch::{Batch, Evaluation};
+use super::fixed_list::FixedList;
 use super::shell::{Cluster, Shell};
-use super::sweep::March;
+use super::sweep::SweptPoint;
 use super::twist::Twist;
 use crate::nearby::Nearby;
 
 /// When a point was evaluated.
 #[derive(Clone, Copy, Debug)]
-struct Mark {
+struct PointMark {
     /// The number of the pose.
     stamp: u64,
     /// The reading of the cluster's clock before which the point cannot touch.
     free_until: f64,
 }
 
-impl Mark {
+impl PointMark {
     const NONE: Self = Self { stamp: 0, free_until: f64::NEG_INFINITY };
 
     /// `true` if the point was evaluated since the bodies last changed.
@@ -43,7 +43,7 @@ impl Mark {
 
 /// The validity of a cluster's evaluations: until when none of its points can touch.
 #[derive(Clone, Copy, Debug)]
-struct Look {
+struct ClusterMark {
     /// The number of the pose at which the cluster was evaluated.
     stamp: u64,
     /// The clock reading before which none of its points can touch.
@@ -53,7 +53,7 @@ struct Look {
     rest_until: f64,
 }
 
-impl Look {
+impl ClusterMark {
     const NONE: Self =
         Self { stamp: 0, free_until: f64::NEG_INFINITY, rest_until: f64::NEG_INFINITY };
 
@@ -82,7 +82,7 @@ pub(super) struct Path<'a, const D: usize> {
 
 /// A cluster to evaluate now.
 #[derive(Clone, Copy, Debug)]
-struct Due {
+struct DueCluster {
     cluster: u32,
     /// The end of this cluster's points in the list of near points.
     end: usize,
@@ -114,41 +114,42 @@ impl Clock {
 /// The evaluations of a shell.
 #[derive(Clone, Debug)]
 pub(super) struct Scan<const D: usize> {
-    points: Vec<Seen<D>>,
-    marks: Vec<Mark>,
-    looks: Vec<Look>,
+    points: Vec<Evaluation<D>>,
+    marks: Vec<PointMark>,
+    looks: Vec<ClusterMark>,
     clock: Clock,
     /// The number of the present pose.
     stamp: u64,
     /// Clusters to evaluate now.
-    due: Room<Due>,
+    due: FixedList<DueCluster>,
     /// The points that were evaluated at the present pose.
-    near: Room<u32>,
+    near: FixedList<u32>,
     /// Levels of the shell that are evaluated in this tick.
     levels: usize,
     budget: u32,
     evaluations: u32,
     /// Points whose motion is swept.
-    pub(super) marches: Room<March>,
+    pub(super) swept_points: FixedList<SweptPoint>,
     pub(super) batch: Box<Batch<D>>,
 }
 
 impl<const D: usize> Scan<D> {
     pub(super) fn new(shell: &Shell<D>) -> Self {
         let zero = Vector::ZERO;
-        let nothing = Seen { centre: zero, gap: f64::NEG_INFINITY, gradient: zero, body: 0 };
+        let nothing =
+            Evaluation { centre: zero, gap: f64::NEG_INFINITY, gradient: zero, body: 0 };
         Self {
             points: vec![nothing; shell.points().len()],
-            marks: vec![Mark::NONE; shell.points().len()],
-            looks: vec![Look::NONE; shell.clusters.len()],
+            marks: vec![PointMark::NONE; shell.points().len()],
+            looks: vec![ClusterMark::NONE; shell.clusters.len()],
             clock: Clock::default(),
             stamp: 1,
-            due: Room::with_capacity(shell.clusters.len()),
-            near: Room::with_capacity(shell.points().len()),
+            due: FixedList::with_capacity(shell.clusters.len()),
+            near: FixedList::with_capacity(shell.points().len()),
             levels: shell.levels.len(),
             budget: 0,
             evaluations: 0,
-            marches: Room::with_capacity(shell.points().len()),
+            swept_points: FixedList::with_capacity(shell.points().len()),
             batch: Batch::boxed(),
         }
     }
@@ -160,8 +161,8 @@ impl<const D: usize> Scan<D> {
 
     /// Discards all evaluations, because the bodies changed.
     pub(super) fn forget(&mut self) {
-        self.looks.fill(Look::NONE);
-        self.marks.fill(Mark::NONE);
+        self.looks.fill(ClusterMark::NONE);
+        self.marks.fill(PointMark::NONE);
         self.leave();
     }
 
@@ -200,7 +201,7 @@ impl<const D: usize> Scan<D> {
     }
 
     /// The last evaluation of a point.
-    pub(super) fn point(&self, number: u32) -> Option<&Seen<D>> {
+    pub(super) fn point(&self, number: u32) -> Option<&Evaluation<D>> {
         self.points.get(number as usize)
     }
 
@@ -265,7 +266,7 @@ impl<const D: usize> Scan<D> {
                 break;
             }
             let (cluster, end) = (index, self.near.len());
-            self.due.push(Due { cluster, end, seen_until, rest_until });
+            self.due.push(DueCluster { cluster, end, seen_until, rest_until });
         }
         self.evaluate(shell, nearby, pose, begin);
         is_enough
@@ -287,7 +288,7 @@ impl<const D: usize> Scan<D> {
             if batch.count == 0 {
                 break;
             }
-            batch.ask(nearby);
+            batch.evaluate(nearby);
             self.evaluations += batch.count as u32;
             for (number, seen) in batch.results() {
                 if let Some(point) = self.points.get_mut(number as usize) {
@@ -297,7 +298,7 @@ impl<const D: usize> Scan<D> {
         }
         let mut near = self.near.iter().skip(begin);
         let mut begin = begin;
-        for Due { cluster: index, end, seen_until, rest_until } in &self.due {
+        for DueCluster { cluster: index, end, seen_until, rest_until } in &self.due {
             let cluster = shell.clusters.get(*index as usize);
             let look = self.looks.get_mut(*index as usize);
             let Some((cluster, look)) = cluster.zip(look) else { continue };
@@ -307,16 +308,17 @@ impl<const D: usize> Scan<D> {
                 let place = *number as usize;
                 let known = self.points.get(place).zip(self.marks.get_mut(place));
                 let Some((point, mark)) = known else { continue };
-                *mark = Mark { stamp: self.stamp, free_until: now + point.gap / lipschitz };
+                *mark =
+                    PointMark { stamp: self.stamp, free_until: now + point.gap / lipschitz };
                 free_until = least(free_until, mark.free_until);
             }
             begin = *end;
-            *look = Look { stamp: self.stamp, free_until, rest_until: *rest_until };
+            *look = ClusterMark { stamp: self.stamp, free_until, rest_until: *rest_until };
         }
     }
 
     /// The points that were evaluated at the present pose, with their numbers.
-    pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Seen<D>)> {
+    pub(super) fn seen(&self) -> impl Iterator<Item = (u32, &Evaluation<D>)> {
         self.near.iter().filter_map(|i| Some((*i, self.points.get(*i as usize)?)))
     }
 

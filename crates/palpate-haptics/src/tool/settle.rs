@@ -16,10 +16,10 @@
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::batch::Seen;
+use super::batch::Evaluation;
 use super::closest::{Closest, FREEDOMS, Row, closest};
+use super::fixed_list::FixedList;
 use super::friction::{Cone, Hold, MOST_AROUND};
-use super::room::Room;
 use super::scan::{Path, Scan, Surroundings};
 use super::twist::Twist;
 use crate::nearby::Nearby;
@@ -99,7 +99,7 @@ pub(super) struct Push<const D: usize> {
 pub(super) struct Rest<const D: usize> {
     pub(super) pose: Pose<D>,
     /// The points that push the tool there.
-    pub(super) pushes: Room<Push<D>>,
+    pub(super) pushes: FixedList<Push<D>>,
     /// The number of points proven outside.
     pub(super) known: u32,
     /// `true` if every evaluated point is outside.
@@ -112,7 +112,7 @@ impl<const D: usize> Rest<D> {
     pub(super) fn new() -> Self {
         Self {
             pose: Pose::identity(),
-            pushes: Room::with_capacity(FREEDOMS),
+            pushes: FixedList::with_capacity(FREEDOMS),
             known: 0,
             is_outside: false,
             energy: f64::INFINITY,
@@ -141,29 +141,29 @@ struct Candidate<'a, const D: usize> {
 
 /// The search, with memory for a tick.
 #[derive(Clone, Debug)]
-pub(super) struct Settler<const D: usize> {
-    pub(super) rows: Room<Row>,
+pub(super) struct RestSearch<const D: usize> {
+    pub(super) rows: FixedList<Row>,
     /// The points of the first rows; the later rows belong to friction cones.
-    numbers: Room<u32>,
+    numbers: FixedList<u32>,
     /// The number of rows before those of friction.
     pub(super) plain: usize,
     /// Points that pushed in the last tick.
-    pub(super) held: Room<u32>,
+    pub(super) held: FixedList<u32>,
     /// The friction cones of contacts.
-    pub(super) cones: Room<Cone<D>>,
+    pub(super) cones: FixedList<Cone<D>>,
     /// `true` if the tool moved against friction.
     pub(super) is_slipping: bool,
     pub(super) rest: Rest<D>,
 }
 
-impl<const D: usize> Settler<D> {
+impl<const D: usize> RestSearch<D> {
     pub(super) fn new(points: usize) -> Self {
         Self {
-            rows: Room::with_capacity(points + FREEDOMS * MOST_AROUND),
-            numbers: Room::with_capacity(points),
+            rows: FixedList::with_capacity(points + FREEDOMS * MOST_AROUND),
+            numbers: FixedList::with_capacity(points),
             plain: 0,
-            held: Room::with_capacity(FREEDOMS),
-            cones: Room::with_capacity(FREEDOMS),
+            held: FixedList::with_capacity(FREEDOMS),
+            cones: FixedList::with_capacity(FREEDOMS),
             is_slipping: false,
             rest: Rest::new(),
         }
@@ -315,7 +315,7 @@ impl<const D: usize> Settler<D> {
             if held.push <= 0.0 || self.rest.pushes.len() == self.rest.pushes.capacity() {
                 continue;
             }
-            let Seen { centre, body, .. } = *seen;
+            let Evaluation { centre, body, .. } = *seen;
             let slope = seen.gradient.norm();
             let (normal, gap) = (seen.gradient * (1.0 / slope), seen.gap / slope);
             let push = held.push;

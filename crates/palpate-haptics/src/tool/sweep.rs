@@ -30,7 +30,7 @@ const MET: f64 = 0.125;
 
 /// A point that is being swept.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct March {
+pub(super) struct SweptPoint {
     number: u32,
     /// The length of its path [m].
     way: f64,
@@ -68,8 +68,8 @@ impl<const D: usize> Scan<D> {
         let lipschitz = nearby.lipschitz().max(f64::MIN_POSITIVE);
         let whole = self.free_part(shell, twist).min(most);
         let (linear, angle) = (twist.linear.norm(), twist.angular.norm());
-        let (mut proven, mut marches) = (whole, std::mem::take(&mut self.marches));
-        marches.clear();
+        let (mut proven, mut swept_points) = (whole, std::mem::take(&mut self.swept_points));
+        swept_points.clear();
         for (number, seen) in self.seen() {
             // Points that are already deeper than a skin are moving out.
             if seen.gap <= -skin {
@@ -79,17 +79,17 @@ impl<const D: usize> Scan<D> {
             // skin.
             let room = (seen.gap + 0.5 * skin).max(0.5 * (seen.gap + skin)) / lipschitz;
             let way = linear + angle * (seen.centre - pose.translation).norm();
-            if way * whole > room && marches.len() < marches.capacity() {
+            if way * whole > room && swept_points.len() < swept_points.capacity() {
                 let covered = room / way;
                 proven = proven.min(covered);
-                marches.push(March { number, way, covered });
+                swept_points.push(SweptPoint { number, way, covered });
             }
         }
         if proven < WORTH_GOING * whole {
             let limits = Limits { whole, dips: DIPS * skin, least: MET * skin, lipschitz };
-            proven = self.follow(surroundings, path, &mut marches, limits);
+            proven = self.follow(surroundings, path, &mut swept_points, limits);
         }
-        self.marches = marches;
+        self.swept_points = swept_points;
         proven
     }
 
@@ -98,25 +98,25 @@ impl<const D: usize> Scan<D> {
         &mut self,
         surroundings: Surroundings<'_, D>,
         path: Path<'_, D>,
-        marches: &mut [March],
+        swept_points: &mut [SweptPoint],
         limits: Limits,
     ) -> f64 {
         let Surroundings { shell, nearby } = surroundings;
         let Path { pose, twist } = path;
         let Limits { whole, dips, least, lipschitz } = limits;
-        let proven = |marches: &[March]| {
-            marches.iter().fold(whole, |least, march| least.min(march.covered))
+        let proven = |swept_points: &[SweptPoint]| {
+            swept_points.iter().fold(whole, |least, swept| least.min(swept.covered))
         };
-        let mut step = proven(marches);
+        let mut step = proven(swept_points);
         for _ in 0..MOST_STEPS {
-            let covered = proven(marches);
+            let covered = proven(swept_points);
             // Written so that NaN ends the sweep.
             if covered.is_nan() || covered >= whole {
                 break;
             }
             let at = (covered + step).min(whole);
-            let behind = |march: &March| march.covered < at;
-            let count = marches.iter().filter(|march| behind(march)).count() as u32;
+            let behind = |swept: &SweptPoint| swept.covered < at;
+            let count = swept_points.iter().filter(|swept| behind(swept)).count() as u32;
             if count > self.left() {
                 break;
             }
@@ -125,24 +125,24 @@ impl<const D: usize> Scan<D> {
             let batch = &mut *self.batch;
             let (mut next, mut has_hole, mut is_met) = (f64::INFINITY, false, false);
             let mut done = 0;
-            while let Some(rest) = marches.get_mut(done..) {
+            while let Some(rest) = swept_points.get_mut(done..) {
                 let mut last = 0;
-                let numbers = rest.iter().filter(|march| behind(march));
-                batch.gather(shell, &there, &mut numbers.map(|march| march.number));
+                let numbers = rest.iter().filter(|swept| behind(swept));
+                batch.gather(shell, &there, &mut numbers.map(|swept| swept.number));
                 if batch.count == 0 {
                     break;
                 }
-                batch.ask_gaps(nearby);
-                let asked = rest.iter_mut().enumerate().filter(|(_, march)| behind(march));
-                for ((place, march), (_, seen)) in asked.zip(batch.results()) {
+                batch.evaluate_gaps(nearby);
+                let asked = rest.iter_mut().enumerate().filter(|(_, swept)| behind(swept));
+                for ((place, swept), (_, seen)) in asked.zip(batch.results()) {
                     last = place + 1;
-                    let proves = (seen.gap + dips) / (lipschitz * march.way);
-                    if at - proves <= march.covered {
-                        march.covered = at + proves;
+                    let proves = (seen.gap + dips) / (lipschitz * swept.way);
+                    if at - proves <= swept.covered {
+                        swept.covered = at + proves;
                         next = next.min(proves);
                     } else {
                         has_hole = true;
-                        is_met |= step * lipschitz * march.way <= least;
+                        is_met |= step * lipschitz * swept.way <= least;
                     }
                 }
                 done += last;
@@ -152,6 +152,6 @@ impl<const D: usize> Scan<D> {
             }
             step = if has_hole { 0.5 * step } else { next };
         }
-        proven(marches).max(0.0)
+        proven(swept_points).max(0.0)
     }
 }

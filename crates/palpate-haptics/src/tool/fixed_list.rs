@@ -10,16 +10,16 @@ use std::ops::{Deref, DerefMut};
 /// A list with a fixed capacity that its clones keep; a cloned `Vec` has capacity only for its
 /// content.
 #[derive(Debug, Default)]
-pub(super) struct Room<T>(Vec<T>);
+pub(super) struct FixedList<T>(Vec<T>);
 
-impl<T> Room<T> {
+impl<T> FixedList<T> {
     /// An empty list with this capacity.
     pub(super) fn with_capacity(count: usize) -> Self {
         Self(Vec::with_capacity(count))
     }
 }
 
-impl<T: Clone> Clone for Room<T> {
+impl<T: Clone> Clone for FixedList<T> {
     fn clone(&self) -> Self {
         let mut list = Self::with_capacity(self.capacity());
         list.extend_from_slice(self);
@@ -27,7 +27,7 @@ impl<T: Clone> Clone for Room<T> {
     }
 }
 
-impl<T> Deref for Room<T> {
+impl<T> Deref for FixedList<T> {
     type Target = Vec<T>;
 
     fn deref(&self) -> &Vec<T> {
@@ -35,13 +35,13 @@ impl<T> Deref for Room<T> {
     }
 }
 
-impl<T> DerefMut for Room<T> {
+impl<T> DerefMut for FixedList<T> {
     fn deref_mut(&mut self) -> &mut Vec<T> {
         &mut self.0
     }
 }
 
-impl<'a, T> IntoIterator for &'a Room<T> {
+impl<'a, T> IntoIterator for &'a FixedList<T> {
     type Item = &'a T;
     type IntoIter = std::slice::Iter<'a, T>;
 
