@@ -122,6 +122,10 @@ impl DeviceProfile {
 impl DeviceProfile {
     /// Refuses a `device` with tighter limits than this one: a servo made for this profile
     /// could harm such a device or be unstable on it.
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::OtherDevice`] with the limit that is tighter.
     pub fn check_bears(&self, device: &Self) -> Result<(), SafetyError> {
         at_most("max_force", self.max_force, device.max_force, "N")?;
         at_most("continuous_force", self.continuous_force, device.continuous_force, "N")?;

@@ -25,14 +25,14 @@ impl<const D: usize> Report<'_, D> {
         let mut out = output::answer();
         for pair in self.pairs {
             let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
-            write!(out, "{a} – {b}: {}", pair.verdict.to_string())?;
+            write!(out, "{a} – {b}: {}", pair.verdict)?;
             match &pair.separation {
                 Some(found) => writeln!(
                     out,
                     ", separation {} to {} mm ({}, {} evaluations)",
                     millimetres(found.lower),
                     millimetres(found.upper),
-                    found.stop.to_string(),
+                    found.stop,
                     found.evaluations
                 )?,
                 None => writeln!(out, ": neither is bounded, nothing is known")?,
