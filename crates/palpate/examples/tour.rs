@@ -22,6 +22,7 @@ fn main() -> Result<(), Error> {
 
     let nut =
         Mesh::open(concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/meshes/nut.ply"))?;
+    let nut = nut.scaled(0.001)?; // from millimetres
     let touching = query.mesh_contacts(&plate, &nut)?;
     println!(
         "the nut's {} faces have {} contacts",
