@@ -23,7 +23,8 @@ fn main() -> Result<(), Error> {
     let nut =
         Mesh::open(concat!(env!("CARGO_MANIFEST_DIR"), "/../../testdata/meshes/nut.ply"))?;
     let nut = nut.scaled(0.001)?; // from millimetres
-    let touching = query.mesh_contacts(&plate, &nut)?;
+    let table = plate.translated([0.081, -0.105, -0.081])?; // where its maker put the nut
+    let touching = query.mesh_contacts(&table, &nut)?;
     println!(
         "the nut's {} faces have {} contacts",
         nut.elements().len(),
