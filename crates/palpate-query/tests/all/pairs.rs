@@ -4,7 +4,7 @@
 //! Separations: closed forms, and bounds against samples on random trees.
 
 #[expect(unreachable_pub, reason = "shared with the fuzz target")]
-#[path = "../../../fuzz/pair_answers.rs"]
+#[path = "../../../../fuzz/pair_answers.rs"]
 mod pair_answers;
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};

@@ -6,7 +6,7 @@
 
 use palpate_field::kernel::{Entry, Parameter};
 
-const GUIDE: &str = include_str!("../../../docs/guide/shapes.md");
+const GUIDE: &str = include_str!("../../../../docs/guide/shapes.md");
 
 /// A row of a table: cells without the bars.
 fn rows(section: &str) -> Vec<Vec<&str>> {

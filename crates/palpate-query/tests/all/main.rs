@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! All tests of the crate in one program, which links faster than many.
+
+use assert_no_alloc::AllocDisabler;
+
+mod balls;
+mod degenerate;
+mod elements;
+mod escapes;
+mod manifolds;
+mod mesh_memory;
+mod meshes;
+mod pair_laws;
+mod pairs;
+mod queries;
+mod rays;
+mod recall;
+mod serde;
+mod tracks;
+mod worlds;
+
+/// Aborts where a test forbids to allocate.
+#[global_allocator]
+static ALLOCATOR: AllocDisabler = AllocDisabler;
