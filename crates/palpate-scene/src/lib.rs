@@ -8,8 +8,8 @@
 //! [`Scene::to_json`] without loss. [`Scene::build`] makes [`AnyScene`]: bodies with
 //! their [`Shape`](palpate_field::Shape)s.
 //!
-//! Shapes are [`Node`]s: primitives of the catalogue of `palpate-field`, operators, and
-//! references to named shapes. Reading, writing and the [`schema`] follow the catalogue; this
+//! A [`WrittenShape`] is a primitive of the catalogue of `palpate-field`, an operator, or a
+//! reference to a named shape. Reading, writing and the [`schema`] follow the catalogue; this
 //! crate has no list of primitives. Shapes made in code become a scene with
 //! [`Scene::with_bodies`] and read back to the same bits.
 //!
@@ -46,28 +46,28 @@ mod check;
 mod error;
 mod guide;
 mod json;
+mod keys;
 mod material;
 mod motion;
-mod node;
 mod pose;
 mod problem;
 mod scene;
 mod schema;
+mod shape;
 mod tool;
 mod touch;
 mod view;
 mod write;
 mod written_material;
 
-pub use angle::Angle;
 pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
 pub use error::SceneError;
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
-pub use node::{Axis, Factor, Form, Node, Primitive, Row, Rows};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};
+pub use shape::WrittenShape;
 pub use tool::{WrittenCoupling, WrittenTool, WrittenWorkspace};
 pub use touch::ServoSettings;
 pub use view::{FreePlane, View, ViewPlane};

@@ -16,8 +16,8 @@ use crate::error::SceneError;
 use crate::guide::WrittenGuide;
 use crate::json::{self, Document};
 use crate::motion::Motion;
-use crate::node::Node;
 use crate::pose::WrittenPose;
+use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
 use crate::view::View;
 use crate::written_material::WrittenMaterial;
@@ -82,7 +82,7 @@ pub struct Scene {
     /// Shapes that have a name, which any shape may refer to.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "crate::schema::named_shapes")]
-    pub shapes: IndexMap<String, Node>,
+    pub shapes: IndexMap<String, WrittenShape>,
     /// The bodies to be touched; at least one.
     #[schemars(length(min = 1))]
     pub bodies: Vec<WrittenBody>,
@@ -112,7 +112,7 @@ pub struct WrittenBody {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// The shape, in the body's own coordinates.
-    pub shape: Node,
+    pub shape: WrittenShape,
     /// Where the body is, as `world_from_body`; at the origin if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pose: Option<WrittenPose>,
@@ -124,7 +124,7 @@ pub struct WrittenBody {
 
 impl WrittenBody {
     /// A body of the default material at the origin.
-    pub fn new(name: impl Into<String>, shape: Node) -> Self {
+    pub fn new(name: impl Into<String>, shape: WrittenShape) -> Self {
         Self { name: name.into(), description: None, shape, pose: None, material: None }
     }
 }
@@ -176,7 +176,7 @@ impl Scene {
         Self::from_json(&text)
     }
 
-    /// The scene as a file: keys in a fixed order, shapes and bodies in theirs.
+    /// The scene as a file: its keys in a fixed order, those of shapes as they were read.
     ///
     /// Reading it again gives the same scene, to the last bit of each number.
     /// Numbers that are not finite, which [`build`](Self::build) refuses, become

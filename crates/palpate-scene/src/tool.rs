@@ -8,10 +8,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive, positive_if};
-use crate::node::Node;
 use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::schema::VectorSchema;
+use crate::shape::WrittenShape;
 
 /// The tool that touches a scene: the tip of a stylus, fingers, or a shape in the hand.
 ///
@@ -47,7 +47,7 @@ pub struct WrittenTool {
     pub points: Vec<Vec<f64>>,
     /// The shape of the tool in its own coordinates, instead of points.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub shape: Option<Node>,
+    pub shape: Option<WrittenShape>,
     /// The virtual coupling between the hand and the tool.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<WrittenCoupling>,

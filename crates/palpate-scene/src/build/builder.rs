@@ -6,15 +6,18 @@
 use std::collections::HashMap;
 
 use palpate_field::Shape;
+use serde_json::Value;
 
-use super::shape_error;
+use super::object::Object;
+use super::operator::refused;
+use super::primitive::primitive;
 use super::size::{Allowance, Size, check_depth};
-use crate::angle::Angle;
-use crate::node::Node;
-use crate::node::operators::{EXTRUDE, OF, REVOLVE, TWIST, TWIST_DEGREES};
+use crate::json::found;
+use crate::keys::{self, EXTRUDE, OF, REVOLVE};
 use crate::pose::{Turning, Turns};
 use crate::problem::{Problem, shortened, unknown};
 use crate::scene::{Dimension, Scene};
+use crate::shape::WrittenShape;
 
 /// A shape and how large it is.
 #[derive(Clone, Debug)]
@@ -45,16 +48,11 @@ pub(super) trait Space<'a, const D: usize> {
     /// Its shapes.
     fn memory(&mut self) -> &mut Memory<'a, D>;
 
-    /// A 2D shape with a height along y [m], or turned about y without one.
-    fn solid(
-        &mut self,
-        of: &'a Node,
-        height: Option<f64>,
-        level: usize,
-    ) -> Result<Built<D>, Problem>;
+    /// A 2D shape extruded or revolved.
+    fn solid(&mut self, object: Object<'a>, level: usize) -> Result<Built<D>, Problem>;
 
-    /// A shape twisted by a `rate` for each metre.
-    fn twisted(shape: Shape<D>, rate: Angle) -> Result<Shape<D>, Problem>;
+    /// A shape twisted by a `rate` [rad/m] that is given under `key`.
+    fn twisted(shape: Shape<D>, key: &str, rate: f64) -> Result<Shape<D>, Problem>;
 }
 
 impl<'a> Builder<'a> {
@@ -69,12 +67,15 @@ impl<'a> Builder<'a> {
     }
 
     /// Builds the shape of a body or a tool.
-    pub(super) fn shape<const D: usize>(&mut self, node: &'a Node) -> Result<Shape<D>, Problem>
+    pub(super) fn shape<const D: usize>(
+        &mut self,
+        written: &'a WrittenShape,
+    ) -> Result<Shape<D>, Problem>
     where
         Self: Space<'a, D>,
         Turns: Turning<D>,
     {
-        let built = self.node(node, 0)?;
+        let built = self.node(written.json(), 0)?;
         Ok(built.shape)
     }
 
@@ -107,7 +108,7 @@ impl<'a> Builder<'a> {
         Self: Space<'a, D>,
         Turns: Turning<D>,
     {
-        let Some((name, node)) = self.scene.shapes.get_key_value(name) else {
+        let Some((name, written)) = self.scene.shapes.get_key_value(name) else {
             let names: Vec<_> = self.scene.shapes.keys().map(String::as_str).collect();
             return Err(Problem::new(unknown("shape", name, &names)));
         };
@@ -123,15 +124,15 @@ impl<'a> Builder<'a> {
             return Err(Problem::new(message));
         }
         self.open.push(name);
-        let result = self.node(node, level);
+        let result = self.node(written.json(), level);
         self.open.pop();
         let built = result.map_err(|problem| problem.under(name).under("shapes").rooted())?;
         Space::<'a, D>::memory(self).insert(name, built.clone());
         Ok(built)
     }
 
-    /// Builds the shape that a node refers to.
-    pub(super) fn reference<const D: usize>(
+    /// Builds the shape that a name refers to.
+    fn reference<const D: usize>(
         &mut self,
         name: &str,
         level: usize,
@@ -156,10 +157,10 @@ impl<'a> Builder<'a> {
         Ok(built)
     }
 
-    /// Builds a node.
+    /// Builds the shape of an object or a name.
     pub(super) fn node<const D: usize>(
         &mut self,
-        node: &'a Node,
+        node: &'a Value,
         level: usize,
     ) -> Result<Built<D>, Problem>
     where
@@ -167,7 +168,35 @@ impl<'a> Builder<'a> {
         Turns: Turning<D>,
     {
         check_depth(level + 1)?;
-        self.form(&node.form, level + 1)
+        let level = level + 1;
+        let entries = match node {
+            Value::String(name) => return self.reference(name, level),
+            Value::Object(entries) => entries,
+            other => {
+                let expected = "a shape: an object, or the name of another shape";
+                let message = format!("must be {expected}, got {}", found(other));
+                return Err(Problem::about(message));
+            }
+        };
+        let object = Object::new(entries)?;
+        match object.head {
+            keys::SHAPE => match object.value(keys::SHAPE)? {
+                Value::String(name) => self.reference(name, level),
+                other => {
+                    let message = format!("must be the name of a shape, got {}", found(other));
+                    Err(Problem::about(message).under(keys::SHAPE))
+                }
+            },
+            EXTRUDE | REVOLVE => self.solid(object, level),
+            head if keys::is_one_of(&keys::UNARY, head) => self.unary(object, level),
+            head if keys::is_one_of(&keys::LISTS, head) => self.list(object, level),
+            name => {
+                let (shape, nodes) = primitive(name, object.value(name)?)?;
+                let size = Size { nodes, depth: 0 };
+                self.allowance.take(size, level)?;
+                Ok(Built { shape, size })
+            }
+        }
     }
 }
 
@@ -178,19 +207,13 @@ impl<'a> Space<'a, 2> for Builder<'a> {
         &mut self.planar
     }
 
-    fn solid(
-        &mut self,
-        _of: &'a Node,
-        height: Option<f64>,
-        _level: usize,
-    ) -> Result<Built<2>, Problem> {
-        let operator = if height.is_some() { EXTRUDE } else { REVOLVE };
+    fn solid(&mut self, object: Object<'a>, _level: usize) -> Result<Built<2>, Problem> {
+        let operator = object.head;
         let message = format!("`{operator}` makes a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension())
     }
 
-    fn twisted(_shape: Shape<2>, rate: Angle) -> Result<Shape<2>, Problem> {
-        let key = rate.key(TWIST_DEGREES, TWIST);
+    fn twisted(_shape: Shape<2>, key: &str, _rate: f64) -> Result<Shape<2>, Problem> {
         let message = format!("`{key}` twists a 3D shape, this place is 2D");
         Err(Problem::new(message).of_dimension())
     }
@@ -203,28 +226,24 @@ impl<'a> Space<'a, 3> for Builder<'a> {
         &mut self.spatial
     }
 
-    fn solid(
-        &mut self,
-        of: &'a Node,
-        height: Option<f64>,
-        level: usize,
-    ) -> Result<Built<3>, Problem> {
-        let flat: Built<2> = self.node(of, level).map_err(|problem| {
+    fn solid(&mut self, object: Object<'a>, level: usize) -> Result<Built<3>, Problem> {
+        let flat: Built<2> = self.node(object.value(OF)?, level).map_err(|problem| {
             // The place of a flat shape is 2D wherever the whole is used.
             problem.in_any_dimension().under(OF)
         })?;
         let size = Size::over(&[flat.size]);
         self.allowance.take(size, level)?;
-        let (shape, key) = match height {
-            Some(height) => (flat.shape.extruded(height), EXTRUDE),
-            None => (flat.shape.revolved(), REVOLVE),
+        let shape = if object.head == EXTRUDE {
+            flat.shape.extruded(object.read(EXTRUDE)?)
+        } else {
+            object.word(REVOLVE, &["y"])?;
+            flat.shape.revolved()
         };
-        let shape = shape.map_err(|error| shape_error::of_operator(key, &error))?;
+        let shape = shape.map_err(|error| refused(object.head, &error))?;
         Ok(Built { shape, size })
     }
 
-    fn twisted(shape: Shape<3>, rate: Angle) -> Result<Shape<3>, Problem> {
-        let key = rate.key(TWIST_DEGREES, TWIST);
-        shape.twisted(rate.radians()).map_err(|error| shape_error::of_operator(key, &error))
+    fn twisted(shape: Shape<3>, key: &str, rate: f64) -> Result<Shape<3>, Problem> {
+        shape.twisted(rate).map_err(|error| refused(key, &error))
     }
 }

@@ -4,8 +4,9 @@
 //! Builds a scene: from the data of a file to shapes that can be evaluated.
 
 mod builder;
-mod form;
-mod shape_error;
+mod object;
+mod operator;
+mod primitive;
 mod size;
 
 use indexmap::IndexSet;
@@ -163,7 +164,7 @@ where
 {
     let Some(tool) = &scene.tool else { return Ok(None) };
     tool.check(D)?;
-    let shape = tool.shape.as_ref().map(|node| builder.shape(node)).transpose();
+    let shape = tool.shape.as_ref().map(|written| builder.shape(written)).transpose();
     Ok(Some(BuiltTool {
         radius: tool.radius,
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,

@@ -3,43 +3,59 @@
 
 //! serde's view of the tree, which adds the path to every error.
 
-use jsonc_parser::ast::{ObjectProp, Value};
 use serde::de::value::StrDeserializer;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, IgnoredAny, IntoDeserializer, MapAccess,
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess,
     SeqAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
+use serde_json::{Map, Value};
 
-use super::document::name;
-use crate::problem::Problem;
+use crate::problem::{Problem, shortened};
+
+/// `value` as a `T`.
+pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, Problem> {
+    T::deserialize(Node(value))
+}
+
+/// The value that was found, for a message.
+pub(crate) fn found(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("{:?}", shortened(text)),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Object(_) => "an object".to_owned(),
+        scalar => scalar.to_string(),
+    }
+}
 
 /// A value of the tree.
 #[derive(Clone, Copy)]
-pub(super) struct Node<'t, 'a>(pub(super) &'t Value<'a>);
+struct Node<'t>(&'t Value);
 
-impl<'de> Deserializer<'de> for Node<'_, '_> {
+impl<'de> Deserializer<'de> for Node<'_> {
     type Error = Problem;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Problem> {
         match self.0 {
-            Value::StringLit(text) => visitor.visit_str(&text.value),
-            Value::NumberLit(number) => visit_number(number.value, visitor),
-            Value::BooleanLit(value) => visitor.visit_bool(value.value),
-            Value::NullKeyword(_) => visitor.visit_unit(),
-            Value::Array(array) => {
-                let mut elements = Elements { elements: &array.elements, next: 0 };
+            Value::String(text) => visitor.visit_str(text),
+            Value::Number(number) => match (number.as_u64(), number.as_i64()) {
+                (Some(whole), _) => visitor.visit_u64(whole),
+                (_, Some(whole)) => visitor.visit_i64(whole),
+                _ => visitor.visit_f64(number.as_f64().unwrap_or(f64::NAN)),
+            },
+            Value::Bool(value) => visitor.visit_bool(*value),
+            Value::Null => visitor.visit_unit(),
+            Value::Array(elements) => {
+                let count = elements.len();
+                let mut elements = Elements { elements, next: 0 };
                 let value = visitor.visit_seq(&mut elements)?;
-                let (taken, count) = (elements.next, array.elements.len());
+                let taken = elements.next;
                 if taken == count {
                     return Ok(value);
                 }
                 Err(Problem::about(format!("must be a list of {taken}, got {count}")))
             }
-            Value::Object(object) => {
-                refuse_duplicates(&object.properties)?;
-                visitor.visit_map(Properties { properties: &object.properties, next: 0 })
-            }
+            Value::Object(entries) => visitor.visit_map(Entries::new(entries)),
         }
     }
 
@@ -63,10 +79,10 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
         visitor: V,
     ) -> Result<V::Value, Problem> {
         match self.0 {
-            Value::StringLit(text) => visitor.visit_enum(Word(&text.value)),
-            _ => {
+            Value::String(text) => visitor.visit_enum(Word(text)),
+            other => {
                 let expected = format!("one of \"{}\"", variants.join("\", \""));
-                let found = self.deserialize_any(Found)?;
+                let found = found(other);
                 Err(Problem::about(format!("must be {expected}, got {found}")))
             }
         }
@@ -81,8 +97,8 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
     ) -> Result<V::Value, Problem> {
         match self.0 {
             Value::Object(_) => self.deserialize_any(visitor),
-            _ => {
-                let found = self.deserialize_any(Found)?;
+            other => {
+                let found = found(other);
                 Err(Problem::about(format!("must be an object, got {found}")))
             }
         }
@@ -94,43 +110,12 @@ impl<'de> Deserializer<'de> for Node<'_, '_> {
     }
 }
 
-/// Visits whole numbers as integers, for counts, and all others as `f64`.
-fn visit_number<'de, V: Visitor<'de>>(literal: &str, visitor: V) -> Result<V::Value, Problem> {
-    if let Ok(whole) = literal.parse::<u64>() {
-        return visitor.visit_u64(whole);
-    }
-    match literal.parse::<i64>() {
-        // "-0" is a float of its own.
-        Ok(whole) if whole != 0 => return visitor.visit_i64(whole),
-        _ => {}
-    }
-    match literal.parse::<f64>() {
-        Ok(number) if number.is_finite() => visitor.visit_f64(number),
-        _ => {
-            let literal = crate::problem::shortened(literal);
-            Err(Problem::about(format!("must be within the range of numbers, got {literal}")))
-        }
-    }
-}
-
-fn refuse_duplicates(properties: &[ObjectProp<'_>]) -> Result<(), Problem> {
-    let mut seen = std::collections::HashSet::with_capacity(properties.len());
-    for property in properties {
-        let key = name(property);
-        if !seen.insert(key) {
-            let shown = crate::problem::shortened(key);
-            return Err(Problem::new(format!("duplicate key `{shown}`")).under(key));
-        }
-    }
-    Ok(())
-}
-
-struct Elements<'t, 'a> {
-    elements: &'t [Value<'a>],
+struct Elements<'t> {
+    elements: &'t [Value],
     next: usize,
 }
 
-impl<'de> SeqAccess<'de> for &mut Elements<'_, '_> {
+impl<'de> SeqAccess<'de> for &mut Elements<'_> {
     type Error = Problem;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(
@@ -148,36 +133,43 @@ impl<'de> SeqAccess<'de> for &mut Elements<'_, '_> {
     }
 }
 
-struct Properties<'t, 'a> {
-    properties: &'t [ObjectProp<'a>],
-    next: usize,
+struct Entries<'t> {
+    entries: serde_json::map::Iter<'t>,
+    /// The entry whose key was read and whose value comes next.
+    open: Option<(&'t String, &'t Value)>,
 }
 
-impl<'de> MapAccess<'de> for Properties<'_, '_> {
+impl<'t> Entries<'t> {
+    fn new(entries: &'t Map<String, Value>) -> Self {
+        Self { entries: entries.iter(), open: None }
+    }
+}
+
+impl<'de> MapAccess<'de> for Entries<'_> {
     type Error = Problem;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(
         &mut self,
         seed: K,
     ) -> Result<Option<K::Value>, Problem> {
-        let Some(property) = self.properties.get(self.next) else { return Ok(None) };
-        let key: StrDeserializer<'_, Problem> = name(property).into_deserializer();
-        seed.deserialize(key).map(Some).map_err(|problem| problem.under(name(property)))
+        self.open = self.entries.next();
+        let Some((key, _)) = self.open else { return Ok(None) };
+        let text: StrDeserializer<'_, Problem> = key.as_str().into_deserializer();
+        seed.deserialize(text).map(Some).map_err(|problem| problem.under(key))
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(
         &mut self,
         seed: V,
     ) -> Result<V::Value, Problem> {
-        let Some(property) = self.properties.get(self.next) else {
+        let Some((key, value)) = self.open else {
             return Err(Problem::new("a value without its key"));
         };
-        self.next += 1;
-        seed.deserialize(Node(&property.value)).map_err(|problem| problem.under(name(property)))
+        seed.deserialize(Node(value)).map_err(|problem| problem.under(key))
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.properties.len() - self.next)
+        Some(self.entries.len())
     }
 }
 
@@ -220,49 +212,5 @@ impl<'de> serde::de::VariantAccess<'de> for OnlyWord {
         _: V,
     ) -> Result<V::Value, Problem> {
         Err(Problem::about("must be a word of its own"))
-    }
-}
-
-/// The value that was found, for a message.
-struct Found;
-
-impl<'de> Visitor<'de> for Found {
-    type Value = String;
-
-    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("anything")
-    }
-
-    fn visit_str<E>(self, text: &str) -> Result<String, E> {
-        Ok(format!("{:?}", crate::problem::shortened(text)))
-    }
-
-    fn visit_bool<E>(self, value: bool) -> Result<String, E> {
-        Ok(value.to_string())
-    }
-
-    fn visit_u64<E>(self, value: u64) -> Result<String, E> {
-        Ok(value.to_string())
-    }
-
-    fn visit_i64<E>(self, value: i64) -> Result<String, E> {
-        Ok(value.to_string())
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<String, E> {
-        Ok(value.to_string())
-    }
-
-    fn visit_unit<E>(self) -> Result<String, E> {
-        Ok("null".to_owned())
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<String, A::Error> {
-        while seq.next_element::<IgnoredAny>()?.is_some() {}
-        Ok("a list".to_owned())
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<String, A::Error> {
-        Ok("an object".to_owned())
     }
 }

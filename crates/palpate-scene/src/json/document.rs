@@ -3,14 +3,16 @@
 
 //! A JSON text, checked and with the place of everything in it.
 
-use jsonc_parser::ast::{ObjectProp, Value};
+use std::collections::HashSet;
+
+use jsonc_parser::ast::{ObjectProp, Value as Tree};
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 use serde::de::{DeserializeOwned, IgnoredAny};
+use serde_json::{Map, Value};
 
-use super::deserialize::Node;
 use crate::error::SceneError;
-use crate::problem::{Problem, Step};
+use crate::problem::{Problem, Step, shortened};
 
 /// How deep objects and lists may nest: what two of them for each of the 64
 /// levels of a shape need, twice over. Deeper ones could exhaust the stack.
@@ -34,14 +36,16 @@ impl Position {
     }
 }
 
-/// A JSON text and its tree.
+/// A JSON text, its value, and the tree that knows the places.
 pub(crate) struct Document<'a> {
     text: &'a str,
-    root: Value<'a>,
+    tree: Tree<'a>,
+    value: Value,
 }
 
 impl<'a> Document<'a> {
-    /// Reads one JSON value, strictly.
+    /// Reads one JSON value, strictly: a key that is there twice and a number beyond the range of
+    /// `f64` are errors.
     pub(crate) fn parse(text: &'a str) -> Result<Self, SceneError> {
         // serde_json judges the grammar; the other parser, made for JSON with
         // comments, is more tolerant of odd whitespace and control characters.
@@ -67,36 +71,43 @@ impl<'a> Document<'a> {
         let options = CollectOptions::default();
         let parsed = parse_to_ast(text, &options, &STRICT)
             .map_err(|error| at(format!("not JSON: {}", error.kind()), error.range().start))?;
-        match parsed.value {
-            Some(root) => Ok(Self { text, root }),
-            None => Err(at("not JSON: nothing there".into(), 0)),
-        }
+        let Some(tree) = parsed.value else {
+            return Err(at("not JSON: nothing there".into(), 0));
+        };
+        let mut document = Self { text, tree, value: Value::Null };
+        document.value = value(&document.tree).map_err(|problem| document.locate(problem))?;
+        Ok(document)
+    }
+
+    /// The JSON value.
+    pub(crate) fn into_value(self) -> Value {
+        self.value
     }
 
     /// The text deserialised as a `T`.
     pub(crate) fn read<T: DeserializeOwned>(&self) -> Result<T, Problem> {
-        T::deserialize(Node(&self.root))
+        super::read(&self.value)
     }
 
     /// `problem` with the place of the deepest value on its path.
     pub(crate) fn locate(&self, problem: Problem) -> SceneError {
-        let mut place = self.root.range().start;
-        let mut value = Some(&self.root);
+        let mut place = self.tree.range().start;
+        let mut tree = Some(&self.tree);
         for step in problem.steps() {
-            let next = match (step, value) {
-                (Step::Key(key), Some(Value::Object(object))) => object
+            let next = match (step, tree) {
+                (Step::Key(key), Some(Tree::Object(object))) => object
                     .properties
                     .iter()
                     // Of duplicates the last is the one too many.
                     .rfind(|property| name(property) == key)
                     .map(|property| (property.range.start, &property.value)),
-                (Step::Index(index), Some(Value::Array(array))) => {
+                (Step::Index(index), Some(Tree::Array(array))) => {
                     array.elements.get(*index).map(|element| (element.range().start, element))
                 }
                 _ => None,
             };
             match next {
-                Some((start, inner)) => (place, value) = (start, Some(inner)),
+                Some((start, inner)) => (place, tree) = (start, Some(inner)),
                 None => break,
             }
         }
@@ -104,8 +115,64 @@ impl<'a> Document<'a> {
     }
 }
 
+/// The value of a tree.
+fn value(tree: &Tree<'_>) -> Result<Value, Problem> {
+    Ok(match tree {
+        Tree::StringLit(text) => Value::String(text.value.clone().into_owned()),
+        Tree::NumberLit(literal) => number(literal.value)?,
+        Tree::BooleanLit(literal) => Value::Bool(literal.value),
+        Tree::NullKeyword(_) => Value::Null,
+        Tree::Array(array) => {
+            let elements = array.elements.iter().enumerate();
+            let element = |(i, tree)| value(tree).map_err(|problem| problem.at(i));
+            elements.map(element).collect::<Result<_, _>>()?
+        }
+        Tree::Object(object) => {
+            refuse_duplicates(&object.properties)?;
+            let entry = |property: &ObjectProp<'_>| {
+                let key = name(property);
+                let value = value(&property.value).map_err(|problem| problem.under(key))?;
+                Ok((key.to_owned(), value))
+            };
+            Value::Object(
+                object.properties.iter().map(entry).collect::<Result<Map<_, _>, _>>()?,
+            )
+        }
+    })
+}
+
+/// Reads whole numbers as integers, for counts, and all others as `f64`.
+fn number(literal: &str) -> Result<Value, Problem> {
+    if let Ok(whole) = literal.parse::<u64>() {
+        return Ok(whole.into());
+    }
+    match literal.parse::<i64>() {
+        // "-0" is a float of its own.
+        Ok(whole) if whole != 0 => return Ok(whole.into()),
+        _ => {}
+    }
+    match literal.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number.into()),
+        _ => {
+            let literal = shortened(literal);
+            Err(Problem::about(format!("must be within the range of numbers, got {literal}")))
+        }
+    }
+}
+
+fn refuse_duplicates(properties: &[ObjectProp<'_>]) -> Result<(), Problem> {
+    let mut seen = HashSet::with_capacity(properties.len());
+    match properties.iter().map(name).find(|key| !seen.insert(*key)) {
+        None => Ok(()),
+        Some(key) => {
+            let shown = shortened(key);
+            Err(Problem::new(format!("duplicate key `{shown}`")).under(key))
+        }
+    }
+}
+
 /// The key of a property.
-pub(super) fn name<'a>(property: &'a ObjectProp<'_>) -> &'a str {
+fn name<'a>(property: &'a ObjectProp<'_>) -> &'a str {
     property.name.as_str()
 }
 

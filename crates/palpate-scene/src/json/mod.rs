@@ -7,5 +7,6 @@ mod deserialize;
 mod document;
 mod write;
 
+pub(crate) use deserialize::{found, read};
 pub(crate) use document::{Document, Position};
 pub(crate) use write::write;

@@ -6,7 +6,7 @@
 //! Everything is defined twice, for the plane and for space, because most sizes
 //! depend on the dimension.
 
-mod node;
+mod shape;
 mod tidy;
 
 use std::borrow::Cow;
@@ -15,9 +15,9 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
-use crate::node::{Axis, Node};
 use crate::pose::AxisAngle;
 use crate::scene::{Dimension, Scene};
+use crate::shape::WrittenShape;
 
 /// The JSON Schema of scene files, in draft 2020-12: for editors, and for
 /// programs that write scenes.
@@ -29,7 +29,7 @@ use crate::scene::{Dimension, Scene};
 /// ```
 /// let schema = palpate_scene::schema();
 /// assert_eq!(schema["properties"]["palpate"]["const"], 1);
-/// assert!(schema["$defs"]["space"]["Node"]["properties"]["ball"].is_object());
+/// assert!(schema["$defs"]["space"]["Shape"]["properties"]["ball"].is_object());
 /// ```
 #[must_use]
 pub fn schema() -> Value {
@@ -123,8 +123,8 @@ fn definitions_of(dimension: Dimension) -> Value {
     if dimension == Dimension::Two {
         forbid_in_the_plane(&mut definitions);
     }
-    definitions.insert("Node".to_owned(), node::schema(dimension));
-    definitions.insert("NamedShapes".to_owned(), node::named_shapes(dimension));
+    definitions.insert("Shape".to_owned(), shape::schema(dimension));
+    definitions.insert("NamedShapes".to_owned(), shape::named_shapes(dimension));
     let mut definitions = Value::Object(definitions.into_iter().collect());
     tidy::tidy(&mut definitions, place(dimension));
     definitions
@@ -174,23 +174,13 @@ impl JsonSchema for TurnSchema {
     }
 }
 
-impl JsonSchema for Node {
+impl JsonSchema for WrittenShape {
     fn schema_name() -> Cow<'static, str> {
-        "Node".into()
+        "Shape".into()
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({})
-    }
-}
-
-impl JsonSchema for Axis {
-    fn schema_name() -> Cow<'static, str> {
-        "Axis".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "enum": [Self::X, Self::Y, Self::Z] })
     }
 }
 

@@ -154,7 +154,7 @@ fn written<const D: usize>(
     writer: &mut Writer,
     body: &SceneBody<D>,
 ) -> Result<WrittenBody, Problem> {
-    let shape = writer.node(&body.shape).map_err(|problem| problem.under("shape"))?;
+    let shape = writer.shape(&body.shape).map_err(|problem| problem.under("shape"))?;
     let pose = body.world_from_body.as_ref().map(pose).transpose();
     Ok(WrittenBody {
         pose: pose.map_err(|problem| problem.under("rotation").under("pose"))?,

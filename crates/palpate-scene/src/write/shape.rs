@@ -7,15 +7,17 @@ use std::collections::HashMap;
 
 use indexmap::IndexMap;
 use palpate_field::kernel::{Argument, ParameterKind};
-use palpate_field::operator::Copies;
-use palpate_field::{Node as ShapeNode, Shape, node};
+use palpate_field::operator::{Boolean, Copies, Profile};
+use palpate_field::{Node, Pose, Shape, node};
+use serde_json::{Map, Value, json};
 
 use super::{rotation, translation};
-use crate::angle::Angle;
+use crate::angle::degrees;
 use crate::catalogue::file_key;
-use crate::node::operators as keys;
-use crate::node::{Axis, Factor, Form, Node, Row, Rows, smooth_key};
+use crate::keys;
+use crate::pose;
 use crate::problem::Problem;
+use crate::shape::WrittenShape;
 
 /// Where a shape lies in memory: equal for clones alone, as long as one of them is kept.
 type Address = usize;
@@ -31,17 +33,17 @@ pub(super) struct Writer {
     /// The names of those that are written already.
     names: HashMap<Address, String>,
     /// The named shapes of the scene.
-    shapes: IndexMap<String, Node>,
+    shapes: IndexMap<String, WrittenShape>,
 }
 
 impl Writer {
     /// A writer for a scene that has `shapes` already.
-    pub(super) fn new(shapes: IndexMap<String, Node>) -> Self {
+    pub(super) fn new(shapes: IndexMap<String, WrittenShape>) -> Self {
         Self { uses: HashMap::new(), names: HashMap::new(), shapes }
     }
 
     /// The named shapes, those of this writer included.
-    pub(super) fn finish(self) -> IndexMap<String, Node> {
+    pub(super) fn finish(self) -> IndexMap<String, WrittenShape> {
         self.shapes
     }
 
@@ -53,45 +55,51 @@ impl Writer {
             return;
         }
         match shape.node() {
-            ShapeNode::Union(of)
-            | ShapeNode::Intersection(of)
-            | ShapeNode::Difference(of)
-            | ShapeNode::SymmetricDifference(of)
-            | ShapeNode::Smooth { of, .. } => of.iter().for_each(|shape| self.count(shape)),
-            ShapeNode::Displaced { of: a, by: b, .. }
-            | ShapeNode::Morphed { from: a, into: b, .. } => {
+            Node::Union(of)
+            | Node::Intersection(of)
+            | Node::Difference(of)
+            | Node::SymmetricDifference(of)
+            | Node::Smooth { of, .. } => of.iter().for_each(|shape| self.count(shape)),
+            Node::Displaced { of: a, by: b, .. } | Node::Morphed { from: a, into: b, .. } => {
                 self.count(a);
                 self.count(b);
             }
-            ShapeNode::Placed { of, .. }
-            | ShapeNode::Scaled { of, .. }
-            | ShapeNode::Stretched { of, .. }
-            | ShapeNode::Offset { of, .. }
-            | ShapeNode::Shell { of, .. }
-            | ShapeNode::Elongated { of, .. }
-            | ShapeNode::Mirrored { of, .. }
-            | ShapeNode::Repeated { of, .. }
-            | ShapeNode::Bent { of, .. }
-            | ShapeNode::Twisted { of, .. } => self.count(of),
-            ShapeNode::Extruded { of, .. } | ShapeNode::Revolved { of } => self.count(of),
+            Node::Placed { of, .. }
+            | Node::Scaled { of, .. }
+            | Node::Stretched { of, .. }
+            | Node::Offset { of, .. }
+            | Node::Shell { of, .. }
+            | Node::Elongated { of, .. }
+            | Node::Mirrored { of, .. }
+            | Node::Repeated { of, .. }
+            | Node::Bent { of, .. }
+            | Node::Twisted { of, .. } => self.count(of),
+            Node::Extruded { of, .. } | Node::Revolved { of } => self.count(of),
             _ => {}
         }
     }
 
     /// A shape that was counted, or the reference to it.
-    pub(super) fn node<const D: usize>(&mut self, shape: &Shape<D>) -> Result<Node, Problem> {
+    pub(super) fn shape<const D: usize>(
+        &mut self,
+        shape: &Shape<D>,
+    ) -> Result<WrittenShape, Problem> {
+        self.json(shape).map(WrittenShape::new)
+    }
+
+    fn json<const D: usize>(&mut self, shape: &Shape<D>) -> Result<Value, Problem> {
         let address = address(shape);
         if let Some(name) = self.names.get(&address) {
-            return Ok(Node::reference(name));
+            return Ok(name.as_str().into());
         }
-        let node = Node::new(self.form(shape.node())?);
+        let json = self.object(shape.node())?;
         if self.uses.get(&address).is_none_or(|uses| *uses < 2) {
-            return Ok(node);
+            return Ok(json);
         }
         let name = self.unused_name();
-        self.shapes.insert(name.clone(), node);
+        self.shapes.insert(name.clone(), WrittenShape::new(json));
         self.names.insert(address, name.clone());
-        Ok(Node::reference(name))
+        Ok(name.into())
     }
 
     fn unused_name(&self) -> String {
@@ -105,136 +113,155 @@ impl Writer {
         }
     }
 
-    fn form<const D: usize>(&mut self, node: &ShapeNode<D>) -> Result<Form, Problem> {
-        Ok(match node {
-            ShapeNode::Primitive(primitive) => of_primitive(primitive),
-            ShapeNode::Union(of) => Form::Union(self.list(keys::UNION, of)?),
-            ShapeNode::Intersection(of) => {
-                Form::Intersection(self.list(keys::INTERSECTION, of)?)
+    /// The object of a node: the operator's numbers, then its operands.
+    fn object<const D: usize>(&mut self, node: &Node<D>) -> Result<Value, Problem> {
+        let (mut object, list, operands): (_, _, Vec<&Shape<D>>) = match node {
+            Node::Primitive(primitive) => {
+                return Ok(json!({ primitive.name(): arguments(primitive) }));
             }
-            ShapeNode::Difference(of) => Form::Difference(self.list(keys::DIFFERENCE, of)?),
-            ShapeNode::SymmetricDifference(of) => {
-                Form::SymmetricDifference(self.list(keys::SYMMETRIC_DIFFERENCE, of)?)
+            Node::Union(of) => (json!({}), keys::UNION, of.iter().collect()),
+            Node::Intersection(of) => (json!({}), keys::INTERSECTION, of.iter().collect()),
+            Node::Difference(of) => (json!({}), keys::DIFFERENCE, of.iter().collect()),
+            Node::SymmetricDifference(of) => {
+                (json!({}), keys::SYMMETRIC_DIFFERENCE, of.iter().collect())
             }
-            ShapeNode::Smooth { boolean, profile, width, of } => {
-                let of = self.list(smooth_key(*boolean), of)?;
-                Form::Smooth { boolean: *boolean, of, width: *width, profile: Some(*profile) }
+            Node::Smooth { boolean, profile, width, of } => {
+                let list = match boolean {
+                    Boolean::Union => keys::SMOOTH_UNION,
+                    Boolean::Intersection => keys::SMOOTH_INTERSECTION,
+                    Boolean::Difference => keys::SMOOTH_DIFFERENCE,
+                };
+                let numbers = json!({ keys::WIDTH: width, keys::PROFILE: name_of(*profile) });
+                (numbers, list, of.iter().collect())
             }
-            ShapeNode::Displaced { of, by, height } => {
-                Form::Displaced { of: self.pair(keys::DISPLACE, of, by)?, height: *height }
+            Node::Displaced { of, by, height } => {
+                (json!({ keys::HEIGHT: height }), keys::DISPLACE, vec![of, by])
             }
-            ShapeNode::Morphed { from, into, progress } => {
-                Form::Morphed { of: self.pair(keys::MORPH, from, into)?, progress: *progress }
+            Node::Morphed { from, into, progress } => {
+                (json!({ keys::PROGRESS: progress }), keys::MORPH, vec![from, into])
             }
-            node => self.unary(node)?,
-        })
+            _ => return self.unary(node),
+        };
+        let operands = operands.into_iter().enumerate();
+        let operand =
+            |(i, shape)| self.json(shape).map_err(|problem| problem.at(i).under(list));
+        object[list] = operands.map(operand).collect::<Result<_, _>>()?;
+        Ok(object)
     }
 
     /// The operators on one shape.
-    fn unary<const D: usize>(&mut self, node: &ShapeNode<D>) -> Result<Form, Problem> {
-        Ok(match node {
-            ShapeNode::Placed { pose, of } => {
-                let rotation = rotation::written(&pose.rotation)
-                    .map_err(|problem| problem.under(keys::ROTATION))?;
-                let translate = translation(pose.translation);
-                Form::Placed { translate, rotation, of: self.one(of)? }
+    fn unary<const D: usize>(&mut self, node: &Node<D>) -> Result<Value, Problem> {
+        let (object, of) = match node {
+            Node::Placed { pose, of } => (placement(pose)?, of),
+            Node::Scaled { factor, of } => (json!({ keys::SCALE: factor }), of),
+            Node::Stretched { factors, of } => (json!({ keys::SCALE: &factors[..] }), of),
+            Node::Offset { distance, of } => (json!({ keys::OFFSET: distance }), of),
+            Node::Shell { thickness, of } => (json!({ keys::SHELL: thickness }), of),
+            Node::Elongated { lengths, of } => (json!({ keys::ELONGATE: &lengths[..] }), of),
+            Node::Mirrored { axis, of } => (json!({ keys::MIRROR: keys::AXES[*axis] }), of),
+            Node::Repeated { copies, of } => (json!({ keys::REPEAT: rows(copies) }), of),
+            Node::Bent { rate, of } => {
+                let (key, rate) = angle(keys::BEND_DEGREES, keys::BEND, *rate);
+                (json!({ key: rate }), of)
             }
-            ShapeNode::Scaled { factor, of } => {
-                Form::Scaled { factor: Factor::Uniform(*factor), of: self.one(of)? }
+            Node::Twisted { rate, of } => {
+                let (key, rate) = angle(keys::TWIST_DEGREES, keys::TWIST, *rate);
+                (json!({ key: rate }), of)
             }
-            ShapeNode::Stretched { factors, of } => {
-                Form::Scaled { factor: Factor::Axes(factors.to_vec()), of: self.one(of)? }
+            Node::Extruded { height, of } => {
+                return self.with_operand(json!({ keys::EXTRUDE: height }), of);
             }
-            ShapeNode::Offset { distance, of } => {
-                Form::Offset { distance: *distance, of: self.one(of)? }
+            Node::Revolved { of } => {
+                return self.with_operand(json!({ keys::REVOLVE: "y" }), of);
             }
-            ShapeNode::Shell { thickness, of } => {
-                Form::Shell { thickness: *thickness, of: self.one(of)? }
-            }
-            ShapeNode::Elongated { lengths, of } => {
-                Form::Elongated { lengths: lengths.to_vec(), of: self.one(of)? }
-            }
-            ShapeNode::Mirrored { axis, of } => {
-                let axis = [Axis::X, Axis::Y, Axis::Z][*axis];
-                Form::Mirrored { axis, of: self.one(of)? }
-            }
-            ShapeNode::Repeated { copies, of } => {
-                Form::Repeated { rows: rows(copies), of: self.one(of)? }
-            }
-            ShapeNode::Bent { rate, of } => {
-                Form::Bent { rate: Angle::from_radians(*rate), of: self.one(of)? }
-            }
-            ShapeNode::Twisted { rate, of } => {
-                Form::Twisted { rate: Angle::from_radians(*rate), of: self.one(of)? }
-            }
-            ShapeNode::Extruded { height, of } => {
-                Form::Extruded { height: *height, of: self.one(of)? }
-            }
-            ShapeNode::Revolved { of } => Form::Revolved { of: self.one(of)? },
-            ShapeNode::Opaque(opaque) => {
+            Node::Opaque(opaque) => {
                 let kind = opaque.type_name();
                 let message =
                     format!("`{kind}` is opaque: files hold primitives and operators");
                 return Err(Problem::new(message));
             }
             other => return Err(Problem::new(format!("files have no operator for {other:?}"))),
-        })
+        };
+        self.with_operand(object, of)
     }
 
-    fn one<const D: usize>(&mut self, of: &Shape<D>) -> Result<Box<Node>, Problem> {
-        self.node(of).map(Box::new).map_err(|problem| problem.under(keys::OF))
-    }
-
-    fn list<const D: usize>(
+    /// The object of an operator with the shape that it is applied to.
+    fn with_operand<const D: usize>(
         &mut self,
-        key: &str,
-        of: &[Shape<D>],
-    ) -> Result<Vec<Node>, Problem> {
-        let nodes = of.iter().enumerate();
-        let node = |(i, shape)| self.node(shape).map_err(|problem| problem.at(i).under(key));
-        nodes.map(node).collect()
-    }
-
-    fn pair<const D: usize>(
-        &mut self,
-        key: &str,
-        first: &Shape<D>,
-        second: &Shape<D>,
-    ) -> Result<Vec<Node>, Problem> {
-        let first = self.node(first).map_err(|problem| problem.at(0).under(key))?;
-        let second = self.node(second).map_err(|problem| problem.at(1).under(key))?;
-        Ok(vec![first, second])
+        mut object: Value,
+        of: &Shape<D>,
+    ) -> Result<Value, Problem> {
+        object[keys::OF] = self.json(of).map_err(|problem| problem.under(keys::OF))?;
+        Ok(object)
     }
 }
 
-fn of_primitive<const D: usize>(primitive: &node::Primitive<D>) -> Form {
-    let arguments =
-        primitive.named().map(|(parameter, argument)| match (parameter.kind, argument) {
-            (ParameterKind::Angle, Argument::Number(angle)) => {
-                let angle = Angle::from_radians(*angle);
-                let key = angle.key(&file_key(parameter), parameter.name).to_owned();
-                (key, Argument::Number(angle.number()))
+/// The arguments of a primitive, by their keys.
+fn arguments<const D: usize>(primitive: &node::Primitive<D>) -> Value {
+    let mut object = Map::new();
+    for (parameter, argument) in primitive.named() {
+        let (key, value) = match argument {
+            Argument::Number(number) if parameter.kind == ParameterKind::Angle => {
+                angle(&file_key(parameter), parameter.name, *number)
             }
-            (_, argument) => (parameter.name.to_owned(), argument.clone()),
-        });
-    Node::primitive(primitive.name(), arguments).form
+            Argument::Number(number) => (parameter.name.to_owned(), json!(number)),
+            Argument::Count(count) => (parameter.name.to_owned(), json!(count)),
+            Argument::Vector(vector) => (parameter.name.to_owned(), json!(vector)),
+            Argument::Points(points) => (parameter.name.to_owned(), json!(points)),
+            Argument::Rings(rings) => (parameter.name.to_owned(), json!(rings)),
+        };
+        object.insert(key, value);
+    }
+    Value::Object(object)
 }
 
-fn rows<const D: usize>(copies: &[Copies; D]) -> Rows {
-    let row = |i: usize| match copies.get(i)? {
-        Copies::One => None,
-        Copies::Between { spacing, first, last } => {
-            Some(Row { spacing: Some(*spacing), first: Some(*first), last: Some(*last) })
-        }
-        Copies::Endless { spacing } => {
-            Some(Row { spacing: Some(*spacing), first: None, last: None })
-        }
-    };
-    let rows = Rows { x: row(0), y: row(1), z: row(2) };
-    if rows == Rows::default() {
-        // A file gives at least one row.
-        let alone = Row { spacing: None, first: Some(0), last: Some(0) };
-        return Rows { x: Some(alone), ..rows };
+/// An angle [rad] with the one of two keys that keeps its bits.
+fn angle(in_degrees: &str, in_radians: &str, angle: f64) -> (String, Value) {
+    match degrees(angle) {
+        Some(degrees) => (in_degrees.to_owned(), json!(degrees)),
+        None => (in_radians.to_owned(), json!(angle)),
     }
-    rows
+}
+
+/// The keys of a placement.
+fn placement<const D: usize>(pose: &Pose<D>) -> Result<Value, Problem> {
+    let rotation =
+        rotation::written(&pose.rotation).map_err(|problem| problem.under(keys::ROTATION))?;
+    let (turn, attitude) = pose::keys(rotation);
+    let mut object = Map::new();
+    if let Some(translation) = translation(pose.translation) {
+        object.insert(keys::TRANSLATE.to_owned(), json!(translation));
+    }
+    if let Some(turn) = turn {
+        object.insert(keys::ROTATE_DEGREES.to_owned(), json!(turn));
+    }
+    if let Some(attitude) = attitude {
+        object.insert(keys::ROTATION.to_owned(), json!(attitude));
+    }
+    Ok(Value::Object(object))
+}
+
+/// The name of a profile.
+fn name_of(profile: Profile) -> &'static str {
+    let found = keys::PROFILES.into_iter().find(|(_, known)| *known == profile);
+    found.map_or("", |(name, _)| name)
+}
+
+fn rows<const D: usize>(copies: &[Copies; D]) -> Value {
+    let mut rows = Map::new();
+    for (axis, copies) in keys::AXES.iter().zip(copies) {
+        let row = match copies {
+            Copies::One => continue,
+            Copies::Between { spacing, first, last } => {
+                json!({ "spacing": spacing, "first": first, "last": last })
+            }
+            Copies::Endless { spacing } => json!({ "spacing": spacing }),
+        };
+        rows.insert((*axis).to_owned(), row);
+    }
+    if rows.is_empty() {
+        // A file gives at least one row.
+        return json!({ "x": { "first": 0, "last": 0 } });
+    }
+    Value::Object(rows)
 }

@@ -6,7 +6,7 @@
 
 use crate::refusal::Schema::{Accepts, Refuses};
 use crate::refusal::check_all;
-use palpate_scene::{Dimension, Node, Scene, WrittenBody};
+use palpate_scene::{Dimension, Scene, WrittenBody, WrittenShape};
 
 #[test]
 fn a_negative_radius_is_found_in_its_line() {
@@ -43,7 +43,7 @@ fn a_negative_radius_is_found_in_its_line() {
 #[test]
 fn without_a_file_there_is_a_path_and_no_line() {
     let mut scene = Scene::new(Dimension::Two);
-    scene.bodies.push(WrittenBody::new("a", Node::reference("b")));
+    scene.bodies.push(WrittenBody::new("a", WrittenShape::reference("b")));
     let error = scene.build().unwrap_err();
     assert_eq!(error.to_string(), "bodies[0].shape: unknown shape `b`; there are none here");
 }
@@ -338,7 +338,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "bend": 1, "bend_degrees": 1, "of": { "ball": { "radius": 1 } } }"#,
-                "shapes.a, line 4: `bend_degrees` and `bend` in one object; an object makes one shape: nest them",
+                "shapes.a, line 4: `bend` and `bend_degrees` in one object; an object makes one shape: nest them",
                 Refuses,
             ),
             (

@@ -5,14 +5,14 @@
 
 use arbitrary::{Result, Unstructured};
 use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
-use palpate_field::operator::{Boolean, Profile};
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
-    Angle, Axis, AxisAngle, Dimension, Factor, Form, FreePlane, GuideCurve, GuideLine,
-    GuidePlane, GuideSegment, GuideWell, Motion, Node, Repeat, Row, Rows, Scene, View,
-    ViewPlane, WrittenBody, WrittenCoupling, WrittenGuide, WrittenMaterial, WrittenPose,
-    WrittenRotation, WrittenTool, WrittenWorkspace,
+    AxisAngle, Dimension, FreePlane, GuideCurve, GuideLine, GuidePlane, GuideSegment,
+    GuideWell, Motion, Repeat, Scene, View, ViewPlane, WrittenBody, WrittenCoupling,
+    WrittenGuide, WrittenMaterial, WrittenPose, WrittenRotation, WrittenShape, WrittenTool,
+    WrittenWorkspace,
 };
+use serde_json::{Map, Value, json};
 
 /// A primitive of the catalogue with the keys of its parameters in files.
 pub(crate) struct Known {
@@ -80,31 +80,40 @@ fn arguments<const D: usize>(parameters: &[Parameter], attempt: usize) -> Vec<Ar
 }
 
 impl Known {
-    /// The node as files have it: angles in degrees, under keys that say so.
-    pub(crate) fn node(&self) -> Node {
-        let pairs = self.parameters.iter().zip(&self.arguments);
-        Node::primitive(
-            self.name,
-            pairs.map(|(parameter, argument)| match (parameter.kind, argument) {
-                (ParameterKind::Angle, Argument::Number(angle)) => (
-                    format!("{}_degrees", parameter.name),
-                    Argument::Number(angle.to_degrees()),
-                ),
-                _ => (parameter.name.to_owned(), argument.clone()),
-            }),
-        )
+    /// The primitive as files have it: angles in degrees, under keys that say so.
+    pub(crate) fn object(&self) -> Map<String, Value> {
+        let mut arguments = Map::new();
+        for (parameter, argument) in self.parameters.iter().zip(&self.arguments) {
+            let name = parameter.name;
+            match (parameter.kind, argument) {
+                (ParameterKind::Angle, Argument::Number(angle)) => {
+                    arguments.insert(format!("{name}_degrees"), json!(angle.to_degrees()))
+                }
+                (_, Argument::Number(number)) => arguments.insert(name.into(), json!(number)),
+                (_, Argument::Count(count)) => arguments.insert(name.into(), json!(count)),
+                (_, Argument::Vector(vector)) => arguments.insert(name.into(), json!(vector)),
+                (_, Argument::Points(points)) => arguments.insert(name.into(), json!(points)),
+                (_, Argument::Rings(rings)) => arguments.insert(name.into(), json!(rings)),
+            };
+        }
+        Map::from_iter([(self.name.to_owned(), Value::Object(arguments))])
     }
 }
 
-const PROFILES: [Profile; 7] = [
-    Profile::Quadratic,
-    Profile::Cubic,
-    Profile::Quartic,
-    Profile::Circular,
-    Profile::Root,
-    Profile::Exponential,
-    Profile::CircularGeometrical,
+const PROFILES: [&str; 7] = [
+    "quadratic",
+    "cubic",
+    "quartic",
+    "circular",
+    "root",
+    "exponential",
+    "circular_geometrical",
 ];
+
+/// A shape of a scene.
+pub(crate) fn written(json: &Value) -> WrittenShape {
+    WrittenShape::from_json(&json.to_string()).unwrap()
+}
 
 /// What random scenes are made from.
 pub(crate) struct Generator {
@@ -126,12 +135,13 @@ impl Generator {
         let mut scene = Scene::new(dimension);
         scene.description = text(u)?;
         for i in 0..u.int_in_range(0..=3)? {
-            let node = self.node(u, d, 3, i)?;
-            scene.shapes.insert(shape_name(i), node);
+            let shape = written(&self.shape(u, d, 3, i)?);
+            scene.shapes.insert(shape_name(i), shape);
         }
         let shapes = scene.shapes.len();
         for i in 0..u.int_in_range(1..=3)? {
-            let mut body = WrittenBody::new(format!("body {i}"), self.node(u, d, 4, shapes)?);
+            let shape = written(&self.shape(u, d, 4, shapes)?);
+            let mut body = WrittenBody::new(format!("body {i}"), shape);
             body.description = text(u)?;
             body.pose = maybe(u, |u| pose(u, d))?;
             body.material = maybe(u, |u| {
@@ -158,78 +168,78 @@ impl Generator {
 
     /// A shape of dimension `d` at most `depth` deep, that may refer to the first
     /// `shapes` named ones.
-    fn node(&self, u: Random, d: usize, depth: usize, shapes: usize) -> Result<Node> {
-        let mut node = Node::new(self.form(u, d, depth, shapes)?);
-        node.description = text(u)?;
-        Ok(node)
-    }
-
-    fn form(&self, u: Random, d: usize, depth: usize, shapes: usize) -> Result<Form> {
+    fn shape(&self, u: Random, d: usize, depth: usize, shapes: usize) -> Result<Value> {
         if depth == 0 || u.ratio(1, 4)? {
             if shapes > 0 && u.ratio(1, 3)? {
-                return Ok(Form::Reference(shape_name(u.choose_index(shapes)?)));
+                let name = shape_name(u.choose_index(shapes)?);
+                return Ok(if u.arbitrary()? { json!(name) } else { json!({ "shape": name }) });
             }
             let list = if d == 2 { &self.planar } else { &self.spatial };
-            return Ok(u.choose(list)?.node().form);
+            let object = u.choose(list)?.object();
+            return described(u, object);
         }
-        let many = |u: Random| -> Result<Vec<Node>> {
-            let count = u.int_in_range(1..=3)?;
-            (0..count).map(|_| self.node(u, d, depth - 1, shapes)).collect()
-        };
-        let of = |u: Random| self.node(u, d, depth - 1, shapes).map(Box::new);
-        let two = |u: Random| -> Result<Vec<Node>> {
-            (0..2).map(|_| self.node(u, d, depth - 1, shapes)).collect()
-        };
-        Ok(match u.int_in_range(0..=if d == 3 { 17 } else { 14 })? {
-            0 => Form::Union(many(u)?),
-            1 => Form::Intersection(many(u)?),
-            2 => Form::Difference(many(u)?),
-            3 => Form::SymmetricDifference(many(u)?),
-            4 => Form::Smooth {
-                boolean: *u.choose(&[
-                    Boolean::Union,
-                    Boolean::Intersection,
-                    Boolean::Difference,
-                ])?,
-                of: many(u)?,
-                width: length(u)?,
-                profile: maybe(u, |u| Ok(*u.choose(&PROFILES)?))?,
-            },
-            11 => Form::Displaced { of: two(u)?, height: length(u)? },
-            12 => Form::Morphed { of: two(u)?, progress: u.int_in_range(0..=8)? as f64 / 8.0 },
-            13 => Form::Bent { rate: rate(u)?, of: of(u)? },
-            14 => Form::Repeated { rows: rows(u, d)?, of: of(u)? },
-            15 => Form::Twisted { rate: rate(u)?, of: of(u)? },
-            5 => Form::Placed {
-                translate: Some(numbers(u, d)?),
-                rotation: maybe(u, |u| rotation(u, d))?,
-                of: of(u)?,
-            },
-            6 => Form::Scaled {
-                factor: if u.arbitrary()? {
-                    Factor::Uniform(length(u)?)
+        let mut object = Map::new();
+        let mut put = |key: &str, value: Value| drop(object.insert(key.to_owned(), value));
+        let operator = u.int_in_range(0..=if d == 3 { 17 } else { 14 })?;
+        match operator {
+            0..=3 => {
+                let lists = ["union", "intersection", "difference", "symmetric_difference"];
+                put(lists[operator], self.shapes(u, d, depth, shapes)?);
+            }
+            4 => {
+                let lists = ["smooth_union", "smooth_intersection", "smooth_difference"];
+                put("width", json!(length(u)?));
+                if let Some(profile) = maybe(u, |u| Ok(*u.choose(&PROFILES)?))? {
+                    put("profile", json!(profile));
+                }
+                put(u.choose(&lists)?, self.shapes(u, d, depth, shapes)?);
+            }
+            5 | 6 => {
+                let mut shape = || self.shape(u, d, depth - 1, shapes);
+                let two = json!([shape()?, shape()?]);
+                if operator == 5 {
+                    put("height", json!(length(u)?));
+                    put("displace", two);
                 } else {
-                    Factor::Axes((0..d).map(|_| length(u)).collect::<Result<_>>()?)
-                },
-                of: of(u)?,
-            },
-            7 => Form::Offset { distance: 0.1 * number(u)?, of: of(u)? },
-            8 => Form::Shell { thickness: length(u)?, of: of(u)? },
-            9 => Form::Elongated {
-                lengths: (0..d).map(|_| length(u)).collect::<Result<_>>()?,
-                of: of(u)?,
-            },
-            10 => Form::Mirrored { axis: *u.choose(&[Axis::X, Axis::Y])?, of: of(u)? },
-            16 => Form::Extruded {
-                height: length(u)?,
-                of: Box::new(self.node(u, 2, depth - 1, 0)?),
-            },
-            _ => Form::Revolved { of: Box::new(self.node(u, 2, depth - 1, 0)?) },
-        })
+                    put("progress", json!(u.int_in_range(0..=8)? as f64 / 8.0));
+                    put("morph", two);
+                }
+            }
+            7 => {
+                put("translate", json!(numbers(u, d)?));
+                let rotation = maybe(u, |u| rotation(u, d))?;
+                let pose = WrittenPose { rotation, ..WrittenPose::default() };
+                let pose = serde_json::to_value(pose).unwrap();
+                pose.as_object().unwrap().iter().for_each(|(key, turn)| put(key, turn.clone()));
+            }
+            8 if u.arbitrary()? => put("scale", json!(length(u)?)),
+            8 => put("scale", json!(lengths(u, d)?)),
+            9 => put("offset", json!(0.1 * number(u)?)),
+            10 => put("shell", json!(length(u)?)),
+            11 => put("elongate", json!(lengths(u, d)?)),
+            12 => put("mirror", json!(u.choose(&["x", "y"])?)),
+            13 => put(u.choose(&["bend", "bend_degrees"])?, json!(number(u)?)),
+            14 => put("repeat", rows(u, d)?),
+            15 => put(u.choose(&["twist", "twist_degrees"])?, json!(number(u)?)),
+            16 => put("extrude", json!(length(u)?)),
+            _ => put("revolve", json!("y")),
+        }
+        match operator {
+            0..=6 => {}
+            16.. => put("of", self.shape(u, 2, depth - 1, 0)?),
+            _ => put("of", self.shape(u, d, depth - 1, shapes)?),
+        }
+        described(u, object)
+    }
+
+    /// One to three shapes.
+    fn shapes(&self, u: Random, d: usize, depth: usize, shapes: usize) -> Result<Value> {
+        let count = u.int_in_range(1..=3)?;
+        (0..count).map(|_| self.shape(u, d, depth - 1, shapes)).collect()
     }
 
     fn tool(&self, u: Random, d: usize, shapes: usize) -> Result<WrittenTool> {
-        let shape = maybe(u, |u| self.node(u, d, 2, shapes))?;
+        let shape = maybe(u, |u| Ok(written(&self.shape(u, d, 2, shapes)?)))?;
         let points = if shape.is_some() { 0 } else { u.int_in_range(0..=3)? };
         Ok(WrittenTool {
             description: text(u)?,
@@ -270,6 +280,15 @@ fn text(u: Random) -> Result<Option<String>> {
     Ok(Some(u.choose(&["", "plain", "tab\tnewline\n\"quoted\" \\ \u{1} 😀"])?.to_string()))
 }
 
+/// The object, a quarter of the time with a description, first or last.
+fn described(u: Random, mut object: Map<String, Value>) -> Result<Value> {
+    if let Some(text) = text(u)? {
+        let place = if u.arbitrary()? { 0 } else { object.len() };
+        object.shift_insert(place, "description".to_owned(), json!(text));
+    }
+    Ok(Value::Object(object))
+}
+
 /// A positive number, of any scale.
 fn length(u: Random) -> Result<f64> {
     let mantissa = 1.0 + u.int_in_range(0..=u32::MAX)? as f64 / 4_294_967_296.0;
@@ -290,6 +309,10 @@ fn numbers(u: Random, count: usize) -> Result<Vec<f64>> {
     (0..count).map(|_| number(u)).collect()
 }
 
+fn lengths(u: Random, count: usize) -> Result<Vec<f64>> {
+    (0..count).map(|_| length(u)).collect()
+}
+
 fn direction<const N: usize>(u: Random) -> Result<[f64; N]> {
     let mut direction = [0.0; N];
     for x in &mut direction {
@@ -297,12 +320,6 @@ fn direction<const N: usize>(u: Random) -> Result<[f64; N]> {
     }
     direction[0] = length(u)?;
     Ok(direction)
-}
-
-/// An angle for each metre.
-fn rate(u: Random) -> Result<Angle> {
-    let rate = number(u)?;
-    Ok(if u.arbitrary()? { Angle::Degrees(rate) } else { Angle::Radians(rate) })
 }
 
 /// A matrix that turns by an angle in the plane of the first two axes.
@@ -470,21 +487,19 @@ fn view(u: Random, d: usize, i: usize) -> Result<View> {
 }
 
 /// Rows of copies along at least one axis.
-fn rows(u: Random, d: usize) -> Result<Rows> {
-    let row = |u: Random| -> Result<Row> {
-        let ends = maybe(u, |u| {
+fn rows(u: Random, d: usize) -> Result<Value> {
+    let mut rows = Map::new();
+    for axis in ["x", "y", "z"].into_iter().take(d) {
+        if axis != "x" && u.arbitrary()? {
+            continue;
+        }
+        let mut row = json!({ "spacing": length(u)? });
+        if u.arbitrary()? {
             let first = u.int_in_range(-3..=1_i32)?;
-            Ok((first, first + u.int_in_range(0..=3_i32)?))
-        })?;
-        Ok(Row {
-            spacing: Some(length(u)?),
-            first: ends.map(|(first, _)| first),
-            last: ends.map(|(_, last)| last),
-        })
-    };
-    Ok(Rows {
-        x: Some(row(u)?),
-        y: maybe(u, row)?,
-        z: if d == 3 { maybe(u, row)? } else { None },
-    })
+            row["first"] = json!(first);
+            row["last"] = json!(first + u.int_in_range(0..=3_i32)?);
+        }
+        rows.insert(axis.to_owned(), row);
+    }
+    Ok(Value::Object(rows))
 }

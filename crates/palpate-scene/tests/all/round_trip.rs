@@ -3,7 +3,7 @@
 
 //! Writing and reading back is the identity.
 
-use crate::random::{Generator, Known, known};
+use crate::random::{Generator, Known, known, written};
 use arbtest::arbtest;
 use palpate_field::Shape;
 use palpate_field::kernel::Entry;
@@ -67,7 +67,8 @@ fn random_scenes_come_back_and_are_judged_alike() {
 /// A scene with one primitive.
 fn alone(known: &Known, dimension: Dimension) -> Scene {
     let mut scene = Scene::new(dimension);
-    scene.bodies.push(WrittenBody::new("alone", known.node()));
+    let shape = written(&known.object().into());
+    scene.bodies.push(WrittenBody::new("alone", shape));
     scene
 }
 

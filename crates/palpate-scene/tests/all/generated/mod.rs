@@ -77,7 +77,7 @@ const IN_RADIANS: [&str; 2] = ["bend", "twist"];
 #[test]
 fn the_sampler_of_operators_is_current_and_has_every_operator() {
     let schema = schema();
-    let keys = schema["$defs"]["space"]["Node"]["properties"].as_object().unwrap();
+    let keys = schema["$defs"]["space"]["Shape"]["properties"].as_object().unwrap();
     let known = keys.keys().map(String::as_str).filter(|key| {
         let is_operator = !OTHERS.contains(key) && Entry::<3>::find(key).is_none();
         is_operator && !IN_RADIANS.contains(key)

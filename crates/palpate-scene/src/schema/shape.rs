@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The schema of a node: its keys, and which go together.
+//! The schema of a shape: its keys, and which go together.
 
 use palpate_field::kernel::{Parameter, ParameterKind};
 use serde_json::{Map, Value, json};
 
 use super::{place, reference};
 use crate::catalogue::{self, Signature, file_key};
-use crate::node::operators::{self as keys, DESCRIPTION, LISTS, OF, UNARY};
-use crate::node::{Axis, profile};
+use crate::keys::{self, DESCRIPTION, LISTS, OF, UNARY};
 use crate::scene::Dimension;
 
-/// A node: the name of a shape, or an object.
+/// A shape: the name of another shape, or an object.
 ///
 /// The object lists all keys in one place, so that editors propose them; exactly
 /// one of them, or a translation with a rotation, makes the shape.
@@ -28,7 +27,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         let mut list = json!({
             "description": about,
             "type": "array",
-            "items": { "$ref": "#/$defs/Node" },
+            "items": { "$ref": "#/$defs/Shape" },
             "minItems": 1,
         });
         if keys::PAIRS.contains(&key) {
@@ -46,16 +45,15 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         with_of.push(key);
     }
     // Moving and turning go together, so they count as one.
-    let (moving, others): (Vec<&str>, Vec<&str>) = with_of.iter().partition(|key| {
-        [keys::TRANSLATE, keys::ROTATE_DEGREES, keys::ROTATION].contains(*key)
-    });
+    let (moving, others): (Vec<&str>, Vec<&str>) =
+        with_of.iter().partition(|key| keys::MOVES.contains(*key));
     makers.extend(others.into_iter().map(requires));
     makers.push(json!({ "anyOf": moving.into_iter().map(requires).collect::<Vec<_>>() }));
     makers.push(requires(keys::SHAPE));
 
     let rest = [
         (keys::WIDTH, json!({ "type": "number", "exclusiveMinimum": 0 })),
-        (keys::PROFILE, json!({ "enum": profile::NAMES })),
+        (keys::PROFILE, json!({ "enum": keys::PROFILES.map(|(name, _)| name) })),
         (keys::HEIGHT, json!({ "type": "number", "exclusiveMinimum": 0 })),
         (keys::PROGRESS, json!({ "type": "number", "minimum": 0, "maximum": 1 })),
         (OF, operand(dimension)),
@@ -85,7 +83,7 @@ pub(super) fn schema(dimension: Dimension) -> Value {
             together.extend(lists.iter().map(|list| ((*list).to_owned(), json!([key]))));
         }
     }
-    let mut node = json!({
+    let mut shape = json!({
         "description": "A shape: an object that makes it, or the name of another shape.",
         "type": ["object", "string"],
         "properties": properties,
@@ -95,19 +93,19 @@ pub(super) fn schema(dimension: Dimension) -> Value {
         "then": { "oneOf": makers },
         "dependentSchemas": needs,
     });
-    node["not"] = json!({
+    shape["not"] = json!({
         "type": "object",
         "required": [keys::ROTATE_DEGREES, keys::ROTATION],
     });
     if dimension == Dimension::Three {
-        flat_operands(&mut node);
+        flat_operands(&mut shape);
     }
-    node
+    shape
 }
 
 /// The shapes that have a name: in space they may be flat.
 pub(super) fn named_shapes(dimension: Dimension) -> Value {
-    let own = json!({ "$ref": "#/$defs/Node" });
+    let own = json!({ "$ref": "#/$defs/Shape" });
     let each = match dimension {
         Dimension::Two => own,
         Dimension::Three => json!({ "anyOf": [own, flat()] }),
@@ -119,30 +117,30 @@ pub(super) fn named_shapes(dimension: Dimension) -> Value {
     })
 }
 
-/// The reference to a node of the plane.
+/// The reference to a shape of the plane.
 fn flat() -> Value {
-    json!({ "$ref": reference(Dimension::Two, "Node") })
+    json!({ "$ref": reference(Dimension::Two, "Shape") })
 }
 
 /// What `of` takes before the operator is known.
 fn operand(dimension: Dimension) -> Value {
     let about = "The shape that the operator is applied to.";
     match dimension {
-        Dimension::Two => json!({ "description": about, "$ref": "#/$defs/Node" }),
+        Dimension::Two => json!({ "description": about, "$ref": "#/$defs/Shape" }),
         Dimension::Three => json!({ "description": about }),
     }
 }
 
 /// In space, what is extruded or revolved is flat and everything else is not.
-fn flat_operands(node: &mut Value) {
+fn flat_operands(shape: &mut Value) {
     let makes_solid = json!({
         "anyOf": [{ "required": [keys::EXTRUDE] }, { "required": [keys::REVOLVE] }],
     });
     let of = |schema: Value| json!({ "properties": { OF: schema } });
-    node["allOf"] = json!([{
+    shape["allOf"] = json!([{
         "if": makes_solid,
         "then": of(flat()),
-        "else": of(json!({ "$ref": format!("#/$defs/{}/Node", place(Dimension::Three)) })),
+        "else": of(json!({ "$ref": format!("#/$defs/{}/Shape", place(Dimension::Three)) })),
     }]);
 }
 
@@ -168,7 +166,7 @@ fn rows(dimension: Dimension) -> Value {
         "additionalProperties": false,
     });
     let mut axes = Map::new();
-    for axis in ["x", "y", "z"].into_iter().take(dimension.count()) {
+    for axis in keys::AXES.into_iter().take(dimension.count()) {
         axes.insert(axis.to_owned(), row.clone());
     }
     json!({
@@ -191,13 +189,12 @@ fn operator(key: &str, dimension: Dimension) -> Option<Value> {
         keys::OFFSET => json!({ "type": "number" }),
         keys::SHELL => factor,
         keys::ELONGATE => factors(&json!({ "type": "number", "minimum": 0 }), dimension),
-        keys::MIRROR if is_solid => json!({ "enum": [Axis::X, Axis::Y, Axis::Z] }),
-        keys::MIRROR => json!({ "enum": [Axis::X, Axis::Y] }),
+        keys::MIRROR => json!({ "enum": keys::AXES[..dimension.count()] }),
         keys::REPEAT => rows(dimension),
         keys::BEND_DEGREES | keys::BEND => json!({ "type": "number" }),
         keys::TWIST_DEGREES | keys::TWIST if is_solid => json!({ "type": "number" }),
         keys::EXTRUDE if is_solid => factor,
-        keys::REVOLVE if is_solid => json!({ "enum": [Axis::Y] }),
+        keys::REVOLVE if is_solid => json!({ "enum": ["y"] }),
         _ => return None,
     })
 }

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The keys of a node that are not primitives: one list for reading, writing
+//! The keys of a shape's object that are not primitives: one list for reading, writing
 //! and the schema.
+
+use palpate_field::operator::Profile;
 
 /// `{ "union": [..] }`.
 pub(crate) const UNION: &str = "union";
@@ -64,7 +66,7 @@ pub(crate) const REVOLVE: &str = "revolve";
 pub(crate) const OF: &str = "of";
 /// `{ "shape": "name" }`.
 pub(crate) const SHAPE: &str = "shape";
-/// What a node is for.
+/// What a shape is for.
 pub(crate) const DESCRIPTION: &str = "description";
 
 /// The operators whose key holds the list of their operands.
@@ -108,8 +110,25 @@ pub(crate) const UNARY: [(&str, &str); 15] = [
     (REVOLVE, "Turns a 2D shape about y, its x the distance from the axis."),
 ];
 
-/// The rest of the keys.
-const OTHERS: [&str; 7] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, SHAPE, DESCRIPTION];
+/// The operators of [`UNARY`] that may be there together.
+pub(crate) const MOVES: [&str; 3] = [TRANSLATE, ROTATE_DEGREES, ROTATION];
+
+/// The keys that make no shape by themselves.
+pub(crate) const OTHERS: [&str; 6] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, DESCRIPTION];
+
+/// The axes of a mirror and of rows of copies.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The profiles of smooth booleans.
+pub(crate) const PROFILES: [(&str, Profile); 7] = [
+    ("quadratic", Profile::Quadratic),
+    ("cubic", Profile::Cubic),
+    ("quartic", Profile::Quartic),
+    ("circular", Profile::Circular),
+    ("root", Profile::Root),
+    ("exponential", Profile::Exponential),
+    ("circular_geometrical", Profile::CircularGeometrical),
+];
 
 /// The smooth booleans.
 pub(crate) const SMOOTH: [&str; 3] = [SMOOTH_UNION, SMOOTH_INTERSECTION, SMOOTH_DIFFERENCE];
@@ -126,12 +145,18 @@ pub(crate) const WITH_LISTS: [(&str, bool, &[&str], &str); 4] = [
     (PROGRESS, true, &[MORPH], "how far on the way, from 0 to 1"),
 ];
 
-/// Every key that a node may have, the primitives' names included.
+/// `true` if `key` is in a list of operators.
+pub(crate) fn is_one_of(operators: &[(&str, &str)], key: &str) -> bool {
+    operators.iter().any(|(operator, _)| *operator == key)
+}
+
+/// Every key that the object of a shape may have, the primitives' names included.
 pub(crate) fn all_keys() -> Vec<&'static str> {
     let lists = LISTS.iter().map(|(key, _)| *key);
     let unary = UNARY.iter().map(|(key, _)| *key);
     let primitives = crate::catalogue::signatures().map(|signature| signature.name);
-    let mut keys: Vec<_> = primitives.chain(lists).chain(unary).chain(OTHERS).collect();
+    let others = OTHERS.into_iter().chain([SHAPE]);
+    let mut keys: Vec<_> = primitives.chain(lists).chain(unary).chain(others).collect();
     keys.sort_unstable();
     keys.dedup();
     keys

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! An operator with its numbers and the shapes it is applied to.
+
+use palpate_field::operator::{Copies, Profile};
+use palpate_field::{Shape, ShapeError};
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::builder::{Builder, Built, Space};
+use super::object::Object;
+use super::size::Size;
+use crate::json::{self, found};
+use crate::keys;
+use crate::pose::{self, Turning, Turns};
+use crate::problem::Problem;
+
+/// The problem of an operator whose number is under `key`.
+pub(super) fn refused(key: &str, error: &ShapeError) -> Problem {
+    let problem = Problem::new(error.to_string());
+    match error {
+        ShapeError::Number { .. } => problem.under(key),
+        _ => problem,
+    }
+}
+
+impl<'a> Builder<'a> {
+    /// The operators on a list of shapes.
+    pub(super) fn list<const D: usize>(
+        &mut self,
+        object: Object<'a>,
+        level: usize,
+    ) -> Result<Built<D>, Problem>
+    where
+        Self: Space<'a, D>,
+        Turns: Turning<D>,
+    {
+        let key = object.head;
+        let operands = object.value(key)?;
+        let Value::Array(operands) = operands else {
+            let message = format!("must be a list, got {}", found(operands));
+            return Err(Problem::about(message).under(key));
+        };
+        if operands.is_empty() {
+            let message = format!("{key} must have at least 1 shape, got 0");
+            return Err(Problem::new(message).under(key));
+        }
+        let mut shapes = Vec::with_capacity(operands.len());
+        let mut sizes = Vec::with_capacity(operands.len());
+        for (i, operand) in operands.iter().enumerate() {
+            let built =
+                self.node(operand, level).map_err(|problem| problem.at(i).under(key))?;
+            shapes.push(built.shape);
+            sizes.push(built.size);
+        }
+        let size = Size::over(&sizes);
+        self.allowance.take(size, level)?;
+        let (shape, number) = match key {
+            keys::UNION => (Shape::union(shapes), key),
+            keys::INTERSECTION => (Shape::intersection(shapes), key),
+            keys::DIFFERENCE => (shapes.remove(0).difference(shapes), key),
+            keys::SYMMETRIC_DIFFERENCE => (Shape::symmetric_difference(shapes), key),
+            keys::DISPLACE => {
+                let [what, by] = two(shapes, key)?;
+                (what.displaced(by, object.read(keys::HEIGHT)?), keys::HEIGHT)
+            }
+            keys::MORPH => {
+                let [from, into] = two(shapes, key)?;
+                (from.morphed(into, object.read(keys::PROGRESS)?), keys::PROGRESS)
+            }
+            _ => {
+                let (width, profile) = (object.read(keys::WIDTH)?, profile(&object)?);
+                let shape = match key {
+                    keys::SMOOTH_UNION => Shape::smooth_union(shapes, profile, width),
+                    keys::SMOOTH_INTERSECTION => {
+                        Shape::smooth_intersection(shapes, profile, width)
+                    }
+                    _ => shapes.remove(0).smooth_difference(shapes, profile, width),
+                };
+                (shape, keys::WIDTH)
+            }
+        };
+        let shape = shape.map_err(|error| refused(number, &error))?;
+        Ok(Built { shape, size })
+    }
+
+    /// The operators on one shape that keep its dimension.
+    pub(super) fn unary<const D: usize>(
+        &mut self,
+        object: Object<'a>,
+        level: usize,
+    ) -> Result<Built<D>, Problem>
+    where
+        Self: Space<'a, D>,
+        Turns: Turning<D>,
+    {
+        let key = object.head;
+        let child: Built<D> = self
+            .node(object.value(keys::OF)?, level)
+            .map_err(|problem| problem.under(keys::OF))?;
+        let size = match key {
+            keys::REPEAT => Size::over(&[child.size.repeated(D as u32)]),
+            _ => Size::over(&[child.size]),
+        };
+        self.allowance.take(size, level)?;
+        let child = child.shape;
+        let shape = match key {
+            keys::SCALE => match object.value(key)? {
+                Value::Number(_) => child.scaled(object.read(key)?),
+                Value::Array(_) => child.stretched(vector(&object)?),
+                other => {
+                    let found = found(other);
+                    let message = format!(
+                        "must be a number, or a list with one for each axis, got {found}"
+                    );
+                    return Err(Problem::about(message).under(key));
+                }
+            },
+            keys::OFFSET => child.offset(object.read(key)?),
+            keys::SHELL => child.shell(object.read(key)?),
+            keys::ELONGATE => child.elongated(vector(&object)?),
+            keys::MIRROR => {
+                let axis = object.word(key, &keys::AXES)?;
+                if axis >= D {
+                    let message = "there is no z in 2D: mirror \"x\" or \"y\"";
+                    return Err(Problem::new(message).of_dimension().under(key));
+                }
+                child.mirrored(axis)
+            }
+            keys::REPEAT => {
+                let copies =
+                    copies(object.value(key)?).map_err(|problem| problem.under(key))?;
+                child.repeated(copies)
+            }
+            keys::BEND => child.bent(object.read(key)?),
+            keys::BEND_DEGREES => child.bent(object.read::<f64>(key)?.to_radians()),
+            keys::TWIST | keys::TWIST_DEGREES => {
+                let rate: f64 = object.read(key)?;
+                let is_degrees = key == keys::TWIST_DEGREES;
+                let rate = if is_degrees { rate.to_radians() } else { rate };
+                return Self::twisted(child, key, rate).map(|shape| Built { shape, size });
+            }
+            _ => {
+                let translation: Option<Vec<f64>> = object.read_if(keys::TRANSLATE)?;
+                let rotation = pose::one_rotation(
+                    object.read_if(keys::ROTATE_DEGREES)?,
+                    object.read_if(keys::ROTATION)?,
+                );
+                let rotation = rotation.map_err(Problem::new)?;
+                let translation = (keys::TRANSLATE, translation.as_deref());
+                child.placed(&pose::pose(translation, rotation.as_ref())?)
+            }
+        };
+        let number = if keys::MOVES.contains(&key) { keys::TRANSLATE } else { key };
+        let shape = shape.map_err(|error| refused(number, &error))?;
+        Ok(Built { shape, size })
+    }
+}
+
+/// The two shapes of a list.
+fn two<const D: usize>(shapes: Vec<Shape<D>>, key: &str) -> Result<[Shape<D>; 2], Problem> {
+    let count = shapes.len();
+    shapes
+        .try_into()
+        .map_err(|_| Problem::new(format!("{key} must have 2 shapes, got {count}")).under(key))
+}
+
+/// The profile of a smooth boolean; quadratic if left out.
+fn profile(object: &Object<'_>) -> Result<Profile, Problem> {
+    if !object.has(keys::PROFILE) {
+        return Ok(Profile::Quadratic);
+    }
+    let place = object.word(keys::PROFILE, &keys::PROFILES.map(|(name, _)| name))?;
+    Ok(keys::PROFILES[place].1)
+}
+
+/// One number for each axis, under the key of the operator.
+fn vector<const D: usize>(object: &Object<'_>) -> Result<[f64; D], Problem> {
+    let numbers: Vec<f64> = object.read(object.head)?;
+    pose::array(&numbers).map_err(|problem| problem.under(object.head))
+}
+
+/// Rows of copies, along the axes that have one.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct Rows {
+    x: Option<Row>,
+    y: Option<Row>,
+    z: Option<Row>,
+}
+
+/// A row of copies: between two numbers, or without end. The shape itself is number 0. A row from
+/// 0 to 0 without a spacing is the shape alone, as along an axis without a row.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct Row {
+    spacing: Option<f64>,
+    first: Option<i32>,
+    last: Option<i32>,
+}
+
+/// The copies along each axis; a problem seen from `rows`.
+fn copies<const D: usize>(rows: &Value) -> Result<[Copies; D], Problem> {
+    let rows: Rows = json::read(rows)?;
+    if D == 2 && rows.z.is_some() {
+        let problem = Problem::new("there is no z in 2D: repeat along x or y");
+        return Err(problem.of_dimension().under("z"));
+    }
+    let axes = [("x", rows.x), ("y", rows.y), ("z", rows.z)];
+    if axes.iter().all(|(_, row)| row.is_none()) {
+        return Err(Problem::new("repeat must have a row along at least one axis"));
+    }
+    let mut copies = [Copies::One; D];
+    for (copies, (axis, row)) in copies.iter_mut().zip(axes) {
+        *copies = match row {
+            None | Some(Row { spacing: None, first: Some(0), last: Some(0) }) => Copies::One,
+            Some(Row { spacing: None, .. }) => {
+                return Err(Problem::new("missing key `spacing`").under(axis));
+            }
+            Some(Row { spacing: Some(spacing), first: None, last: None }) => {
+                Copies::Endless { spacing }
+            }
+            Some(Row { spacing: Some(spacing), first: Some(first), last: Some(last) }) => {
+                Copies::Between { spacing, first, last }
+            }
+            Some(_) => return Err(Problem::new("first and last go together").under(axis)),
+        };
+    }
+    Ok(copies)
+}

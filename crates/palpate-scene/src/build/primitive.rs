@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! A primitive with its arguments.
+
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::{Argument, Parameter, ParameterKind};
+use palpate_field::{Shape, ShapeError, Unit};
+use serde_json::{Map, Value};
+
+use super::object::check_description;
+use crate::catalogue::{self, Signature, file_key};
+use crate::json::{self, found};
+use crate::keys::DESCRIPTION;
+use crate::pose;
+use crate::problem::{Problem, unknown};
+use crate::scene::Dimension;
+
+/// Makes the primitive called `name`; its weight is the number of nodes it counts as.
+pub(super) fn primitive<const D: usize>(
+    name: &str,
+    arguments: &Value,
+) -> Result<(Shape<D>, usize), Problem> {
+    read(name, arguments).map_err(|problem| problem.under(name))
+}
+
+fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usize), Problem> {
+    let Value::Object(given) = arguments else {
+        let message =
+            format!("must be an object with its parameters, got {}", found(arguments));
+        return Err(Problem::about(message));
+    };
+    let candidates = catalogue::named(name);
+    let here = candidates.iter().find(|signature| signature.dimension.count() == D);
+    let other = candidates.iter().find(|signature| signature.dimension.count() != D);
+    let Some((entry, signature)) = Entry::<D>::find(name).zip(here) else {
+        let there = other.map_or(Dimension::Two, |signature| signature.dimension);
+        let message = format!("`{name}` is a {there} shape, this place is {D}D");
+        return Err(Problem::new(message).of_dimension());
+    };
+    check_description(given)?;
+    check_keys(given, signature, other)?;
+    let mut arguments = Vec::with_capacity(entry.parameters.len());
+    for parameter in entry.parameters {
+        let Some((key, value)) = given_for(given, parameter)? else {
+            let key = file_key(parameter);
+            let missing = Problem::new(format!("missing key `{key}`: {}", parameter.about));
+            let is_elsewhere_needless = other.is_some_and(|o| o.parameter(&key).is_none());
+            return Err(if is_elsewhere_needless { missing.of_dimension() } else { missing });
+        };
+        let argument = argument(parameter.kind, value)
+            .and_then(|argument| check_dimension::<D>(&argument).map(|()| argument))
+            .map_err(|problem| problem.under(key))?;
+        arguments.push(match argument {
+            Argument::Number(degrees) if key != parameter.name => {
+                Argument::Number(degrees.to_radians())
+            }
+            other => other,
+        });
+    }
+    let shape = entry.build(&arguments).map_err(|error| refused(entry, given, &error))?;
+    Ok((shape, arguments.iter().map(weight).sum::<usize>().max(1)))
+}
+
+/// Checks that the primitive has a parameter of each key; `other` is the primitive of that name in
+/// the other dimension.
+fn check_keys(
+    given: &Map<String, Value>,
+    signature: &Signature,
+    other: Option<&Signature>,
+) -> Result<(), Problem> {
+    let is_known = |key: &String| *key == DESCRIPTION || signature.parameter(key).is_some();
+    let Some(key) = given.keys().find(|key| !is_known(key)) else { return Ok(()) };
+    let known: Vec<_> = signature.parameters.iter().map(file_key).collect();
+    let known: Vec<_> = known.iter().map(AsRef::as_ref).collect();
+    let problem = Problem::new(unknown("key", key, &known)).under(key);
+    let is_known_elsewhere = other.is_some_and(|other| other.parameter(key).is_some());
+    Err(if is_known_elsewhere { problem.of_dimension() } else { problem })
+}
+
+/// The key and value given for a parameter: for an angle in degrees, or in radians.
+fn given_for<'a>(
+    given: &'a Map<String, Value>,
+    parameter: &Parameter,
+) -> Result<Option<(&'a str, &'a Value)>, Problem> {
+    let in_file = file_key(parameter);
+    let degrees = given.get_key_value(&*in_file).filter(|_| in_file != parameter.name);
+    match (degrees, given.get_key_value(parameter.name)) {
+        (Some((degrees, _)), Some((radians, _))) => Err(Problem::new(format!(
+            "`{degrees}` and `{radians}` say the same; give one of them"
+        ))),
+        (found, None) | (None, found) => Ok(found.map(|(key, value)| (key.as_str(), value))),
+    }
+}
+
+/// Reads an argument of a kind.
+fn argument(kind: ParameterKind, value: &Value) -> Result<Argument, Problem> {
+    match kind {
+        ParameterKind::Count => json::read(value).map(Argument::Count),
+        ParameterKind::Vector | ParameterKind::Direction => {
+            json::read(value).map(Argument::Vector)
+        }
+        ParameterKind::Points => json::read(value).map(Argument::Points),
+        ParameterKind::Rings => json::read(value).map(Argument::Rings),
+        _ => json::read(value).map(Argument::Number),
+    }
+}
+
+/// Checks that every position has as many numbers as there are dimensions.
+fn check_dimension<const D: usize>(argument: &Argument) -> Result<(), Problem> {
+    let check = |numbers: &Vec<f64>| pose::array::<D>(numbers).map(drop);
+    let check_all = |points: &Vec<Vec<f64>>| {
+        points.iter().enumerate().try_for_each(|(i, p)| check(p).map_err(|e| e.at(i)))
+    };
+    match argument {
+        Argument::Number(_) | Argument::Count(_) => Ok(()),
+        Argument::Vector(vector) => check(vector),
+        Argument::Points(points) => check_all(points),
+        Argument::Rings(rings) => {
+            rings.iter().enumerate().try_for_each(|(i, r)| check_all(r).map_err(|e| e.at(i)))
+        }
+    }
+}
+
+/// How many nodes the argument is worth: one for each position of a list.
+fn weight(argument: &Argument) -> usize {
+    match argument {
+        Argument::Points(points) => points.len(),
+        Argument::Rings(rings) => rings.iter().map(Vec::len).sum(),
+        _ => 0,
+    }
+}
+
+/// What the kernel refuses, said with the keys of the file.
+fn refused<const D: usize>(
+    entry: &Entry<D>,
+    given: &Map<String, Value>,
+    error: &ShapeError,
+) -> Problem {
+    let (ShapeError::Number { parameter: name, .. }
+    | ShapeError::Count { parameter: name, .. }) = error
+    else {
+        return Problem::new(error.to_string());
+    };
+    // "points[2]" is about the parameter "points".
+    let base = name.split(['[', '.']).next().unwrap_or(name);
+    let parameter = entry.parameters.iter().find(|parameter| parameter.name == base);
+    let in_file = |parameter| Some((parameter, given_for(given, parameter).ok()??));
+    let Some((parameter, (key, _))) = parameter.and_then(in_file) else {
+        return Problem::new(error.to_string());
+    };
+    let message = match error {
+        ShapeError::Number { rule, value, .. }
+            if parameter.kind == ParameterKind::Angle && value.1 == Unit::Radian =>
+        {
+            format!("{key} must be {rule}, got {value} ({}°)", value.0.to_degrees())
+        }
+        _ => error.to_string(),
+    };
+    Problem::new(message).under(key)
+}
