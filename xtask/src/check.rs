@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use crate::command::{Failure, cargo, cargo_with, metadata, root};
-use crate::{builds, layers, licences, links, sizes, sources, words};
+use crate::{api, builds, layers, licences, links, sizes, sources, words};
 
 type Stage = (&'static str, fn() -> Result<(), Failure>);
 
@@ -24,13 +24,17 @@ const STAGES: &[Stage] = &[
         cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"])
     }),
     ("wasm", builds::wasm),
-    ("docs", || {
-        cargo_with(
-            &["doc", "--workspace", "--no-deps", "--locked"],
-            &[("RUSTDOCFLAGS", "-D warnings")],
-        )
-    }),
+    ("docs", document),
+    ("api", || document().and_then(|()| api::check())),
 ];
+
+/// Makes the documentation of every crate.
+pub(crate) fn document() -> Result<(), Failure> {
+    cargo_with(
+        &["doc", "--workspace", "--no-deps", "--locked"],
+        &[("RUSTDOCFLAGS", "-D warnings")],
+    )
+}
 
 fn architecture() -> Result<String, Failure> {
     std::fs::read_to_string(root().join("ARCHITECTURE.md"))

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The project's own chores: `cargo xtask test`, `cargo xtask check`, `cargo xtask oracle`.
+//! The project's own chores: `cargo xtask test`, `check`, `api` and `oracle`.
 
+mod api;
 mod builds;
 mod check;
 mod command;
@@ -33,12 +34,14 @@ enum Chore {
     /// Run every test of every language in the repository.
     Test,
     /// Check formatting, sources, words, links, sizes, layers, licences, lints, documentation,
-    /// and that the core compiles without a system.
+    /// the list of public items, and that the core compiles without a system.
     Check {
         /// The stages to run; all if none is named.
         #[arg(value_parser = clap::builder::PossibleValuesParser::new(check::stages()))]
         stages: Vec<String>,
     },
+    /// Renew the lists of public items in docs/public-api.
+    Api,
     /// Make testdata/recall: separations that a plain search proves; takes minutes.
     Oracle,
 }
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Test => test(),
         Chore::Check { stages } => check::run(&stages),
+        Chore::Api => check::document().and_then(|()| api::renew()),
         Chore::Oracle => oracle(),
     };
     match result {

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The public interface as a list under review: `docs/public-api/` names every public item with
+//! its fields, variants and methods, one file a crate.
+//!
+//! The list is taken from the pages that rustdoc made: those name what a user can reach.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use crate::command::{Failure, root};
+
+/// The crates whose interface is listed: those that a user depends on.
+const CRATES: &[&str] = &[
+    "palpate",
+    "palpate-cli",
+    "palpate-devices",
+    "palpate-field",
+    "palpate-haptics",
+    "palpate-local",
+    "palpate-loop",
+    "palpate-mesh",
+    "palpate-plot",
+    "palpate-query",
+    "palpate-safety",
+    "palpate-scene",
+    "palpate-vibration",
+];
+
+/// Where a page stops to show what the item itself declares.
+const END_OF_OWN: &str = "id=\"trait-implementations\"";
+
+/// What the ids of members begin with.
+const MEMBERS: &[&str] = &[
+    "structfield.",
+    "variant.",
+    "method.",
+    "tymethod.",
+    "associatedconstant.",
+    "associatedtype.",
+];
+
+/// Fails if the documentation of a crate names other items than its list.
+pub(crate) fn check() -> Result<(), Failure> {
+    let mut failures = Vec::new();
+    for name in CRATES {
+        let (now, path) = (listing(&pages(name))?, list(name));
+        let kept = std::fs::read_to_string(&path).unwrap_or_default();
+        failures.extend(difference(&kept, &now).map(|difference| {
+            Failure(format!(
+                "docs/public-api/{name}.txt {difference}; `cargo xtask api` renews the lists"
+            ))
+            .0
+        }));
+    }
+    Failure::any(failures)
+}
+
+/// Writes the lists.
+pub(crate) fn renew() -> Result<(), Failure> {
+    for name in CRATES {
+        let (now, path) = (listing(&pages(name))?, list(name));
+        std::fs::write(&path, now).map_err(|error| cannot("written", &path, &error))?;
+    }
+    Ok(())
+}
+
+fn list(name: &str) -> PathBuf {
+    root().join("docs/public-api").join(format!("{name}.txt"))
+}
+
+fn pages(name: &str) -> PathBuf {
+    root().join("target/doc").join(name.replace('-', "_"))
+}
+
+fn cannot(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
+    Failure(format!("{} cannot be {verb}: {error}", path.display()))
+}
+
+fn page(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| cannot("read", path, &error))
+}
+
+/// What the list lacks, or has too much.
+fn difference(kept: &str, now: &str) -> Option<String> {
+    let lines = |text: &str| text.lines().map(str::to_owned).collect::<BTreeSet<_>>();
+    let (kept_lines, now_lines) = (lines(kept), lines(now));
+    let added = now_lines.difference(&kept_lines).next();
+    let removed = kept_lines.difference(&now_lines).next();
+    match (added, removed) {
+        (Some(added), _) => Some(format!("lacks `{}`", added.trim())),
+        (None, Some(removed)) => Some(format!("has `{}`, which is gone", removed.trim())),
+        (None, None) => (kept != now).then(|| "has another order".to_owned()),
+    }
+}
+
+/// The items of the crate whose pages are in `folder`, a line each, with their members indented.
+fn listing(folder: &Path) -> Result<String, Failure> {
+    let mut items = BTreeSet::new();
+    for item in attributes(&page(&folder.join("all.html"))?, "<li><a href=\"") {
+        let Some((kind, name)) = item_of(item) else { continue };
+        items.insert((name, kind, item.to_owned()));
+    }
+    let mut text = String::new();
+    for export in re_exports(folder, "")? {
+        let _ = writeln!(text, "use {export}");
+    }
+    for (name, kind, item) in items {
+        let _ = writeln!(text, "{kind} {name}");
+        for member in members(&page(&folder.join(item))?) {
+            let _ = writeln!(text, "    {member}");
+        }
+    }
+    Ok(text)
+}
+
+/// The kind and the path of the item at `catalogue/struct.Entry.html`.
+fn item_of(href: &str) -> Option<(String, String)> {
+    let (module, file) = href.rsplit_once('/').unwrap_or(("", href));
+    let (kind, name) = file.strip_suffix(".html")?.split_once('.')?;
+    let path = module.split('/').filter(|step| !step.is_empty()).chain([name]);
+    Some((kind.to_owned(), path.collect::<Vec<_>>().join("::")))
+}
+
+/// What the modules of a crate export from elsewhere without a page of its own.
+fn re_exports(folder: &Path, module: &str) -> Result<BTreeSet<String>, Failure> {
+    let index = page(&folder.join("index.html"))?;
+    let path = |name: &str| format!("{module}{name}");
+    let mut found: BTreeSet<_> =
+        attributes(&index, "id=\"reexport.").into_iter().map(path).collect();
+    for inner in attributes(&index, "class=\"mod\" href=\"") {
+        let Some(name) = inner.strip_suffix("/index.html") else { continue };
+        found.extend(re_exports(&folder.join(name), &format!("{module}{name}::"))?);
+    }
+    Ok(found)
+}
+
+/// The members that an item declares, by their kinds.
+fn members(page: &str) -> BTreeSet<String> {
+    let own = page.split(END_OF_OWN).next().unwrap_or(page);
+    let ids = attributes(own, "id=\"").into_iter();
+    let member = |id: &str| {
+        let prefix = MEMBERS.iter().find(|prefix| id.starts_with(**prefix))?;
+        let name = id.get(prefix.len()..)?;
+        // A name that is there again, as in another impl, has a number at its end.
+        let name = match name.rsplit_once('-') {
+            Some((name, number)) if number.bytes().all(|b| b.is_ascii_digit()) => name,
+            _ => name,
+        };
+        let kind = match *prefix {
+            "structfield." => "field",
+            "tymethod." => "method",
+            "associatedconstant." => "const",
+            "associatedtype." => "type",
+            other => other.trim_end_matches('.'),
+        };
+        Some(format!("{kind} {name}"))
+    };
+    ids.filter_map(member).collect()
+}
+
+/// The attributes that begin with `prefix`, each up to its closing quote.
+fn attributes<'p>(page: &'p str, prefix: &str) -> Vec<&'p str> {
+    page.split(prefix).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_are_those_that_the_item_declares() {
+        let page = r#"<span id="structfield.rate"></span><section id="method.new">
+            <section id="method.new-1"><div id="impl-Limits"><h2 id="trait-implementations">
+            <section id="method.clone">"#;
+        assert_eq!(members(page).into_iter().collect::<Vec<_>>(), ["field rate", "method new"]);
+    }
+
+    #[test]
+    fn items_have_their_module() {
+        let entry = item_of("catalogue/struct.Entry.html");
+        assert_eq!(entry, Some(("struct".to_owned(), "catalogue::Entry".to_owned())));
+    }
+
+    #[test]
+    fn an_addition_that_is_not_in_the_list_is_refused() {
+        let kept = "struct Ball\n    method new\n";
+        assert_eq!(difference(kept, kept), None);
+        let added = "struct Ball\n    method new\n    method radius\n";
+        assert_eq!(difference(kept, added).as_deref(), Some("lacks `method radius`"));
+        let gone = difference(added, kept);
+        assert_eq!(gone.as_deref(), Some("has `method radius`, which is gone"));
+    }
+}
