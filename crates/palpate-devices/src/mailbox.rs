@@ -8,7 +8,7 @@
 use palpate_field::Vector;
 use palpate_haptics::{
     Device, DeviceLost, DeviceProfile, HapticsError, LatestReader, LatestWriter, PointState,
-    latest_value,
+    TurnState, latest_value,
 };
 
 /// A device whose driver runs in another thread or another language, where a call from the
@@ -16,7 +16,9 @@ use palpate_haptics::{
 ///
 /// The driver [sets](Mailbox::set) where the points are and [takes](Mailbox::forces) the newest
 /// forces, as often as it likes; the servo never waits for it. A driver that is too slow makes
-/// the hand feel older positions; it does not make ticks late.
+/// the hand feel older positions; it does not make ticks late. A driver that sets nothing for
+/// longer than [`patience`](Self::with_patience) has died: the device is lost, and the servo
+/// stops.
 ///
 /// # Examples
 ///
@@ -40,21 +42,41 @@ use palpate_haptics::{
 pub struct MailboxDevice<const D: usize> {
     profile: DeviceProfile,
     points: usize,
-    states: LatestReader<Vec<PointState<D>>>,
+    readings: LatestReader<Reading<D>>,
+    /// The last reading that was new, and when it came [s].
+    seen: Option<(u64, f64)>,
+    turn: Option<TurnState<D>>,
+    patience: f64,
     forces: LatestWriter<Vec<Vector<f64, D>>>,
+    torque: LatestWriter<Vector<f64, 3>>,
 }
 
 /// The driver's end of a [`MailboxDevice`].
 #[derive(Debug)]
 pub struct Mailbox<const D: usize> {
-    states: LatestWriter<Vec<PointState<D>>>,
+    reading: Reading<D>,
+    readings: LatestWriter<Reading<D>>,
     forces: LatestReader<Vec<Vector<f64, D>>>,
-    points: usize,
+    torque: LatestReader<Vector<f64, 3>>,
+}
+
+/// What the driver says of its device.
+#[derive(Clone, Debug)]
+struct Reading<const D: usize> {
+    /// How many readings were published before.
+    number: u64,
+    points: Vec<PointState<D>>,
+    turn: Option<TurnState<D>>,
+    is_lost: bool,
 }
 
 impl<const D: usize> MailboxDevice<D> {
+    /// How long the driver may set nothing unless [`with_patience`](Self::with_patience) says
+    /// otherwise [s].
+    pub const PATIENCE: f64 = 0.1;
+
     /// A device of so many `points`, and its driver's end. Until the driver sets them, the points
-    /// are at rest at the origin.
+    /// are at rest at the origin, and the device is not lost.
     ///
     /// # Errors
     ///
@@ -66,11 +88,34 @@ impl<const D: usize> MailboxDevice<D> {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        let (set_states, states) =
-            latest_value(vec![PointState::at_rest(Vector::ZERO); points]);
-        let (forces, taken) = latest_value(vec![Vector::ZERO; points]);
-        let mailbox = Mailbox { states: set_states, forces: taken, points };
-        Ok((Self { profile, points, states, forces }, mailbox))
+        let reading = Reading {
+            number: 0,
+            points: vec![PointState::at_rest(Vector::ZERO); points],
+            turn: None,
+            is_lost: false,
+        };
+        let (set_readings, readings) = latest_value(reading.clone());
+        let (set_forces, forces) = latest_value(vec![Vector::ZERO; points]);
+        let (set_torque, torque) = latest_value(Vector::ZERO);
+        let mailbox = Mailbox { reading, readings: set_readings, forces, torque };
+        let device = Self {
+            profile,
+            points,
+            readings,
+            seen: None,
+            turn: None,
+            patience: Self::PATIENCE,
+            forces: set_forces,
+            torque: set_torque,
+        };
+        Ok((device, mailbox))
+    }
+
+    /// The device with another time for which the driver may set nothing [s], infinite for a
+    /// driver that only sets what changes. The servo's ticks measure that time.
+    #[must_use]
+    pub fn with_patience(self, patience: f64) -> Self {
+        Self { patience, ..self }
     }
 }
 
@@ -81,14 +126,25 @@ impl<const D: usize> Mailbox<D> {
     ///
     /// [`HapticsError::ContactPoints`] if there is not one state for each point.
     pub fn set(&mut self, states: &[PointState<D>]) -> Result<(), HapticsError> {
-        if states.len() != self.points {
-            return Err(HapticsError::ContactPoints {
-                servo: states.len(),
-                device: self.points,
-            });
+        let points = self.reading.points.len();
+        if states.len() != points {
+            return Err(HapticsError::ContactPoints { servo: states.len(), device: points });
         }
-        self.states.set(|all| all.clone_from_slice(states));
+        self.reading.points.clone_from_slice(states);
+        self.publish();
         Ok(())
+    }
+
+    /// Sets the orientation and the angular velocity of a device with rotation.
+    pub fn set_turn(&mut self, turn: TurnState<D>) {
+        self.reading.turn = Some(turn);
+        self.publish();
+    }
+
+    /// Says that the device is lost: the servo stops in its next tick.
+    pub fn lose(&mut self) {
+        self.reading.is_lost = true;
+        self.publish();
     }
 
     /// The newest forces on the hand [N], one for each point; empty before the first tick.
@@ -96,6 +152,27 @@ impl<const D: usize> Mailbox<D> {
     pub fn forces(&mut self) -> &[Vector<f64, D>] {
         self.forces.latest().map_or(&[], Vec::as_slice)
     }
+
+    /// The newest torque on the hand [N·m], zero for a device without rotation.
+    #[must_use]
+    pub fn torque(&mut self) -> Vector<f64, 3> {
+        self.torque.latest().copied().unwrap_or(Vector::ZERO)
+    }
+
+    fn publish(&mut self) {
+        self.reading.number += 1;
+        let Reading { number, points, turn, is_lost } = &self.reading;
+        self.readings.set(|reading| {
+            reading.number = *number;
+            reading.points.clone_from_slice(points);
+            reading.turn = *turn;
+            reading.is_lost = *is_lost;
+        });
+    }
+}
+
+fn lost<T>(reason: &str) -> Result<T, DeviceLost> {
+    Err(DeviceLost { reason: reason.to_owned() })
 }
 
 impl<const D: usize> Device<D> for MailboxDevice<D> {
@@ -107,15 +184,28 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
         &self.profile
     }
 
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    fn read(&mut self, _time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
-        if let Some(states) = self.states.latest() {
-            for (point, state) in points.iter_mut().zip(states) {
-                *point = *state;
-            }
-        } else {
+    /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic.
+    fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
+        let Some(reading) = self.readings.latest() else {
             points.fill(PointState::at_rest(Vector::ZERO));
+            return Ok(());
+        };
+        if reading.is_lost {
+            return lost("its driver says so");
         }
+        match self.seen {
+            // Written so that a patience of NaN is none.
+            Some((number, since)) if number == reading.number => {
+                if !(time - since <= self.patience) {
+                    return lost("its driver sets nothing any more");
+                }
+            }
+            _ => self.seen = Some((reading.number, time)),
+        }
+        for (point, state) in points.iter_mut().zip(&reading.points) {
+            *point = *state;
+        }
+        self.turn = reading.turn;
         Ok(())
     }
 
@@ -128,11 +218,23 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
         });
         Ok(())
     }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn read_turn(&mut self) -> Result<Option<TurnState<D>>, DeviceLost> {
+        Ok(self.turn)
+    }
+
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn write_torque(&mut self, torque: Vector<f64, 3>) -> Result<(), DeviceLost> {
+        self.torque.set(|written| *written = torque);
+        Ok(())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use palpate_field::Rotation;
 
     #[test]
     fn the_newest_states_and_forces_count() {
@@ -152,5 +254,38 @@ mod tests {
         assert_eq!(mailbox.forces(), [Vector([0.0, 2.0]), Vector::ZERO]);
         assert!(mailbox.set(&points[..1]).is_err());
         assert!(MailboxDevice::<2>::new(DeviceProfile::unlimited("none"), 0).is_err());
+    }
+
+    #[test]
+    fn a_driver_that_died_is_a_lost_device() {
+        let (mut device, mut mailbox) =
+            MailboxDevice::<2>::new(DeviceProfile::unlimited("one"), 1).unwrap();
+        let mut points = [PointState::at_rest(Vector::ZERO)];
+        device.read(7.0, &mut points).unwrap(); // a driver that has not begun is no dead one
+        mailbox.set(&points).unwrap();
+        for time in [7.0, 7.05, 7.1] {
+            device.read(time, &mut points).unwrap();
+        }
+        mailbox.set(&points).unwrap(); // the same place counts as well
+        device.read(7.15, &mut points).unwrap();
+        let error = device.read(7.26, &mut points).unwrap_err();
+        assert_eq!(error.to_string(), "the device was lost: its driver sets nothing any more");
+        let mut device = device.with_patience(f64::INFINITY);
+        device.read(1e9, &mut points).unwrap();
+        mailbox.lose();
+        assert!(device.read(1e9, &mut points).is_err());
+    }
+
+    #[test]
+    fn turns_and_torques_pass_as_well() {
+        let (mut device, mut mailbox) =
+            MailboxDevice::<3>::new(DeviceProfile::unlimited("six"), 1).unwrap();
+        assert_eq!(device.read_turn().unwrap(), None);
+        let about_y = Rotation::from_axis_angle(Vector::unit(1), 0.3).unwrap();
+        mailbox.set_turn(TurnState::at_rest(about_y));
+        device.read(0.0, &mut [PointState::at_rest(Vector::ZERO)]).unwrap();
+        assert_eq!(device.read_turn().unwrap(), Some(TurnState::at_rest(about_y)));
+        device.write_torque(Vector([0.0, 0.1, 0.0])).unwrap();
+        assert_eq!(mailbox.torque(), Vector([0.0, 0.1, 0.0]));
     }
 }

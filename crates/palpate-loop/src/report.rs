@@ -6,7 +6,7 @@
 use crate::recorder::TickTimes;
 use crate::statistics::{Distribution, Times};
 use crate::tool_report::{ToolReport, ToolTally};
-use palpate_haptics::{EventCounts, Progress, SafetyReport, Servo};
+use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
 
 /// The report of a run of a servo.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ use palpate_haptics::{EventCounts, Progress, SafetyReport, Servo};
 pub struct RunReport {
     /// Why the run ended.
     pub ending: Ending,
+    /// Whether the device took the zero forces that are written last; one that was lost need not.
+    pub is_released: bool,
     /// Ticks a second [Hz].
     pub rate: f64,
     /// Contact points.
@@ -47,6 +49,23 @@ pub struct RunReport {
     /// The report of the tool; `None` if the servo renders contact points.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
+}
+
+impl RunReport {
+    /// The report of a run whose device stayed: for callers who take a lost device for an error.
+    ///
+    /// # Errors
+    ///
+    /// [`DeviceLost`] if the device was lost, or did not take the zero forces at the end.
+    pub fn unless_lost(self) -> Result<Self, DeviceLost> {
+        match &self.ending {
+            Ending::DeviceLost { reason } => Err(DeviceLost { reason: reason.clone() }),
+            _ if !self.is_released => {
+                Err(DeviceLost { reason: "it did not take the zero forces at the end".into() })
+            }
+            _ => Ok(self),
+        }
+    }
 }
 
 /// How often the shape was evaluated.
@@ -181,6 +200,7 @@ impl Tally {
         let ticks = self.ticks as f64;
         RunReport {
             ending,
+            is_released: true,
             rate: self.rate,
             points: self.points,
             ticks: self.ticks,

@@ -83,7 +83,8 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         self
     }
 
-    /// Runs the loop. However it ends, zero forces and a zero torque are written last.
+    /// Runs the loop. However it ends, the last that it writes are zero forces and a zero torque;
+    /// the report says whether the device took them.
     pub(crate) fn run(mut self, clock: &mut dyn Clock, schedule: &Schedule) -> RunReport {
         let ticks = AssertUnwindSafe(|| self.ticks(clock, schedule));
         let ending = match catch_unwind(ticks) {
@@ -91,17 +92,18 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             Ok(Err(lost)) => Ending::DeviceLost { reason: lost.reason },
             Err(panic) => Ending::Panicked { message: message_of(&*panic) },
         };
-        // A lost device ignores the force, and a panic of the device must not unwind through
-        // the servo; neither can be handled here.
-        let zero = AssertUnwindSafe(|| self.device.write(&self.no_forces));
-        let _ = catch_unwind(zero);
-        let zero = AssertUnwindSafe(|| self.device.write_torque(Vector::ZERO));
-        let _ = catch_unwind(zero);
+        // A panic of the device must not unwind through the servo.
+        let zero_forces = AssertUnwindSafe(|| self.device.write(&self.no_forces));
+        let zero_forces = catch_unwind(zero_forces);
+        let zero_torque = AssertUnwindSafe(|| self.device.write_torque(Vector::ZERO));
+        let zero_torque = catch_unwind(zero_torque);
+        let is_released = matches!((zero_forces, zero_torque), (Ok(Ok(())), Ok(Ok(()))));
         if let Some(end) = &self.end {
             end.finish();
         }
         let dropped = self.recorder.map_or(0, |recorder| recorder.dropped());
-        self.tally.report(ending, dropped, self.servo.safety())
+        let report = self.tally.report(ending, dropped, self.servo.safety());
+        RunReport { is_released, ..report }
     }
 
     fn ticks(
