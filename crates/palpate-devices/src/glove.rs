@@ -99,7 +99,7 @@ impl<const D: usize> Glove<D> {
         if fingers.is_empty() {
             return Err(HapticsError::NoContactPoint);
         }
-        let profile = DeviceProfile { max_force: 0.0, ..DeviceProfile::unlimited("glove") };
+        let profile = DeviceProfile::unlimited("glove").with_max_force(0.0);
         Ok(Self { fingers, profile })
     }
 

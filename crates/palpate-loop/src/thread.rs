@@ -19,6 +19,7 @@ use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How a thread runs a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ThreadOptions {
     /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
@@ -43,6 +44,38 @@ impl Default for ThreadOptions {
             rows: None,
             handoff: HandoffOptions::default(),
         }
+    }
+}
+
+impl ThreadOptions {
+    /// The same options with an end after `duration` [s].
+    #[must_use]
+    pub const fn with_duration(self, duration: f64) -> Self {
+        Self { duration: Some(duration), ..self }
+    }
+
+    /// The same options with a request for a raised priority or without.
+    #[must_use]
+    pub const fn with_raised_priority(self, is_raised: bool) -> Self {
+        Self { raises_priority: is_raised, ..self }
+    }
+
+    /// The same options with rehearsals or without.
+    #[must_use]
+    pub const fn with_rehearsals(self, rehearses: bool) -> Self {
+        Self { rehearses, ..self }
+    }
+
+    /// The same options with a recorder of so many rows.
+    #[must_use]
+    pub const fn with_recorder(self, rows: usize) -> Self {
+        Self { rows: Some(rows), ..self }
+    }
+
+    /// The same options with other capacities of the hand-off.
+    #[must_use]
+    pub const fn with_handoff(self, handoff: HandoffOptions) -> Self {
+        Self { handoff, ..self }
     }
 }
 
@@ -73,7 +106,7 @@ impl Default for ThreadOptions {
 /// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
-/// let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+/// let options = ThreadOptions::default().with_raised_priority(false);
 /// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
 /// driver.advance(Duration::ZERO);
 /// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;

@@ -100,7 +100,7 @@ impl Rule {
 /// use palpate_safety::{Accepted, DeviceProfile, Impedance, Rule};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+/// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
 /// // b / (K T / 2 + B) = 0.5 / (1.5 + 0.5)
 /// let accepted = Accepted::new(Impedance::new(3000.0, 0.5)?, 1.0, &device, 1000.0)?;
 /// assert_eq!((accepted.factor, accepted.rule), (0.25, Some(Rule::Passivity)));
@@ -154,7 +154,7 @@ impl Accepted {
     /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+    /// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
     /// let refused = Accepted::strict(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0);
     /// assert_eq!(
     ///     refused.unwrap_err().to_string(),

@@ -95,7 +95,7 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
         let rounding = palpate_field::Rounding::of_operations(ROUNDINGS * steepness, 0.0);
         let constant = ROUNDINGS * f64::EPSILON * self.amplitude;
         let rounding = palpate_field::Rounding { constant, ..rounding };
-        Promise { rounding, ..Promise::lipschitz(None, steepness) }
+        Promise::lipschitz(None, steepness).with_rounding(rounding)
     }
 }
 

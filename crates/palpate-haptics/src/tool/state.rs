@@ -15,6 +15,7 @@ use palpate_safety::{NumberError, not_negative, positive};
 
 /// The requested virtual coupling of a tool, its limits, and the budget of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToolOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -38,6 +39,60 @@ pub struct ToolOptions {
 }
 
 impl ToolOptions {
+    /// The same options with another rate [Hz].
+    #[must_use]
+    pub const fn with_rate(self, rate: f64) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// The same options with another stiffness [N/m].
+    #[must_use]
+    pub const fn with_stiffness(self, stiffness: f64) -> Self {
+        Self { stiffness, ..self }
+    }
+
+    /// The same options with a given angular stiffness [N·m/rad].
+    #[must_use]
+    pub const fn with_angular_stiffness(self, stiffness: f64) -> Self {
+        Self { angular_stiffness: Some(stiffness), ..self }
+    }
+
+    /// The same options with another damping [N·s/m].
+    #[must_use]
+    pub const fn with_damping(self, damping: f64) -> Self {
+        Self { damping, ..self }
+    }
+
+    /// The same options with another angular damping [N·m·s/rad].
+    #[must_use]
+    pub const fn with_angular_damping(self, damping: f64) -> Self {
+        Self { angular_damping: damping, ..self }
+    }
+
+    /// The same options with another force limit [N].
+    #[must_use]
+    pub const fn with_max_force(self, max_force: f64) -> Self {
+        Self { max_force, ..self }
+    }
+
+    /// The same options with another torque limit [N·m].
+    #[must_use]
+    pub const fn with_max_torque(self, max_torque: f64) -> Self {
+        Self { max_torque, ..self }
+    }
+
+    /// The same options with another budget.
+    #[must_use]
+    pub const fn with_budget(self, budget: u32) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// The same options with another time over which the force rises [s].
+    #[must_use]
+    pub const fn with_rise_time(self, rise_time: f64) -> Self {
+        Self { rise_time, ..self }
+    }
+
     /// These options with the damping ratio `ratio` (ζ) for a handle of `mass` [kg] and moment
     /// of inertia `inertia` [kg·m²]: `2 ζ √(K m)` and `2 ζ √(κ I)`. A ratio of 1 is critical
     /// damping.
@@ -47,7 +102,7 @@ impl ToolOptions {
     /// ```
     /// use palpate_haptics::ToolOptions;
     ///
-    /// let options = ToolOptions { stiffness: 400.0, ..ToolOptions::default() };
+    /// let options = ToolOptions::default().with_stiffness(400.0);
     /// let critical = options.with_damping_ratio(1.0, 0.01, 0.0);
     /// assert_eq!(critical.damping, 4.0); // 2 √(400 · 0.01)
     /// ```
