@@ -7,8 +7,8 @@
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, PointState, TurnState, limited,
-    not_negative,
+    Device, DeviceLost, DeviceProfile, HapticsError, NumberError, PointState, TurnState,
+    limited,
 };
 
 use crate::hand::Hand;
@@ -106,9 +106,9 @@ impl<const D: usize> SimulatedDevice<D> {
         if hands.is_empty() {
             return Err(HapticsError::NoContactPoint);
         }
-        not_negative("encoder_step", profile.encoder_step, "m")?;
+        NumberError::check_not_negative("encoder_step", profile.encoder_step, "m")?;
         if profile.max_force != f64::INFINITY {
-            not_negative("max_force", profile.max_force, "N")?;
+            NumberError::check_not_negative("max_force", profile.max_force, "N")?;
         }
         let turning = match (&profile.turning, hands.as_slice()) {
             (Some(turning), [hand]) => Some(Turning::new(turning, hand)?),

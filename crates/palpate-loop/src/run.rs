@@ -4,7 +4,7 @@
 //! Running a servo with a device for a time.
 
 use palpate_haptics::{
-    Control, Device, HandoffOptions, HapticsError, Progress, Servo, handoff, not_negative,
+    Control, Device, HandoffOptions, HapticsError, NumberError, Progress, Servo, handoff,
 };
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -29,6 +29,13 @@ pub enum Pace {
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) + Send);
 
 /// Options of a run.
+///
+/// ```
+/// use palpate_loop::{Pace, RunOptions};
+///
+/// let options = RunOptions::<3>::new(2.0).with_pace(Pace::AsFastAsPossible);
+/// assert_eq!((options.duration, options.pace), (2.0, Pace::AsFastAsPossible));
+/// ```
 #[non_exhaustive]
 pub struct RunOptions<'a, const D: usize> {
     /// The time the servo runs [s].
@@ -234,7 +241,10 @@ pub fn run_on<const D: usize>(
     options: RunOptions<'_, D>,
 ) -> Result<RunReport, HapticsError> {
     let schedule = Schedule {
-        ticks: ticks(not_negative("duration", options.duration, "s")?, servo.options().rate),
+        ticks: ticks(
+            NumberError::check_not_negative("duration", options.duration, "s")?,
+            servo.options().rate,
+        ),
         pace: options.pace,
         rehearses: options.rehearses,
     };

@@ -4,7 +4,7 @@
 //! A servo in a thread of its own.
 
 use palpate_haptics::{
-    Control, Device, HandoffOptions, HapticsError, Servo, ServoEnd, handoff, not_negative,
+    Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, handoff,
 };
 use std::fmt;
 use std::panic::resume_unwind;
@@ -18,6 +18,13 @@ use crate::run::{Pace, ticks};
 use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How a thread runs a servo.
+///
+/// ```
+/// use palpate_loop::ThreadOptions;
+///
+/// let options = ThreadOptions::default().with_duration(2.0).with_recorder(2000);
+/// assert_eq!((options.duration, options.rows), (Some(2.0), Some(2000)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ThreadOptions {
@@ -192,9 +199,10 @@ impl<const D: usize> ServoThread<D> {
         servo.check_device(&*device)?;
         let ticks = match options.duration {
             None => u64::MAX,
-            Some(duration) => {
-                ticks(not_negative("duration", duration, "s")?, servo.options().rate)
-            }
+            Some(duration) => ticks(
+                NumberError::check_not_negative("duration", duration, "s")?,
+                servo.options().rate,
+            ),
         };
         let schedule = Schedule { ticks, pace: Pace::RealTime, rehearses: options.rehearses };
         let mut recorder = options.rows.map(Recorder::new);

@@ -12,7 +12,7 @@
 use std::borrow::Cow;
 
 use crate::device::DeviceProfile;
-use crate::error::{SafetyError, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::impedance::Impedance;
 use crate::limits::Limits;
 
@@ -223,7 +223,7 @@ impl Accepted {
 /// Stiffness [N/m] and damping [N·s/m] at the device, where forces equal those of the world and
 /// displacements are `scale` times smaller.
 fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), SafetyError> {
-    let scale = positive("scale", scale, "(world per device)")?;
+    let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
     Ok((scale * impedance.stiffness(), scale * impedance.damping()))
 }
 
@@ -238,7 +238,7 @@ fn factors(
     limits: &Limits,
     rate: f64,
 ) -> Result<[(f64, Rule); 4], SafetyError> {
-    let period = 1.0 / positive("rate", rate, "Hz")?;
+    let period = 1.0 / NumberError::check_positive("rate", rate, "Hz")?;
     let least = limits.least_damping.positive()?;
     let max_stiffness = limits.max_stiffness.positive()?;
     let step = limits.encoder_step.not_negative()?;

@@ -12,7 +12,7 @@ use palpate_field::{Point, Vector};
 use crate::acceptance::{Acceptance, Accepted};
 use crate::channel::{Channel, TickInput};
 use crate::device::DeviceProfile;
-use crate::error::{SafetyError, not_negative, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::impedance::Impedance;
 use crate::limits::Limits;
@@ -51,6 +51,13 @@ impl<const D: usize> PortState<D> {
 }
 
 /// Options of a safety chain, beside the limits of the device.
+///
+/// ```
+/// use palpate_safety::{Impedance, SafetyOptions};
+///
+/// let options = SafetyOptions::new(Impedance::default()).with_reserve(0.0).with_rise_time(0.1);
+/// assert_eq!((options.reserve, options.rise_time), (0.0, 0.1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SafetyOptions {
@@ -222,7 +229,7 @@ impl<const D: usize> SafetyChain<D> {
         rate: f64,
         options: SafetyOptions,
     ) -> Result<Self, SafetyError> {
-        let rate = positive("rate", rate, "Hz")?;
+        let rate = NumberError::check_positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
         let limits = Limits::along(device);
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
@@ -234,7 +241,7 @@ impl<const D: usize> SafetyChain<D> {
             damping,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
-            reserve: not_negative("reserve", options.reserve, "J")?,
+            reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
         Ok(Self {

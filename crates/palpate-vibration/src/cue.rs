@@ -10,8 +10,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use palpate_haptics::{HapticsError, not_negative, positive};
-use palpate_haptics::{NumberError, Touch};
+use palpate_haptics::{HapticsError, NumberError, Touch};
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +98,13 @@ pub struct Sensation {
 
 /// Options of a [`Mapping`]. The defaults are choices for a hand-held actuator, not
 /// measurements.
+///
+/// ```
+/// use palpate_vibration::MappingOptions;
+///
+/// let options = MappingOptions::default().with_full_depth(0.004).with_full_impact(3.0);
+/// assert_eq!((options.full_depth, options.full_impact), (0.004, 3.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MappingOptions {
@@ -264,11 +270,16 @@ impl Mapping {
     /// [`HapticsError::Number`] if one is outside its range.
     pub fn new(options: MappingOptions) -> Result<Self, HapticsError> {
         let o = &options;
-        at_most("hold_floor", not_negative("hold_floor", o.hold_floor, "")?, 1.0, "at most 1")?;
+        at_most(
+            "hold_floor",
+            NumberError::check_not_negative("hold_floor", o.hold_floor, "")?,
+            1.0,
+            "at most 1",
+        )?;
         for (parameter, exponent) in
             [("hold_exponent", o.hold_exponent), ("slide_exponent", o.slide_exponent)]
         {
-            let exponent = positive(parameter, exponent, "")?;
+            let exponent = NumberError::check_positive(parameter, exponent, "")?;
             at_most(parameter, exponent, LARGEST_EXPONENT, "at most 4")?;
         }
         for (parameter, value, unit) in [
@@ -280,7 +291,7 @@ impl Mapping {
             ("highest_frequency", o.highest_frequency, "Hz"),
             ("hold_frequency", o.hold_frequency, "Hz"),
         ] {
-            positive(parameter, value, unit)?;
+            NumberError::check_positive(parameter, value, unit)?;
         }
         let refuse = |parameter, rule, value| {
             Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "Hz" }))

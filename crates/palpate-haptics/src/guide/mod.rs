@@ -20,11 +20,18 @@ use palpate_field::{Point, Vector};
 use crate::error::HapticsError;
 pub use curve::Curve;
 use limit::{Motion, damped};
-use palpate_safety::{NumberError, not_negative, positive, positive_or_infinite};
+use palpate_safety::NumberError;
 pub use slope::Slope;
 use target::Target;
 
 /// Stiffness, damping and limits of a guide.
+///
+/// ```
+/// use palpate_haptics::GuideOptions;
+///
+/// let options = GuideOptions::default().with_snap_distance(0.01).with_release_distance(0.02);
+/// assert_eq!((options.snap_distance, options.release_distance), (0.01, Some(0.02)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct GuideOptions {
@@ -87,10 +94,10 @@ impl GuideOptions {
     }
 
     fn checked(self) -> Result<Self, HapticsError> {
-        positive("stiffness", self.stiffness, "N/m")?;
-        not_negative("damping", self.damping, "N·s/m")?;
-        positive_or_infinite("snap_distance", self.snap_distance, "m")?;
-        positive_or_infinite("max_force", self.max_force, "N")?;
+        NumberError::check_positive("stiffness", self.stiffness, "N/m")?;
+        NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
+        NumberError::check_positive_or_infinite("snap_distance", self.snap_distance, "m")?;
+        NumberError::check_positive_or_infinite("max_force", self.max_force, "N")?;
         // Written so that NaN fails.
         if self.release() >= self.snap_distance {
             return Ok(self);

@@ -11,9 +11,16 @@ use palpate_query::Contact;
 use super::closest::FREEDOMS;
 use super::shell::FIRST_LEVEL;
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, not_negative, positive};
+use palpate_safety::NumberError;
 
 /// The requested virtual coupling of a tool, its limits, and the budget of a tick.
+///
+/// ```
+/// use palpate_haptics::ToolOptions;
+///
+/// let options = ToolOptions::default().with_stiffness(400.0).with_angular_stiffness(2.0);
+/// assert_eq!((options.stiffness, options.angular_stiffness), (400.0, Some(2.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ToolOptions {
@@ -116,10 +123,10 @@ impl ToolOptions {
 
     /// Checks all options except the stiffnesses.
     pub(super) fn check(&self) -> Result<(), HapticsError> {
-        positive("rate", self.rate, "Hz")?;
-        positive("rise_time", self.rise_time, "s")?;
-        not_negative("damping", self.damping, "N·s/m")?;
-        not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;
+        NumberError::check_positive("rate", self.rate, "Hz")?;
+        NumberError::check_positive("rise_time", self.rise_time, "s")?;
+        NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
+        NumberError::check_not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;
         for (parameter, value, unit) in
             [("max_force", self.max_force, "N"), ("max_torque", self.max_torque, "N·m")]
         {
