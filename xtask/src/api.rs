@@ -131,6 +131,10 @@ fn re_exports(folder: &Path, module: &str) -> Result<BTreeSet<String>, Failure> 
     let mut found: BTreeSet<_> =
         attributes(&index, "id=\"reexport.").into_iter().map(path).collect();
     for inner in attributes(&index, "class=\"mod\" href=\"") {
+        // Another crate's pages are linked only if they were there before this crate's.
+        if inner.starts_with("../") {
+            continue;
+        }
         let Some(name) = inner.strip_suffix("/index.html") else { continue };
         found.extend(re_exports(&folder.join(name), &format!("{module}{name}::"))?);
     }

@@ -123,6 +123,6 @@ fn servo(shape: &Shape<3>, points: usize) -> Result<UnprotectedServo<3>, Box<dyn
     };
     let body = Body::new(shape.clone(), Surface::new(&material)?)?;
     let probe = Probe::new(PROBE)?;
-    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
     Ok(UnprotectedServo::new(Bodies::new(vec![body])?, points, options)?)
 }

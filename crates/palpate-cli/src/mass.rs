@@ -30,7 +30,8 @@ fn report<const D: usize>(
     [volume_unit, mass_unit, moment_unit]: [&str; 3],
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let limits = MassLimits { tolerance: options.tolerance, cells: options.cells };
+    let limits =
+        MassLimits::default().with_tolerance(options.tolerance).with_cells(options.cells);
     let mut out = output::answer();
     let mut bodies = Vec::new();
     let mut outcome = Outcome::Yes;

@@ -8,7 +8,7 @@
 use crate::hand_path::HandPath;
 use palpate_field::Vector;
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, PointState, limited, not_negative,
+    Device, DeviceLost, DeviceProfile, HapticsError, NumberError, PointState, limited,
 };
 
 /// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
@@ -84,7 +84,7 @@ impl<const D: usize> Glove<D> {
         offsets: &[Vector<f64, D>],
     ) -> Result<Self, HapticsError> {
         for component in offsets.iter().flat_map(|offset| offset.0) {
-            not_negative("finger offset", component.abs(), "m")?;
+            NumberError::check_not_negative("finger offset", component.abs(), "m")?;
         }
         let finger = |offset: &Vector<f64, D>| Finger {
             path: hand.clone(),
@@ -99,7 +99,7 @@ impl<const D: usize> Glove<D> {
         if fingers.is_empty() {
             return Err(HapticsError::NoContactPoint);
         }
-        let profile = DeviceProfile { max_force: 0.0, ..DeviceProfile::unlimited("glove") };
+        let profile = DeviceProfile::unlimited("glove").with_max_force(0.0);
         Ok(Self { fingers, profile })
     }
 
@@ -117,7 +117,7 @@ impl<const D: usize> Glove<D> {
             return Err(HapticsError::ContactPoints { servo, device });
         }
         for (finger, limit) in self.fingers.iter_mut().zip(limits) {
-            finger.limit = not_negative("max_force", *limit, "N")?;
+            finger.limit = NumberError::check_not_negative("max_force", *limit, "N")?;
         }
         self.profile.max_force = limits.iter().copied().fold(0.0, f64::max);
         Ok(self)

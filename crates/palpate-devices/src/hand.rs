@@ -5,7 +5,7 @@
 
 use crate::hand_path::{HandPath, Interpolation};
 use palpate_field::{Point, Vector};
-use palpate_haptics::{HapticsError, not_negative};
+use palpate_haptics::{HapticsError, NumberError};
 
 /// A hand that holds a simulated device: a mass that moves with the device, a spring and a
 /// damper that pull it to a target, and a constant push.
@@ -97,7 +97,7 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`HapticsError::Number`] if the number is negative or not finite.
     pub fn with_mass(self, mass: f64) -> Result<Self, HapticsError> {
-        Ok(Self { mass: not_negative("hand mass", mass, "kg")?, ..self })
+        Ok(Self { mass: NumberError::check_not_negative("hand mass", mass, "kg")?, ..self })
     }
 
     /// This hand with another stiffness [N/m] and damping [N·s/m].
@@ -106,8 +106,8 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`HapticsError::Number`] if either is negative or not finite.
     pub fn with_spring(self, stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
-        let stiffness = not_negative("hand stiffness", stiffness, "N/m")?;
-        let damping = not_negative("hand damping", damping, "N·s/m")?;
+        let stiffness = NumberError::check_not_negative("hand stiffness", stiffness, "N/m")?;
+        let damping = NumberError::check_not_negative("hand damping", damping, "N·s/m")?;
         Ok(Self { stiffness, damping, ..self })
     }
 
@@ -118,7 +118,7 @@ impl<const D: usize> Hand<D> {
     /// [`HapticsError::Number`] if a coordinate is not finite.
     pub fn with_push(self, push: Vector<f64, D>) -> Result<Self, HapticsError> {
         for component in push.0 {
-            not_negative("hand push", component.abs(), "N")?;
+            NumberError::check_not_negative("hand push", component.abs(), "N")?;
         }
         Ok(Self { push, ..self })
     }
@@ -156,7 +156,7 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`HapticsError::Number`] if the number is negative or not finite.
     pub fn with_inertia(self, inertia: f64) -> Result<Self, HapticsError> {
-        let inertia = not_negative("hand inertia", inertia, "kg·m²")?;
+        let inertia = NumberError::check_not_negative("hand inertia", inertia, "kg·m²")?;
         Ok(Self { wrist: Wrist { inertia, ..self.wrist }, ..self })
     }
 
@@ -170,8 +170,10 @@ impl<const D: usize> Hand<D> {
         stiffness: f64,
         damping: f64,
     ) -> Result<Self, HapticsError> {
-        let stiffness = not_negative("hand angular stiffness", stiffness, "N·m/rad")?;
-        let damping = not_negative("hand angular damping", damping, "N·m·s/rad")?;
+        let stiffness =
+            NumberError::check_not_negative("hand angular stiffness", stiffness, "N·m/rad")?;
+        let damping =
+            NumberError::check_not_negative("hand angular damping", damping, "N·m·s/rad")?;
         Ok(Self { wrist: Wrist { stiffness, damping, ..self.wrist }, ..self })
     }
 
@@ -182,7 +184,7 @@ impl<const D: usize> Hand<D> {
     /// [`HapticsError::Number`] if a coordinate is not finite.
     pub fn with_torque(self, torque: Vector<f64, 3>) -> Result<Self, HapticsError> {
         for component in torque.0 {
-            not_negative("hand torque", component.abs(), "N·m")?;
+            NumberError::check_not_negative("hand torque", component.abs(), "N·m")?;
         }
         Ok(Self { wrist: Wrist { push: torque, ..self.wrist }, ..self })
     }

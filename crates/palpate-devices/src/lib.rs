@@ -34,7 +34,7 @@
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let ball = Body::new(Shape::from_kernel(Ball::new(0.05)?), Surface::smooth(1000.0, 0.0)?)?;
 //! let mut servo = Servo::for_device(Bodies::new(vec![ball])?, &device)?;
-//! let paced = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
+//! let paced = RunOptions::new(2.0).with_pace(Pace::AsFastAsPossible);
 //! run(&mut servo, &mut device, paced)?;
 //!
 //! let friction = device.profile().friction;

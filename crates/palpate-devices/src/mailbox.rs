@@ -27,7 +27,7 @@ use palpate_haptics::{
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let profile = DeviceProfile { max_force: 4.0, ..DeviceProfile::unlimited("of my own") };
+/// let profile = DeviceProfile::unlimited("of my own").with_max_force(4.0);
 /// let (mut device, mut mailbox) = MailboxDevice::<3>::new(profile, 1)?;
 /// mailbox.set(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))])?; // from any thread
 /// let mut points = [PointState::at_rest(Vector::ZERO)];

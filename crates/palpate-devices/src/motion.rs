@@ -14,7 +14,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, NumberError, not_negative, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 use crate::oscillator::{Drive, Nodes, Oscillator};
 
@@ -126,10 +126,10 @@ impl Body {
     /// not finite, or the motion is faster than [`FASTEST`].
     pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
         let (device, hand) = (parts.device_mass, parts.hand_mass);
-        not_negative("mass", device, "kg")?;
-        let mass = positive("mass of device and hand", device + hand, "kg")?;
-        let damping = not_negative("least_damping", parts.damping, "N·s/m")?;
-        let friction = not_negative("friction", parts.friction, "N")?;
+        NumberError::check_not_negative("mass", device, "kg")?;
+        let mass = NumberError::check_positive("mass of device and hand", device + hand, "kg")?;
+        let damping = NumberError::check_not_negative("least_damping", parts.damping, "N·s/m")?;
+        let friction = NumberError::check_not_negative("friction", parts.friction, "N")?;
         let oscillator = Oscillator {
             decay: (damping + parts.grip_damping) / mass,
             spring: parts.grip_stiffness / mass,

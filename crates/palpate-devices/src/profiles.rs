@@ -11,8 +11,6 @@
 //! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); the full force rises within 2 ms. The rotational
 //! numbers follow the same rules, for the worst axis; each profile names its sources.
 
-use std::borrow::Cow;
-
 use palpate_haptics::{DeviceProfile, TurningProfile};
 
 use crate::wrists::{OMEGA, PREMIUM, SIGMA, VIRTUOSE_6D, turning};
@@ -88,22 +86,17 @@ const fn turning_profile(
     assumed: Assumed,
     turning: Option<TurningProfile>,
 ) -> DeviceProfile {
-    DeviceProfile {
-        name: Cow::Borrowed(name),
-        max_force: published.force,
-        continuous_force: assumed.continuous_force,
-        max_force_rate: published.force * FORCE_RISES,
-        max_stiffness: published.stiffness,
-        max_damping: published.damping,
-        workspace_radius: published.workspace,
-        mass: assumed.mass,
-        least_damping: assumed.least_damping,
-        friction: assumed.friction,
-        encoder_step: assumed.encoder_step,
-        turning,
-        source: Cow::Borrowed(origin.source),
-        assumed: Cow::Borrowed(origin.assumed),
-    }
+    DeviceProfile::of_source(name, origin.source, origin.assumed, turning)
+        .with_max_force(published.force)
+        .with_continuous_force(assumed.continuous_force)
+        .with_max_force_rate(published.force * FORCE_RISES)
+        .with_max_stiffness(published.stiffness)
+        .with_max_damping(published.damping)
+        .with_workspace_radius(published.workspace)
+        .with_mass(assumed.mass)
+        .with_least_damping(assumed.least_damping)
+        .with_friction(assumed.friction)
+        .with_encoder_step(assumed.encoder_step)
 }
 
 /// All known devices, by their names on the command line.

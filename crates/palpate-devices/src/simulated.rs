@@ -7,8 +7,8 @@
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, PointState, TurnState, limited,
-    not_negative,
+    Device, DeviceLost, DeviceProfile, HapticsError, NumberError, PointState, TurnState,
+    limited,
 };
 
 use crate::hand::Hand;
@@ -50,12 +50,10 @@ const SHORTEST: f64 = 1e-9;
 /// use palpate_field::Vector;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let ideal = DeviceProfile {
-///     mass: 0.5,
-///     least_damping: 0.0,
-///     friction: 0.0,
-///     ..DeviceProfile::unlimited("ideal")
-/// };
+/// let ideal = DeviceProfile::unlimited("ideal")
+///     .with_mass(0.5)
+///     .with_least_damping(0.0)
+///     .with_friction(0.0);
 /// let hand = Hand::resting(Vector([0.0, 3.0]))?.with_mass(0.0)?.with_spring(0.0, 0.0)?;
 /// let hand = hand.with_push(Vector([0.0, -1.0]))?;
 /// let mut device = SimulatedDevice::new(ideal, vec![hand])?;
@@ -108,9 +106,9 @@ impl<const D: usize> SimulatedDevice<D> {
         if hands.is_empty() {
             return Err(HapticsError::NoContactPoint);
         }
-        not_negative("encoder_step", profile.encoder_step, "m")?;
+        NumberError::check_not_negative("encoder_step", profile.encoder_step, "m")?;
         if profile.max_force != f64::INFINITY {
-            not_negative("max_force", profile.max_force, "N")?;
+            NumberError::check_not_negative("max_force", profile.max_force, "N")?;
         }
         let turning = match (&profile.turning, hands.as_slice()) {
             (Some(turning), [hand]) => Some(Turning::new(turning, hand)?),
@@ -345,14 +343,12 @@ mod tests {
     use super::*;
 
     fn resting(encoder_step: f64) -> SimulatedDevice<2> {
-        let profile = DeviceProfile {
-            mass: 0.1,
-            least_damping: 0.5,
-            friction: 0.0,
-            max_force: 2.5,
-            encoder_step,
-            ..DeviceProfile::unlimited("test")
-        };
+        let profile = DeviceProfile::unlimited("test")
+            .with_mass(0.1)
+            .with_least_damping(0.5)
+            .with_friction(0.0)
+            .with_max_force(2.5)
+            .with_encoder_step(encoder_step);
         let hand = Hand::resting(Vector([0.010_4, -0.003])).unwrap();
         SimulatedDevice::new(profile, vec![hand]).unwrap()
     }
@@ -422,12 +418,10 @@ mod tests {
         assert_eq!(none.unwrap_err(), HapticsError::NoContactPoint);
         let unlimited = error(DeviceProfile::unlimited("x"));
         assert_eq!(unlimited, "least_damping must be zero or more and finite, got inf N·s/m");
-        let negative = error(DeviceProfile { friction: -1.0, ..profile.clone() });
+        let negative = error(profile.clone().with_friction(-1.0));
         assert_eq!(negative, "friction must be zero or more and finite, got -1 N");
-        assert!(
-            error(DeviceProfile { max_force: f64::NAN, ..profile.clone() }).contains("NaN")
-        );
-        let fast = error(DeviceProfile { least_damping: 1e5, ..profile });
+        assert!(error(profile.clone().with_max_force(f64::NAN)).contains("NaN"));
+        let fast = error(profile.with_least_damping(1e5));
         assert!(fast.contains("must be at most 1e4, got"), "{fast}");
     }
 }

@@ -7,8 +7,8 @@
 
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, LatestReader, LatestWriter, PointState,
-    TurnState, latest_value, positive,
+    Device, DeviceLost, DeviceProfile, HapticsError, LatestReader, LatestWriter, NumberError,
+    PointState, TurnState, latest_value,
 };
 
 use crate::simulated::SimulatedDevice;
@@ -134,7 +134,7 @@ impl<const D: usize> SteeredDevice<D> {
         mut device: SimulatedDevice<D>,
         max_speed: f64,
     ) -> Result<(Self, Steering<D>), HapticsError> {
-        let max_speed = positive("max_speed", max_speed, "m/s")?;
+        let max_speed = NumberError::check_positive("max_speed", max_speed, "m/s")?;
         let places = device.start_places();
         let ways = places.iter().map(|at| {
             let (from, to, start) = (*at, *at, f64::NEG_INFINITY);
@@ -210,8 +210,8 @@ mod tests {
     use crate::hand::Hand;
 
     fn steered(max_speed: f64) -> (SteeredDevice<2>, Steering<2>) {
-        let profile = DeviceProfile { friction: 0.0, ..DeviceProfile::unlimited("ideal") };
-        let profile = DeviceProfile { mass: 0.1, least_damping: 1.0, ..profile };
+        let profile = DeviceProfile::unlimited("ideal").with_friction(0.0);
+        let profile = profile.with_mass(0.1).with_least_damping(1.0);
         let hand = Hand::resting(Vector([1.0, 0.0])).unwrap();
         let device = SimulatedDevice::new(profile, vec![hand]).unwrap();
         SteeredDevice::new(device, max_speed).unwrap()

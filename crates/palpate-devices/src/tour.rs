@@ -9,7 +9,7 @@ mod smoothing;
 use palpate_field::{Aabb, Point, Shape, Vector};
 
 use crate::hand_path::{HandPath, Interpolation};
-use palpate_haptics::{HapticsError, not_negative, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 use orbit::orbit;
 use smoothing::{highest, smoothed, smoothed_points};
@@ -141,8 +141,12 @@ impl<const D: usize> Tour<D> {
     /// finite.
     pub fn new(bounds: Aabb<D>, duration: f64) -> Result<Self, HapticsError> {
         let edges = bounds.half_extents() * 2.0;
-        let size = positive("size of the box", edges.0.into_iter().fold(0.0, f64::max), "m")?;
-        let duration = positive("duration", duration, "s")?;
+        let size = NumberError::check_positive(
+            "size of the box",
+            edges.0.into_iter().fold(0.0, f64::max),
+            "m",
+        )?;
+        let duration = NumberError::check_positive("duration", duration, "s")?;
         let probe_radius = palpate_haptics::Probe::default().radius();
         let speed = 0.3 * size.sqrt();
         Ok(Self { bounds, duration, size, probe_radius, depth: None, speed })
@@ -154,7 +158,10 @@ impl<const D: usize> Tour<D> {
     ///
     /// [`HapticsError::Number`] if the radius is negative or not finite.
     pub fn with_probe_radius(self, radius: f64) -> Result<Self, HapticsError> {
-        Ok(Self { probe_radius: not_negative("radius", radius, "m")?, ..self })
+        Ok(Self {
+            probe_radius: NumberError::check_not_negative("radius", radius, "m")?,
+            ..self
+        })
     }
 
     /// This tour with another depth [m].
@@ -163,7 +170,7 @@ impl<const D: usize> Tour<D> {
     ///
     /// [`HapticsError::Number`] if the depth is negative or not finite.
     pub fn with_depth(self, depth: f64) -> Result<Self, HapticsError> {
-        Ok(Self { depth: Some(not_negative("depth", depth, "m")?), ..self })
+        Ok(Self { depth: Some(NumberError::check_not_negative("depth", depth, "m")?), ..self })
     }
 
     /// This tour with another speed of the hand over the surface [m/s]; the speed in flight is
@@ -173,7 +180,7 @@ impl<const D: usize> Tour<D> {
     ///
     /// [`HapticsError::Number`] if the speed is not positive and finite.
     pub fn with_speed(self, speed: f64) -> Result<Self, HapticsError> {
-        Ok(Self { speed: positive("speed", speed, "m/s")?, ..self })
+        Ok(Self { speed: NumberError::check_positive("speed", speed, "m/s")?, ..self })
     }
 
     /// The path over `shape`: smooth, with continuous velocity, the same for the same input.

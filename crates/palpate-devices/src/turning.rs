@@ -13,8 +13,7 @@
 
 use palpate_field::{Rotation, Vector};
 use palpate_haptics::{
-    HapticsError, TurnState, TurningProfile, limited, not_negative, positive, turn_between,
-    turned,
+    HapticsError, NumberError, TurnState, TurningProfile, limited, turn_between, turned,
 };
 
 use crate::hand::{Hand, Wrist};
@@ -47,13 +46,25 @@ impl<const D: usize> Turning<D> {
     /// is zero, or the motion of device and hand is too fast to be integrated.
     pub(crate) fn new(profile: &TurningProfile, hand: &Hand<D>) -> Result<Self, HapticsError> {
         let wrist = hand.wrist().clone();
-        not_negative("inertia", profile.inertia, "kg·m²")?;
-        positive("inertia of device and hand", profile.inertia + wrist.inertia, "kg·m²")?;
-        not_negative("turning least_damping", profile.least_damping, "N·m·s/rad")?;
-        not_negative("turning friction", profile.friction, "N·m")?;
-        let encoder_step = not_negative("turning encoder_step", profile.encoder_step, "rad")?;
+        NumberError::check_not_negative("inertia", profile.inertia, "kg·m²")?;
+        NumberError::check_positive(
+            "inertia of device and hand",
+            profile.inertia + wrist.inertia,
+            "kg·m²",
+        )?;
+        NumberError::check_not_negative(
+            "turning least_damping",
+            profile.least_damping,
+            "N·m·s/rad",
+        )?;
+        NumberError::check_not_negative("turning friction", profile.friction, "N·m")?;
+        let encoder_step = NumberError::check_not_negative(
+            "turning encoder_step",
+            profile.encoder_step,
+            "rad",
+        )?;
         if profile.max_torque != f64::INFINITY {
-            not_negative("max_torque", profile.max_torque, "N·m")?;
+            NumberError::check_not_negative("max_torque", profile.max_torque, "N·m")?;
         }
         let body = Body::new(&Parts {
             device_mass: profile.inertia,

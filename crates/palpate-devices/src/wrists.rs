@@ -3,8 +3,6 @@
 
 //! Rotational profiles of known devices: the numbers of the worst axis of each.
 
-use std::borrow::Cow;
-
 use palpate_haptics::TurningProfile;
 
 use crate::profiles::{FORCE_RISES, Origin};
@@ -107,22 +105,17 @@ pub(crate) const VIRTUOSE_6D: Torques = Torques {
 
 /// The profile of a wrist.
 pub(crate) const fn turning(torques: &Torques) -> TurningProfile {
-    TurningProfile {
-        max_torque: torques.torque,
-        continuous_torque: torques.continuous_torque,
-        max_torque_rate: torques.torque * FORCE_RISES,
-        max_stiffness: torques.stiffness,
-        max_damping: torques.damping,
-        inertia: torques.inertia,
-        // K T / 2 at 1 kHz.
-        least_damping: if torques.torque > 0.0 {
-            0.5e-3 * torques.stiffness
-        } else {
-            FREE_WRIST
-        },
-        friction: torques.friction,
-        encoder_step: torques.encoder_step,
-        source: Cow::Borrowed(torques.origin.source),
-        assumed: Cow::Borrowed(torques.origin.assumed),
-    }
+    // K T / 2 at 1 kHz.
+    let least_damping =
+        if torques.torque > 0.0 { 0.5e-3 * torques.stiffness } else { FREE_WRIST };
+    TurningProfile::of_source(torques.origin.source, torques.origin.assumed)
+        .with_max_torque(torques.torque)
+        .with_continuous_torque(torques.continuous_torque)
+        .with_max_torque_rate(torques.torque * FORCE_RISES)
+        .with_max_stiffness(torques.stiffness)
+        .with_max_damping(torques.damping)
+        .with_inertia(torques.inertia)
+        .with_least_damping(least_damping)
+        .with_friction(torques.friction)
+        .with_encoder_step(torques.encoder_step)
 }

@@ -112,10 +112,10 @@ fn every_known_device_rests_on_a_ball() {
         let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
         let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
         // A force that rises from nothing under the hand would lift it, which takes energy.
-        let protection = Protection { rise_time: 0.0, ..Protection::new(profile.clone()) };
+        let protection = Protection::new(profile.clone()).with_rise_time(0.0);
         let servo = UnprotectedServo::new(ball, 1, ServoOptions::of_device(profile)).unwrap();
         let mut servo = servo.protected(&protection).unwrap();
-        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
+        let options = RunOptions::new(1.5).with_pace(Pace::AsFastAsPossible);
         let report = run(&mut servo, &mut device, options).unwrap();
         assert!(report.contact_time > 1.0, "{name}: {report:?}");
         assert!(
@@ -133,7 +133,7 @@ fn two_gloves_feel_with_24_points() {
     assert_eq!(gloves.points(), 24);
     let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
     let mut servo = Servo::for_device(ball, &gloves).unwrap();
-    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.5) };
+    let options = RunOptions::new(1.5).with_pace(Pace::AsFastAsPossible);
     let report = run(&mut servo, &mut gloves, options).unwrap();
     assert_eq!((report.points, report.ticks), (24, 1500));
     assert!(report.largest_depth > 0.005, "{report:?}");

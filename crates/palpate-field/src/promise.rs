@@ -119,8 +119,18 @@ impl Rounding {
 }
 
 /// All that a field promises about its values.
+///
+/// ```
+/// use palpate_field::{BoundingBall, Promise, Vector};
+///
+/// // No steeper than 2 within 0.1 m of the origin; unknown elsewhere.
+/// let region = BoundingBall { centre: Vector([0.0, 0.0]), radius: 0.1 };
+/// let promise = Promise::lipschitz(None, 2.0).with_region(region);
+/// assert_eq!(promise.safe_radius(Vector([0.03, 0.0]), 0.05), 0.025);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Promise<const D: usize> {
     /// The quality where `f > 0`.
     pub outside: Quality,
@@ -232,6 +242,18 @@ impl<const D: usize> Promise<D> {
     #[must_use]
     pub fn bound(self) -> Self {
         Self { outside: self.outside.bounded(), inside: self.inside.bounded(), ..self }
+    }
+
+    /// The same promise with a Lipschitz constant that holds in `region` alone.
+    #[must_use]
+    pub const fn with_region(self, region: BoundingBall<D>) -> Self {
+        Self { region: Some(region), ..self }
+    }
+
+    /// The same promise with another rounding.
+    #[must_use]
+    pub const fn with_rounding(self, rounding: Rounding) -> Self {
+        Self { rounding, ..self }
     }
 
     /// The radius of a ball about `p` that is sure to hold no surface, where the

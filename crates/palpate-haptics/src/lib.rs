@@ -78,8 +78,7 @@ pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
     Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,
     SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport,
-    VelocityEstimator, WatchdogReport, WorkspaceMap, limited, not_negative, positive,
-    turn_between, turned,
+    VelocityEstimator, WatchdogReport, WorkspaceMap, limited, turn_between, turned,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

@@ -31,14 +31,15 @@ use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
-/// let device = DeviceProfile { max_force: 2.0, ..DeviceProfile::unlimited("example") };
-/// let protection = Protection { has_passivity_control: false, ..Protection::new(device) };
+/// let device = DeviceProfile::unlimited("example").with_max_force(2.0);
+/// let protection = Protection::new(device).with_passivity_control(false);
 /// let servo = UnprotectedServo::new(ball, 1, ServoOptions::default())?.protected(&protection)?;
 /// assert_eq!(servo.options().max_force, 2.0);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Protection<const D: usize> {
     /// The limits and properties of the device.
     pub profile: DeviceProfile,
@@ -65,6 +66,30 @@ impl<const D: usize> Protection<D> {
             has_passivity_control: true,
             rise_time: 0.1,
         }
+    }
+
+    /// The same protection with another map between device and world coordinates.
+    #[must_use]
+    pub fn with_map(self, map: WorkspaceMap<D>) -> Self {
+        Self { map, ..self }
+    }
+
+    /// The same protection with another way to treat bodies that the device cannot render.
+    #[must_use]
+    pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
+        Self { acceptance, ..self }
+    }
+
+    /// The same protection with the passivity controller on or off.
+    #[must_use]
+    pub fn with_passivity_control(self, is_on: bool) -> Self {
+        Self { has_passivity_control: is_on, ..self }
+    }
+
+    /// The same protection with another time over which the force rises [s].
+    #[must_use]
+    pub fn with_rise_time(self, rise_time: f64) -> Self {
+        Self { rise_time, ..self }
     }
 
     /// The bodies as the device renders them at `rate` [Hz]: the stiffness and damping of each
@@ -229,13 +254,11 @@ impl<const D: usize> Protection<D> {
 
     /// The options of a safety chain for an impedance that was already accepted.
     fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
-        SafetyOptions {
-            scale: self.map.scale(),
-            acceptance: Acceptance::AsItIs,
-            has_passivity_control: self.has_passivity_control,
-            rise_time: self.rise_time,
-            ..SafetyOptions::new(impedance)
-        }
+        SafetyOptions::new(impedance)
+            .with_scale(self.map.scale())
+            .with_acceptance(Acceptance::AsItIs)
+            .with_passivity_control(self.has_passivity_control)
+            .with_rise_time(self.rise_time)
     }
 }
 

@@ -24,7 +24,7 @@ use crate::friction::{Held, Hold, drag};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::{Sample, Sampler};
 use crate::surface::Friction;
-use palpate_safety::{NumberError, not_negative};
+use palpate_safety::NumberError;
 
 /// The default budget of evaluations in a tick. Sliding takes one to three, a corner up to
 /// eight, an impact about ten; the rest is for grazing motions, slots and fast hands.
@@ -65,7 +65,7 @@ impl Probe {
     ///
     /// [`HapticsError::Number`] if the radius is negative or not finite.
     pub fn new(radius: f64) -> Result<Self, HapticsError> {
-        let radius = not_negative("radius", radius, "m")?;
+        let radius = NumberError::check_not_negative("radius", radius, "m")?;
         Ok(Self { radius, budget: DEFAULT_BUDGET })
     }
 

@@ -46,10 +46,13 @@ const PAST: f64 = 4.0;
 /// let found = method.descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
 /// let proven = overlap(&a, &far, &Limits::new(1e-4), &mut PairWorkspace::new())?;
 /// assert!(found.value > 0.0 && proven.is_hit() == Some(true));
+/// let first = method.with_steps(1).descend(&a, &far, Vector([-1.8, 0.4]), 1e-6)?;
+/// assert_eq!(first.steps, 1);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct AlternatingProjection {
     /// Steps along the gradient of the second body at most; 64.
     pub steps: u32,
@@ -58,6 +61,14 @@ pub struct AlternatingProjection {
 impl Default for AlternatingProjection {
     fn default() -> Self {
         Self { steps: 64 }
+    }
+}
+
+impl AlternatingProjection {
+    /// The same method with another number of steps at most.
+    #[must_use]
+    pub const fn with_steps(self, steps: u32) -> Self {
+        Self { steps, ..self }
     }
 }
 

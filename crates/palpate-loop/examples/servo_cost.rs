@@ -37,12 +37,11 @@ fn measure(
     let bounds = shape.promise().bounds.ok_or("the shape has no bounds")?;
     let path = Tour::new(bounds.aabb, DURATION)?.with_probe_radius(radius)?.over(shape)?;
     let mut device = RecordedDevice::new(vec![path; points])?;
-    let options = ServoOptions { probe: Probe::new(radius)?, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(Probe::new(radius)?);
     let mut servo = UnprotectedServo::new(shape.clone(), points, options)?
         .protected(&Protection::new(device.profile().clone()))?;
     let pace = Pace::AsFastAsPossible;
-    let report =
-        run(&mut servo, &mut device, RunOptions { pace, ..RunOptions::new(DURATION) })?;
+    let report = run(&mut servo, &mut device, RunOptions::new(DURATION).with_pace(pace))?;
     let cost = report.cost.ok_or("there was no tick")?;
     println!(
         "{name:<8} {points:>6} {:>7.0}% {:>16.2} {:>4} {:>10} {:>4} {:>6}",

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, not_negative, positive};
+use palpate_haptics::{HapticsError, NumberError};
 use std::time::Duration;
 
 use crate::clock::Clock;
@@ -109,8 +109,8 @@ impl Lateness {
         rate: f64,
         duration: f64,
     ) -> Result<Self, HapticsError> {
-        let rate = positive("rate", rate, "Hz")?;
-        let duration = not_negative("duration", duration, "s")?;
+        let rate = NumberError::check_positive("rate", rate, "Hz")?;
+        let duration = NumberError::check_not_negative("duration", duration, "s")?;
         let mut pacer = Pacer::new(clock, rate);
         let mut times = Times::new();
         let mut missed = 0;

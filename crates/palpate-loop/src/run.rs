@@ -4,7 +4,7 @@
 //! Running a servo with a device for a time.
 
 use palpate_haptics::{
-    Control, Device, HandoffOptions, HapticsError, Progress, Servo, handoff, not_negative,
+    Control, Device, HandoffOptions, HapticsError, NumberError, Progress, Servo, handoff,
 };
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -29,6 +29,14 @@ pub enum Pace {
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) + Send);
 
 /// Options of a run.
+///
+/// ```
+/// use palpate_loop::{Pace, RunOptions};
+///
+/// let options = RunOptions::<3>::new(2.0).with_pace(Pace::AsFastAsPossible);
+/// assert_eq!((options.duration, options.pace), (2.0, Pace::AsFastAsPossible));
+/// ```
+#[non_exhaustive]
 pub struct RunOptions<'a, const D: usize> {
     /// The time the servo runs [s].
     pub duration: f64,
@@ -46,7 +54,7 @@ pub struct RunOptions<'a, const D: usize> {
     pub interrupt: Option<&'a AtomicBool>,
 }
 
-impl<const D: usize> RunOptions<'_, D> {
+impl<'a, const D: usize> RunOptions<'a, D> {
     /// A run of `duration` [s] in real time, without rehearsals, recorder and watch.
     #[must_use]
     pub fn new(duration: f64) -> Self {
@@ -58,6 +66,36 @@ impl<const D: usize> RunOptions<'_, D> {
             watch: None,
             interrupt: None,
         }
+    }
+
+    /// The same options with another pace.
+    #[must_use]
+    pub const fn with_pace(self, pace: Pace) -> Self {
+        Self { pace, ..self }
+    }
+
+    /// The same options with rehearsals or without.
+    #[must_use]
+    pub const fn with_rehearsals(self, rehearses: bool) -> Self {
+        Self { rehearses, ..self }
+    }
+
+    /// The same options with a recorder.
+    #[must_use]
+    pub const fn with_recorder(self, recorder: &'a mut Recorder<D>) -> Self {
+        Self { recorder: Some(recorder), ..self }
+    }
+
+    /// The same options with a closure that a separate thread calls at `interval`.
+    #[must_use]
+    pub const fn with_watch(self, interval: Duration, watch: Watch<'a>) -> Self {
+        Self { watch: Some((interval, watch)), ..self }
+    }
+
+    /// The same options with a flag that ends the run.
+    #[must_use]
+    pub const fn with_interrupt(self, flag: &'a AtomicBool) -> Self {
+        Self { interrupt: Some(flag), ..self }
     }
 }
 
@@ -161,7 +199,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 /// let ball = Shape::from_kernel(Ball::new(0.05)?);
 /// let mut servo = Servo::for_device(ball, &device)?;
 ///
-/// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
+/// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
 /// let report = run(&mut servo, &mut device, options)?;
 /// assert_eq!(report.ticks, 1000);
 /// assert!((report.largest_depth - 0.002).abs() < 1e-5); // the probe's radius
@@ -203,15 +241,15 @@ pub fn run_on<const D: usize>(
     options: RunOptions<'_, D>,
 ) -> Result<RunReport, HapticsError> {
     let schedule = Schedule {
-        ticks: ticks(not_negative("duration", options.duration, "s")?, servo.options().rate),
+        ticks: ticks(
+            NumberError::check_not_negative("duration", options.duration, "s")?,
+            servo.options().rate,
+        ),
         pace: options.pace,
         rehearses: options.rehearses,
     };
-    let (control, mut end) = options
-        .watch
-        .is_some()
-        .then(|| handoff(&*servo, HandoffOptions { events: 0, bodies: 0 }))
-        .unzip();
+    let room = HandoffOptions::default().with_events(0).with_bodies(0);
+    let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
     let servo_loop = ServoLoop::new(servo, device)
         .recording(options.recorder)

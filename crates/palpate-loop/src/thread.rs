@@ -4,7 +4,7 @@
 //! A servo in a thread of its own.
 
 use palpate_haptics::{
-    Control, Device, HandoffOptions, HapticsError, Servo, ServoEnd, handoff, not_negative,
+    Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, handoff,
 };
 use std::fmt;
 use std::panic::resume_unwind;
@@ -18,7 +18,15 @@ use crate::run::{Pace, ticks};
 use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How a thread runs a servo.
+///
+/// ```
+/// use palpate_loop::ThreadOptions;
+///
+/// let options = ThreadOptions::default().with_duration(2.0).with_recorder(2000);
+/// assert_eq!((options.duration, options.rows), (Some(2.0), Some(2000)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ThreadOptions {
     /// The time for which the servo runs [s]; `None` means until [`ServoThread::end`].
     pub duration: Option<f64>,
@@ -43,6 +51,38 @@ impl Default for ThreadOptions {
             rows: None,
             handoff: HandoffOptions::default(),
         }
+    }
+}
+
+impl ThreadOptions {
+    /// The same options with an end after `duration` [s].
+    #[must_use]
+    pub const fn with_duration(self, duration: f64) -> Self {
+        Self { duration: Some(duration), ..self }
+    }
+
+    /// The same options with a request for a raised priority or without.
+    #[must_use]
+    pub const fn with_raised_priority(self, is_raised: bool) -> Self {
+        Self { raises_priority: is_raised, ..self }
+    }
+
+    /// The same options with rehearsals or without.
+    #[must_use]
+    pub const fn with_rehearsals(self, rehearses: bool) -> Self {
+        Self { rehearses, ..self }
+    }
+
+    /// The same options with a recorder of so many rows.
+    #[must_use]
+    pub const fn with_recorder(self, rows: usize) -> Self {
+        Self { rows: Some(rows), ..self }
+    }
+
+    /// The same options with other capacities of the hand-off.
+    #[must_use]
+    pub const fn with_handoff(self, handoff: HandoffOptions) -> Self {
+        Self { handoff, ..self }
     }
 }
 
@@ -73,7 +113,7 @@ impl Default for ThreadOptions {
 /// let servo = Servo::for_device(ball, &*device)?;
 ///
 /// let (clock, mut driver) = VirtualClock::driven();
-/// let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+/// let options = ThreadOptions::default().with_raised_priority(false);
 /// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
 /// driver.advance(Duration::ZERO);
 /// let snapshot = thread.control().latest().ok_or("tick 0 is over")?;
@@ -159,9 +199,10 @@ impl<const D: usize> ServoThread<D> {
         servo.check_device(&*device)?;
         let ticks = match options.duration {
             None => u64::MAX,
-            Some(duration) => {
-                ticks(not_negative("duration", duration, "s")?, servo.options().rate)
-            }
+            Some(duration) => ticks(
+                NumberError::check_not_negative("duration", duration, "s")?,
+                servo.options().rate,
+            ),
         };
         let schedule = Schedule { ticks, pace: Pace::RealTime, rehearses: options.rehearses };
         let mut recorder = options.rows.map(Recorder::new);

@@ -12,7 +12,7 @@
 use std::borrow::Cow;
 
 use crate::device::DeviceProfile;
-use crate::error::{SafetyError, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::impedance::Impedance;
 use crate::limits::Limits;
 
@@ -100,7 +100,7 @@ impl Rule {
 /// use palpate_safety::{Accepted, DeviceProfile, Impedance, Rule};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+/// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
 /// // b / (K T / 2 + B) = 0.5 / (1.5 + 0.5)
 /// let accepted = Accepted::new(Impedance::new(3000.0, 0.5)?, 1.0, &device, 1000.0)?;
 /// assert_eq!((accepted.factor, accepted.rule), (0.25, Some(Rule::Passivity)));
@@ -154,7 +154,7 @@ impl Accepted {
     /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+    /// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
     /// let refused = Accepted::strict(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0);
     /// assert_eq!(
     ///     refused.unwrap_err().to_string(),
@@ -223,7 +223,7 @@ impl Accepted {
 /// Stiffness [N/m] and damping [N·s/m] at the device, where forces equal those of the world and
 /// displacements are `scale` times smaller.
 fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), SafetyError> {
-    let scale = positive("scale", scale, "(world per device)")?;
+    let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
     Ok((scale * impedance.stiffness(), scale * impedance.damping()))
 }
 
@@ -238,7 +238,7 @@ fn factors(
     limits: &Limits,
     rate: f64,
 ) -> Result<[(f64, Rule); 4], SafetyError> {
-    let period = 1.0 / positive("rate", rate, "Hz")?;
+    let period = 1.0 / NumberError::check_positive("rate", rate, "Hz")?;
     let least = limits.least_damping.positive()?;
     let max_stiffness = limits.max_stiffness.positive()?;
     let step = limits.encoder_step.not_negative()?;

@@ -12,7 +12,7 @@ use palpate_field::{Point, Vector};
 use crate::acceptance::{Acceptance, Accepted};
 use crate::channel::{Channel, TickInput};
 use crate::device::DeviceProfile;
-use crate::error::{SafetyError, not_negative, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::impedance::Impedance;
 use crate::limits::Limits;
@@ -51,7 +51,15 @@ impl<const D: usize> PortState<D> {
 }
 
 /// Options of a safety chain, beside the limits of the device.
+///
+/// ```
+/// use palpate_safety::{Impedance, SafetyOptions};
+///
+/// let options = SafetyOptions::new(Impedance::default()).with_reserve(0.0).with_rise_time(0.1);
+/// assert_eq!((options.reserve, options.rise_time), (0.0, 0.1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SafetyOptions {
     /// The stiffness and damping to render, in the world.
     pub impedance: Impedance,
@@ -96,6 +104,60 @@ impl SafetyOptions {
             fall_time: 0.02,
         }
     }
+
+    /// The same options with another stiffness and damping.
+    #[must_use]
+    pub const fn with_impedance(self, impedance: Impedance) -> Self {
+        Self { impedance, ..self }
+    }
+
+    /// The same options with another scale of the world.
+    #[must_use]
+    pub const fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// The same options with another way to treat a material that the device cannot render.
+    #[must_use]
+    pub const fn with_acceptance(self, acceptance: Acceptance) -> Self {
+        Self { acceptance, ..self }
+    }
+
+    /// The same options with the passivity controller on or off.
+    #[must_use]
+    pub const fn with_passivity_control(self, is_on: bool) -> Self {
+        Self { has_passivity_control: is_on, ..self }
+    }
+
+    /// The same options with another reserve of energy [J].
+    #[must_use]
+    pub const fn with_reserve(self, reserve: f64) -> Self {
+        Self { reserve, ..self }
+    }
+
+    /// The same options with another time constant of the motors [s].
+    #[must_use]
+    pub const fn with_cooling_time(self, cooling_time: f64) -> Self {
+        Self { cooling_time, ..self }
+    }
+
+    /// The same options with another time over which the force rises [s].
+    #[must_use]
+    pub const fn with_rise_time(self, rise_time: f64) -> Self {
+        Self { rise_time, ..self }
+    }
+
+    /// The same options with another number of late ticks after which the force falls.
+    #[must_use]
+    pub const fn with_late_ticks(self, late_ticks: NonZeroU32) -> Self {
+        Self { late_ticks, ..self }
+    }
+
+    /// The same options with another time over which late ticks lower the force [s].
+    #[must_use]
+    pub const fn with_fall_time(self, fall_time: f64) -> Self {
+        Self { fall_time, ..self }
+    }
 }
 
 /// The safety chain of one contact point, from the wanted force to the written force.
@@ -132,8 +194,8 @@ impl SafetyOptions {
 /// use palpate_safety::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile { max_force: 2.5, ..DeviceProfile::unlimited("example") };
-/// let options = SafetyOptions { rise_time: 0.0, ..SafetyOptions::new(Impedance::default()) };
+/// let device = DeviceProfile::unlimited("example").with_max_force(2.5);
+/// let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.0);
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
 /// let state = PortState::at_rest();
 /// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 1.0]));
@@ -167,7 +229,7 @@ impl<const D: usize> SafetyChain<D> {
         rate: f64,
         options: SafetyOptions,
     ) -> Result<Self, SafetyError> {
-        let rate = positive("rate", rate, "Hz")?;
+        let rate = NumberError::check_positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
         let limits = Limits::along(device);
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
@@ -179,7 +241,7 @@ impl<const D: usize> SafetyChain<D> {
             damping,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
-            reserve: not_negative("reserve", options.reserve, "J")?,
+            reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
         Ok(Self {

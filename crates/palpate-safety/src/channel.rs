@@ -9,7 +9,7 @@ use palpate_field::Vector;
 
 use crate::SafetyOptions;
 use crate::continuous::ContinuousLimit;
-use crate::error::{SafetyError, not_negative, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::force_limit::ForceLimit;
 use crate::limits::Limits;
@@ -57,9 +57,10 @@ impl<const D: usize> Channel<D> {
     ) -> Result<Self, SafetyError> {
         let slew = SlewLimit::new(limits.max_force_rate.positive()?, rate);
         let continuous_force = limits.continuous_force.positive()?;
-        let cooling_time = positive("cooling_time", options.cooling_time, "s")?;
-        let rise_time = not_negative("rise_time", options.rise_time, "s")?;
-        let fall_time = not_negative("fall_time", options.fall_time, "s")?;
+        let cooling_time =
+            NumberError::check_positive("cooling_time", options.cooling_time, "s")?;
+        let rise_time = NumberError::check_not_negative("rise_time", options.rise_time, "s")?;
+        let fall_time = NumberError::check_not_negative("fall_time", options.fall_time, "s")?;
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),

@@ -56,8 +56,16 @@ impl<const D: usize> TurnState<D> {
 ///
 /// No safe default exists for an unknown device: start from [`unlimited`](Self::unlimited) and
 /// set what its maker states as safe.
+///
+/// ```
+/// use palpate_safety::DeviceProfile;
+///
+/// let device = DeviceProfile::unlimited("example").with_max_force(2.5).with_mass(0.05);
+/// assert_eq!((device.max_force, device.mass), (2.5, 0.05));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct DeviceProfile {
     /// The device's name.
     pub name: Cow<'static, str>,
@@ -100,8 +108,30 @@ impl DeviceProfile {
     /// ```
     #[must_use]
     pub fn unlimited(name: impl Into<Cow<'static, str>>) -> Self {
+        Self { name: name.into(), ..Self::of_source("", "", &[], None) }
+    }
+
+    /// An ideal device with the source of its numbers, the names of those that are assumed, and
+    /// rotational properties. In a constant, setters then replace the ideal numbers.
+    ///
+    /// ```
+    /// use palpate_safety::DeviceProfile;
+    ///
+    /// const STYLUS: DeviceProfile =
+    ///     DeviceProfile::of_source("stylus", "its data sheet", &["mass"], None)
+    ///         .with_max_force(3.0)
+    ///         .with_mass(0.05);
+    /// assert_eq!((STYLUS.max_force, STYLUS.mass), (3.0, 0.05));
+    /// ```
+    #[must_use]
+    pub const fn of_source(
+        name: &'static str,
+        source: &'static str,
+        assumed: &'static [&'static str],
+        turning: Option<TurningProfile>,
+    ) -> Self {
         Self {
-            name: name.into(),
+            name: Cow::Borrowed(name),
             max_force: f64::INFINITY,
             continuous_force: f64::INFINITY,
             max_force_rate: f64::INFINITY,
@@ -112,10 +142,104 @@ impl DeviceProfile {
             least_damping: f64::INFINITY,
             friction: f64::INFINITY,
             encoder_step: 0.0,
-            turning: None,
-            source: Cow::Borrowed(""),
-            assumed: Cow::Borrowed(&[]),
+            turning,
+            source: Cow::Borrowed(source),
+            assumed: Cow::Borrowed(assumed),
         }
+    }
+
+    /// The same profile with another name.
+    #[must_use]
+    pub fn with_name(self, name: impl Into<Cow<'static, str>>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// The same profile with another force limit [N].
+    #[must_use]
+    pub const fn with_max_force(mut self, max_force: f64) -> Self {
+        self.max_force = max_force;
+        self
+    }
+
+    /// The same profile with another continuous limit [N].
+    #[must_use]
+    pub const fn with_continuous_force(mut self, continuous_force: f64) -> Self {
+        self.continuous_force = continuous_force;
+        self
+    }
+
+    /// The same profile with another slew limit [N/s].
+    #[must_use]
+    pub const fn with_max_force_rate(mut self, max_force_rate: f64) -> Self {
+        self.max_force_rate = max_force_rate;
+        self
+    }
+
+    /// The same profile with another largest stiffness [N/m].
+    #[must_use]
+    pub const fn with_max_stiffness(mut self, max_stiffness: f64) -> Self {
+        self.max_stiffness = max_stiffness;
+        self
+    }
+
+    /// The same profile with another largest damping [N·s/m].
+    #[must_use]
+    pub const fn with_max_damping(mut self, max_damping: f64) -> Self {
+        self.max_damping = max_damping;
+        self
+    }
+
+    /// The same profile with another radius of its workspace [m].
+    #[must_use]
+    pub const fn with_workspace_radius(mut self, workspace_radius: f64) -> Self {
+        self.workspace_radius = workspace_radius;
+        self
+    }
+
+    /// The same profile with another apparent mass [kg].
+    #[must_use]
+    pub const fn with_mass(mut self, mass: f64) -> Self {
+        self.mass = mass;
+        self
+    }
+
+    /// The same profile with another least physical damping [N·s/m].
+    #[must_use]
+    pub const fn with_least_damping(mut self, least_damping: f64) -> Self {
+        self.least_damping = least_damping;
+        self
+    }
+
+    /// The same profile with another Coulomb friction [N].
+    #[must_use]
+    pub const fn with_friction(mut self, friction: f64) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// The same profile with another resolution of the encoders [m].
+    #[must_use]
+    pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
+        self.encoder_step = encoder_step;
+        self
+    }
+
+    /// The same profile with rotational properties.
+    #[must_use]
+    pub fn with_turning(self, turning: TurningProfile) -> Self {
+        Self { turning: Some(turning), ..self }
+    }
+
+    /// The same profile with another source of the numbers.
+    #[must_use]
+    pub fn with_source(self, source: impl Into<Cow<'static, str>>) -> Self {
+        Self { source: source.into(), ..self }
+    }
+
+    /// The same profile with other names of fields that are assumed.
+    #[must_use]
+    pub fn with_assumed(self, assumed: impl Into<Cow<'static, [&'static str]>>) -> Self {
+        Self { assumed: assumed.into(), ..self }
     }
 }
 
@@ -176,6 +300,7 @@ fn at_least(
 /// forces. Each number holds for the worst axis.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct TurningProfile {
     /// Largest torque [N·m]; zero for a device that senses its orientation but gives no torque.
     pub max_torque: f64,
@@ -207,12 +332,19 @@ impl TurningProfile {
     /// ```
     /// use palpate_safety::{DeviceProfile, TurningProfile};
     ///
-    /// let turning = Some(TurningProfile { max_torque: 0.2, ..TurningProfile::unlimited() });
-    /// let device = DeviceProfile { turning, ..DeviceProfile::unlimited("six degrees of freedom") };
+    /// let turning = TurningProfile::unlimited().with_max_torque(0.2);
+    /// let device = DeviceProfile::unlimited("six degrees of freedom").with_turning(turning);
     /// assert!(device.turning.is_some_and(|turning| turning.max_stiffness == f64::INFINITY));
     /// ```
     #[must_use]
-    pub fn unlimited() -> Self {
+    pub const fn unlimited() -> Self {
+        Self::of_source("", &[])
+    }
+
+    /// An ideal device with the source of its numbers and the names of those that are assumed. In
+    /// a constant, setters then replace the ideal numbers.
+    #[must_use]
+    pub const fn of_source(source: &'static str, assumed: &'static [&'static str]) -> Self {
         Self {
             max_torque: f64::INFINITY,
             continuous_torque: f64::INFINITY,
@@ -223,9 +355,84 @@ impl TurningProfile {
             least_damping: f64::INFINITY,
             friction: f64::INFINITY,
             encoder_step: 0.0,
-            source: Cow::Borrowed(""),
-            assumed: Cow::Borrowed(&[]),
+            source: Cow::Borrowed(source),
+            assumed: Cow::Borrowed(assumed),
         }
+    }
+
+    /// The same profile with another torque limit [N·m].
+    #[must_use]
+    pub const fn with_max_torque(mut self, max_torque: f64) -> Self {
+        self.max_torque = max_torque;
+        self
+    }
+
+    /// The same profile with another continuous limit [N·m].
+    #[must_use]
+    pub const fn with_continuous_torque(mut self, continuous_torque: f64) -> Self {
+        self.continuous_torque = continuous_torque;
+        self
+    }
+
+    /// The same profile with another slew limit [N·m/s].
+    #[must_use]
+    pub const fn with_max_torque_rate(mut self, max_torque_rate: f64) -> Self {
+        self.max_torque_rate = max_torque_rate;
+        self
+    }
+
+    /// The same profile with another largest angular stiffness [N·m/rad].
+    #[must_use]
+    pub const fn with_max_stiffness(mut self, max_stiffness: f64) -> Self {
+        self.max_stiffness = max_stiffness;
+        self
+    }
+
+    /// The same profile with another largest angular damping [N·m·s/rad].
+    #[must_use]
+    pub const fn with_max_damping(mut self, max_damping: f64) -> Self {
+        self.max_damping = max_damping;
+        self
+    }
+
+    /// The same profile with another apparent moment of inertia [kg·m²].
+    #[must_use]
+    pub const fn with_inertia(mut self, inertia: f64) -> Self {
+        self.inertia = inertia;
+        self
+    }
+
+    /// The same profile with another least physical angular damping [N·m·s/rad].
+    #[must_use]
+    pub const fn with_least_damping(mut self, least_damping: f64) -> Self {
+        self.least_damping = least_damping;
+        self
+    }
+
+    /// The same profile with another Coulomb friction [N·m].
+    #[must_use]
+    pub const fn with_friction(mut self, friction: f64) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// The same profile with another resolution of the encoders [rad].
+    #[must_use]
+    pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
+        self.encoder_step = encoder_step;
+        self
+    }
+
+    /// The same profile with another source of the numbers.
+    #[must_use]
+    pub fn with_source(self, source: impl Into<Cow<'static, str>>) -> Self {
+        Self { source: source.into(), ..self }
+    }
+
+    /// The same profile with other names of fields that are assumed.
+    #[must_use]
+    pub fn with_assumed(self, assumed: impl Into<Cow<'static, [&'static str]>>) -> Self {
+        Self { assumed: assumed.into(), ..self }
     }
 }
 

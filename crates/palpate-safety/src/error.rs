@@ -17,6 +17,72 @@ pub struct NumberError {
     pub unit: &'static str,
 }
 
+impl NumberError {
+    /// Checks that `value` is positive and finite.
+    ///
+    /// # Errors
+    ///
+    /// The error with the name and the unit given, also for NaN.
+    ///
+    /// ```
+    /// use palpate_safety::NumberError;
+    ///
+    /// assert_eq!(NumberError::check_positive("mass", 0.1, "kg"), Ok(0.1));
+    /// let error = NumberError::check_positive("mass", -1.0, "kg").unwrap_err();
+    /// assert_eq!(error.to_string(), "mass must be positive and finite, got -1 kg");
+    /// ```
+    pub fn check_positive(
+        parameter: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        // Written so that NaN fails.
+        if value > 0.0 && value <= f64::MAX {
+            Ok(value)
+        } else {
+            let rule = "positive and finite";
+            Err(Self { parameter, rule, value, unit })
+        }
+    }
+
+    /// Checks that `value` is not negative and finite.
+    ///
+    /// # Errors
+    ///
+    /// As [`check_positive`](Self::check_positive).
+    pub fn check_not_negative(
+        parameter: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        if (0.0..=f64::MAX).contains(&value) {
+            Ok(value)
+        } else {
+            let rule = "zero or more and finite";
+            Err(Self { parameter, rule, value, unit })
+        }
+    }
+
+    /// Checks that `value` is positive; it may be infinite.
+    ///
+    /// # Errors
+    ///
+    /// As [`check_positive`](Self::check_positive).
+    pub fn check_positive_or_infinite(
+        parameter: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        // Written so that NaN fails.
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            let rule = "positive";
+            Err(Self { parameter, rule, value, unit })
+        }
+    }
+}
+
 /// Why a device cannot be protected as asked. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -69,60 +135,4 @@ pub enum SafetyError {
         /// The unit of the limit: "N".
         unit: &'static str,
     },
-}
-
-/// Checks that `value` is positive and finite.
-///
-/// # Errors
-///
-/// [`NumberError`] with the name and the unit given, also for NaN.
-pub fn positive(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, NumberError> {
-    // Written so that NaN fails.
-    if value > 0.0 && value <= f64::MAX {
-        Ok(value)
-    } else {
-        let rule = "positive and finite";
-        Err(NumberError { parameter, rule, value, unit })
-    }
-}
-
-/// Checks that `value` is not negative and finite.
-///
-/// # Errors
-///
-/// As [`positive`].
-pub fn not_negative(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, NumberError> {
-    if (0.0..=f64::MAX).contains(&value) {
-        Ok(value)
-    } else {
-        let rule = "zero or more and finite";
-        Err(NumberError { parameter, rule, value, unit })
-    }
-}
-
-/// Checks that `value` is positive; it may be infinite.
-///
-/// # Errors
-///
-/// As [`positive`].
-pub fn positive_or_infinite(
-    parameter: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, NumberError> {
-    // Written so that NaN fails.
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        let rule = "positive";
-        Err(NumberError { parameter, rule, value, unit })
-    }
 }

@@ -3,7 +3,7 @@
 
 //! Stiffness and damping of a virtual wall, which decide whether a device stays passive.
 
-use crate::error::{SafetyError, not_negative, positive};
+use crate::error::{NumberError, SafetyError};
 
 /// A stiffness and a damping.
 ///
@@ -27,8 +27,8 @@ impl Impedance {
     /// either not finite.
     pub fn new(stiffness: f64, damping: f64) -> Result<Self, SafetyError> {
         Ok(Self {
-            stiffness: positive("stiffness", stiffness, "N/m")?,
-            damping: not_negative("damping", damping, "N·s/m")?,
+            stiffness: NumberError::check_positive("stiffness", stiffness, "N/m")?,
+            damping: NumberError::check_not_negative("damping", damping, "N·s/m")?,
         })
     }
 

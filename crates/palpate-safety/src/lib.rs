@@ -38,7 +38,7 @@ pub use acceptance::{Acceptance, Accepted, Rule};
 pub use chain::{PortState, SafetyChain, SafetyOptions};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
 pub use effect::Effect;
-pub use error::{NumberError, SafetyError, not_negative, positive, positive_or_infinite};
+pub use error::{NumberError, SafetyError};
 pub use impedance::Impedance;
 pub use limit::{limited, part_of};
 pub use limits::Limits;

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use crate::Rule;
 use crate::device::{DeviceProfile, TurningProfile};
-use crate::error::{SafetyError, not_negative, positive_or_infinite};
+use crate::error::{NumberError, SafetyError};
 
 /// A limit with its name and its unit.
 #[derive(Clone, Copy, Debug)]
@@ -25,12 +25,12 @@ impl Limit {
 
     /// The limit, which must be positive.
     pub(crate) fn positive(&self) -> Result<f64, SafetyError> {
-        Ok(positive_or_infinite(self.name, self.value, self.unit)?)
+        Ok(NumberError::check_positive_or_infinite(self.name, self.value, self.unit)?)
     }
 
     /// The limit, which must be zero or more and finite.
     pub(crate) fn not_negative(&self) -> Result<f64, SafetyError> {
-        Ok(not_negative(self.name, self.value, self.unit)?)
+        Ok(NumberError::check_not_negative(self.name, self.value, self.unit)?)
     }
 }
 

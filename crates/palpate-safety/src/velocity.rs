@@ -10,7 +10,7 @@
 
 use palpate_field::{Point, Vector};
 
-use crate::error::{SafetyError, not_negative, positive};
+use crate::error::{NumberError, SafetyError};
 
 /// The longest window, in periods. A longer window would reduce noise at constant speed only.
 const LONGEST: usize = 16;
@@ -69,8 +69,9 @@ impl<const D: usize> VelocityEstimator<D> {
     /// finite.
     pub fn new(rate: f64, encoder_step: f64) -> Result<Self, SafetyError> {
         Ok(Self {
-            rate: positive("rate", rate, "Hz")?,
-            step: not_negative("encoder_step", encoder_step, "m")? * (1.0 + SLACK),
+            rate: NumberError::check_positive("rate", rate, "Hz")?,
+            step: NumberError::check_not_negative("encoder_step", encoder_step, "m")?
+                * (1.0 + SLACK),
             positions: [Vector::ZERO; LONGEST],
             newest: 0,
             known: 0,

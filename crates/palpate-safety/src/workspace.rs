@@ -8,7 +8,7 @@
 use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::device::PointState;
-use crate::error::{NumberError, SafetyError, positive};
+use crate::error::{NumberError, SafetyError};
 use crate::rotation::{in_place, in_space};
 
 /// From device to world coordinates and back: `world = s R device + t`.
@@ -67,7 +67,7 @@ impl<const D: usize> WorkspaceMap<D> {
     /// [`SafetyError::Number`] if the scale is not positive and finite, or the translation not
     /// finite.
     pub fn new(world_from_device: Pose<D>, scale: f64) -> Result<Self, SafetyError> {
-        let scale = positive("scale", scale, "(world per device)")?;
+        let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
         let wrong = world_from_device.translation.0.into_iter().find(|x| !x.is_finite());
         match wrong {
             Some(value) => Err(SafetyError::Number(NumberError {
@@ -103,9 +103,13 @@ impl<const D: usize> WorkspaceMap<D> {
     /// # }
     /// ```
     pub fn fitting(scene: Aabb<D>, workspace_radius: f64) -> Result<Self, SafetyError> {
-        let workspace_radius = positive("workspace_radius", workspace_radius, "m")?;
-        let half_diagonal =
-            positive("half diagonal of the scene", scene.half_extents().norm(), "m")?;
+        let workspace_radius =
+            NumberError::check_positive("workspace_radius", workspace_radius, "m")?;
+        let half_diagonal = NumberError::check_positive(
+            "half diagonal of the scene",
+            scene.half_extents().norm(),
+            "m",
+        )?;
         Self::new(Pose::translation(scene.centre()), half_diagonal / workspace_radius)
     }
 

@@ -14,7 +14,7 @@ use std::ops::{Add, Mul, Sub};
 use palpate_field::Vector;
 
 use crate::channel::{Channel, TickInput};
-use crate::error::{SafetyError, not_negative};
+use crate::error::{NumberError, SafetyError};
 use crate::limits::Limits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
@@ -183,7 +183,7 @@ impl<const D: usize> WrenchChain<D> {
             damping,
             mass,
             max_rate,
-            reserve: not_negative("reserve", options.reserve, "J")?,
+            reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
             period: 1.0 / rate,
         };
         Ok(Self {

@@ -329,12 +329,14 @@ impl WrittenGuide {
     /// # }
     /// ```
     pub fn guide<const D: usize>(&self) -> Result<Guide<D>, HapticsError> {
-        let options = GuideOptions {
-            stiffness: self.stiffness,
-            damping: self.damping,
-            snap_distance: self.snap_distance.unwrap_or(f64::INFINITY),
-            release_distance: self.release_distance,
-            max_force: self.max_force,
+        let options = GuideOptions::default()
+            .with_stiffness(self.stiffness)
+            .with_damping(self.damping)
+            .with_snap_distance(self.snap_distance.unwrap_or(f64::INFINITY))
+            .with_max_force(self.max_force);
+        let options = match self.release_distance {
+            Some(distance) => options.with_release_distance(distance),
+            None => options,
         };
         let point =
             self.point.iter().map(|point| Guide::to_point(vector("point", point)?, options));

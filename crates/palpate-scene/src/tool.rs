@@ -156,13 +156,14 @@ impl WrittenTool {
     pub fn options(&self) -> ToolOptions {
         let default = ToolOptions::default();
         let coupling = self.coupling.clone().unwrap_or_default();
-        ToolOptions {
-            stiffness: coupling.stiffness.unwrap_or(default.stiffness),
-            angular_stiffness: coupling.angular_stiffness.or(default.angular_stiffness),
-            damping: coupling.damping.unwrap_or(default.damping),
-            angular_damping: coupling.angular_damping.unwrap_or(default.angular_damping),
-            max_force: self.max_force.unwrap_or(default.max_force),
-            ..default
+        let options = default
+            .with_stiffness(coupling.stiffness.unwrap_or(default.stiffness))
+            .with_damping(coupling.damping.unwrap_or(default.damping))
+            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping))
+            .with_max_force(self.max_force.unwrap_or(default.max_force));
+        match coupling.angular_stiffness {
+            Some(stiffness) => options.with_angular_stiffness(stiffness),
+            None => options,
         }
     }
 }

@@ -219,7 +219,8 @@ impl<const D: usize> BuiltScene<D> {
             }
         };
         let acceptance = settings.acceptance;
-        let protection = Protection { map, acceptance, ..Protection::new(profile.clone()) };
+        let protection =
+            Protection::new(profile.clone()).with_map(map).with_acceptance(acceptance);
         let mut servo = servo.protected(&protection)?;
         servo.guide(&self.guides);
         Ok(servo)
@@ -232,7 +233,7 @@ impl<const D: usize> BuiltScene<D> {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<ServoOptions, HapticsError> {
-        let mut options = ServoOptions { rate, ..ServoOptions::of_device(device) };
+        let mut options = ServoOptions::of_device(device).with_rate(rate);
         if let Some(tool) = &self.tool {
             options.probe = Probe::new(tool.radius)?;
             options.max_force = tool.max_force.unwrap_or(options.max_force);

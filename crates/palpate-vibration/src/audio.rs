@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::cue::{Mapping, Sensation, Tap, Tone};
 use super::ringing::Ringing;
-use palpate_haptics::{HapticsError, NumberError, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 /// The time over which an amplitude rises from zero to one [s]: a jump would click, a slower
 /// rise would blur a texture.
@@ -114,7 +114,7 @@ impl Synthesiser {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        positive("sample_rate", sample_rate, "Hz")?;
+        NumberError::check_positive("sample_rate", sample_rate, "Hz")?;
         let highest_frequency = mapping.options().highest_frequency;
         if sample_rate < 2.0 * highest_frequency {
             let (parameter, rule) = ("sample_rate", "at least twice the highest frequency");

@@ -11,7 +11,7 @@ use palpate_field::Point;
 
 use super::cue::{Tone, level};
 use super::ringing::Tones;
-use palpate_haptics::{HapticsError, NumberError, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 /// Combines tones for an actuator that plays one at a time: the frequency of the strongest
 /// tone, and the amplitude `√(Σ a²)` of all, at most one.
@@ -145,7 +145,7 @@ impl<const D: usize> ActuatorArray<D> {
                 return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
             }
         }
-        Ok(Self { places, reach: positive("reach", reach, "m")? })
+        Ok(Self { places, reach: NumberError::check_positive("reach", reach, "m")? })
     }
 
     /// The places of the actuators [m].

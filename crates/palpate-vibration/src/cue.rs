@@ -10,8 +10,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use palpate_haptics::{HapticsError, not_negative, positive};
-use palpate_haptics::{NumberError, Touch};
+use palpate_haptics::{HapticsError, NumberError, Touch};
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +98,15 @@ pub struct Sensation {
 
 /// Options of a [`Mapping`]. The defaults are choices for a hand-held actuator, not
 /// measurements.
+///
+/// ```
+/// use palpate_vibration::MappingOptions;
+///
+/// let options = MappingOptions::default().with_full_depth(0.004).with_full_impact(3.0);
+/// assert_eq!((options.full_depth, options.full_impact), (0.004, 3.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MappingOptions {
     /// The level of the lightest pressure, a_min, in [0, 1]: where the actuator starts to move.
     pub hold_floor: f64,
@@ -146,6 +153,74 @@ impl Default for MappingOptions {
     }
 }
 
+impl MappingOptions {
+    /// The same options with another level of the lightest pressure.
+    #[must_use]
+    pub const fn with_hold_floor(self, hold_floor: f64) -> Self {
+        Self { hold_floor, ..self }
+    }
+
+    /// The same options with another depth of full pressure [m].
+    #[must_use]
+    pub const fn with_full_depth(self, full_depth: f64) -> Self {
+        Self { full_depth, ..self }
+    }
+
+    /// The same options with another exponent of depth.
+    #[must_use]
+    pub const fn with_hold_exponent(self, hold_exponent: f64) -> Self {
+        Self { hold_exponent, ..self }
+    }
+
+    /// The same options with another frequency of pressure [Hz].
+    #[must_use]
+    pub const fn with_hold_frequency(self, hold_frequency: f64) -> Self {
+        Self { hold_frequency, ..self }
+    }
+
+    /// The same options with another force of a full tap [N].
+    #[must_use]
+    pub const fn with_full_impact(self, full_impact: f64) -> Self {
+        Self { full_impact, ..self }
+    }
+
+    /// The same options with another speed of a full slide [m/s].
+    #[must_use]
+    pub const fn with_full_slide_speed(self, full_slide_speed: f64) -> Self {
+        Self { full_slide_speed, ..self }
+    }
+
+    /// The same options with another normal force of a full slide [N].
+    #[must_use]
+    pub const fn with_full_slide_force(self, full_slide_force: f64) -> Self {
+        Self { full_slide_force, ..self }
+    }
+
+    /// The same options with another exponent of speed and force.
+    #[must_use]
+    pub const fn with_slide_exponent(self, slide_exponent: f64) -> Self {
+        Self { slide_exponent, ..self }
+    }
+
+    /// The same options with another lowest frequency [Hz].
+    #[must_use]
+    pub const fn with_lowest_frequency(self, lowest_frequency: f64) -> Self {
+        Self { lowest_frequency, ..self }
+    }
+
+    /// The same options with another highest frequency [Hz].
+    #[must_use]
+    pub const fn with_highest_frequency(self, highest_frequency: f64) -> Self {
+        Self { highest_frequency, ..self }
+    }
+
+    /// The same options with levels that feel alike at all frequencies, or without.
+    #[must_use]
+    pub const fn with_equal_levels(self, equalise: bool) -> Self {
+        Self { equalise, ..self }
+    }
+}
+
 /// Turns cues into sensations.
 ///
 /// Pressure holds at `a_min + (1 − a_min) (depth / d_max)^γ`; a tap at normal speed v begins at
@@ -159,13 +234,11 @@ impl Default for MappingOptions {
 /// use palpate_vibration::{Cue, Mapping, MappingOptions, Tone};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let options = MappingOptions {
-///     hold_floor: 0.25,
-///     full_depth: 0.004,
-///     hold_exponent: 1.0,
-///     full_slide_speed: 0.5,
-///     ..MappingOptions::default()
-/// };
+/// let options = MappingOptions::default()
+///     .with_hold_floor(0.25)
+///     .with_full_depth(0.004)
+///     .with_hold_exponent(1.0)
+///     .with_full_slide_speed(0.5);
 /// let cue = Cue {
 ///     depth: 0.001,
 ///     normal_force: 2.0,
@@ -197,11 +270,16 @@ impl Mapping {
     /// [`HapticsError::Number`] if one is outside its range.
     pub fn new(options: MappingOptions) -> Result<Self, HapticsError> {
         let o = &options;
-        at_most("hold_floor", not_negative("hold_floor", o.hold_floor, "")?, 1.0, "at most 1")?;
+        at_most(
+            "hold_floor",
+            NumberError::check_not_negative("hold_floor", o.hold_floor, "")?,
+            1.0,
+            "at most 1",
+        )?;
         for (parameter, exponent) in
             [("hold_exponent", o.hold_exponent), ("slide_exponent", o.slide_exponent)]
         {
-            let exponent = positive(parameter, exponent, "")?;
+            let exponent = NumberError::check_positive(parameter, exponent, "")?;
             at_most(parameter, exponent, LARGEST_EXPONENT, "at most 4")?;
         }
         for (parameter, value, unit) in [
@@ -213,7 +291,7 @@ impl Mapping {
             ("highest_frequency", o.highest_frequency, "Hz"),
             ("hold_frequency", o.hold_frequency, "Hz"),
         ] {
-            positive(parameter, value, unit)?;
+            NumberError::check_positive(parameter, value, unit)?;
         }
         let refuse = |parameter, rule, value| {
             Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "Hz" }))

@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Tone, level};
-use palpate_haptics::{HapticsError, NumberError, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 /// A command to a device: what to play on a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,8 +67,8 @@ impl Publisher {
         if channels == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        positive("servo_rate", servo_rate, "Hz")?;
-        positive("publish_rate", publish_rate, "Hz")?;
+        NumberError::check_positive("servo_rate", servo_rate, "Hz")?;
+        NumberError::check_positive("publish_rate", publish_rate, "Hz")?;
         if publish_rate > servo_rate {
             let (parameter, rule) = ("publish_rate", "at most the servo's rate");
             let (value, unit) = (publish_rate, "Hz");

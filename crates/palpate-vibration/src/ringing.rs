@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::cue::{Sensation, Tap, Tone};
-use palpate_haptics::{HapticsError, positive};
+use palpate_haptics::{HapticsError, NumberError};
 
 /// The amplitude below which a tap ends: a tenth of the threshold at 250 Hz, where the skin is
 /// most sensitive. The end of a louder tap could be felt; a quieter one cannot be felt at all.
@@ -98,7 +98,7 @@ impl Voice {
     ///
     /// [`HapticsError::Number`] if the rate is not positive.
     pub fn new(rate: f64) -> Result<Self, HapticsError> {
-        Ok(Self { ringing: Ringing::new(positive("rate", rate, "Hz")?) })
+        Ok(Self { ringing: Ringing::new(NumberError::check_positive("rate", rate, "Hz")?) })
     }
 
     /// One tick.

@@ -44,13 +44,11 @@ impl Device<2> for Carriage {
 }
 
 fn main() -> Result<(), Error> {
-    let profile = DeviceProfile {
-        max_force: 1.5,
-        max_force_rate: 3000.0,
-        mass: 0.1,
-        least_damping: 0.5,
-        ..DeviceProfile::unlimited("carriage")
-    };
+    let profile = DeviceProfile::unlimited("carriage")
+        .with_max_force(1.5)
+        .with_max_force_rate(3000.0)
+        .with_mass(0.1)
+        .with_least_damping(0.5);
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
     let mut servo = Servo::for_device(disc, &device)?;

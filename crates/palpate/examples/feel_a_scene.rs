@@ -25,8 +25,7 @@ fn main() -> Result<(), Error> {
     let device = SimulatedDevice::new(profile, vec![hand])?;
 
     let servo = scene.servo(&device)?;
-    let rows = Some(2000);
-    let options = ThreadOptions { duration: Some(SECONDS), rows, ..ThreadOptions::default() };
+    let options = ThreadOptions::default().with_duration(SECONDS).with_recorder(2000);
     let ended = ServoThread::start(servo, Box::new(device), options)?.join();
 
     let path = std::env::temp_dir().join("palpate_touch.csv");

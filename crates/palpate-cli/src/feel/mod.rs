@@ -119,14 +119,16 @@ where
         Recorder::new(if keeps_rows { rows.max(0.0).ceil() as usize } else { 0 });
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
-    let run_options = RunOptions {
-        duration,
-        rehearses: true,
-        pace: if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime },
-        recorder: keeps_rows.then_some(&mut recorder),
-        watch: if shows_line { Some((LIVE_EVERY, &mut show)) } else { None },
-        interrupt: Some(interrupt.flag()),
-    };
+    let mut run_options = RunOptions::new(duration)
+        .with_pace(if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime })
+        .with_rehearsals(true)
+        .with_interrupt(interrupt.flag());
+    if keeps_rows {
+        run_options = run_options.with_recorder(&mut recorder);
+    }
+    if shows_line {
+        run_options = run_options.with_watch(LIVE_EVERY, &mut show);
+    }
     interrupt.heed();
     if !options.fast {
         output::remark(format_args!(

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::time::Duration;
 
-use palpate::haptics::{HapticsError, positive};
+use palpate::haptics::{HapticsError, NumberError};
 use palpate::servo_loop::{Lateness, Priority, WallClock, raise_priority};
 use serde_json::{Value, json};
 
@@ -69,8 +69,10 @@ impl Measured {
 }
 
 pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
-    let rate = positive("rate", options.rate, "Hz").map_err(Failure::input)?;
-    let duration = positive("duration", options.duration, "s").map_err(Failure::input)?;
+    let rate =
+        NumberError::check_positive("rate", options.rate, "Hz").map_err(Failure::input)?;
+    let duration = NumberError::check_positive("duration", options.duration, "s")
+        .map_err(Failure::input)?;
     if rate > MOST_RATE {
         return Err(Failure::input(format!("the rate is at most {MOST_RATE} Hz, got {rate}")));
     }

@@ -15,7 +15,7 @@ use palpate_field::{Mass, MassLimits, Point, Pose, Rotation, Shape, ShapeError, 
 const TOLERANCE: f64 = 2e-3;
 
 fn mass<const D: usize>(shape: &Shape<D>, density: f64) -> Mass<D> {
-    let limits = MassLimits { tolerance: TOLERANCE, ..MassLimits::default() };
+    let limits = MassLimits::default().with_tolerance(TOLERANCE);
     shape.mass(density, limits).expect("a mass")
 }
 
@@ -135,7 +135,7 @@ fn bounds_are_enough() -> Result<(), ShapeError> {
 #[test]
 fn a_curve_weighs_nothing() -> Result<(), ShapeError> {
     let curve = Segment::<2>::new(Vector([0.0, 0.0]), Vector([1.0, 0.5]), 0.0)?;
-    let limits = MassLimits { tolerance: 1e-3, cells: 20_000 };
+    let limits = MassLimits::default().with_tolerance(1e-3).with_cells(20_000);
     let mass = Shape::from_kernel(curve).mass(1.0, limits)?;
     assert!(mass.volume <= mass.volume_error && mass.volume_error < 0.01, "{mass:?}");
     assert!(mass.centroid_error.is_infinite());
@@ -150,7 +150,7 @@ fn what_has_no_bounds_has_no_mass() -> Result<(), ShapeError> {
     assert_eq!(error.to_string(), "mass needs a shape with bounds");
     let ball = Shape::<3>::from_kernel(Ball::new(0.5)?);
     assert!(ball.mass(-1.0, MassLimits::default()).is_err());
-    let limits = MassLimits { tolerance: f64::NAN, cells: 10 };
+    let limits = MassLimits::default().with_tolerance(f64::NAN).with_cells(10);
     assert!(ball.mass(1.0, limits).is_err());
     Ok(())
 }

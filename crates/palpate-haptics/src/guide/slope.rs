@@ -9,7 +9,7 @@ use palpate_field::{Point, Shape, Vector};
 
 use super::limit::Motion;
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, positive};
+use palpate_safety::NumberError;
 
 /// A force down the gradient of a field, within a band of its values.
 ///
@@ -68,7 +68,7 @@ impl<const D: usize> Slope<D> {
             }));
         }
         let [near, far] = band;
-        let width = positive("band", far - near, "m wide")?;
+        let width = NumberError::check_positive("band", far - near, "m wide")?;
         Ok(Self { shape, gain, band, edge: 0.25 * width })
     }
 
@@ -78,7 +78,7 @@ impl<const D: usize> Slope<D> {
     ///
     /// [`HapticsError::Number`] if the edge is not positive, or more than half of the band.
     pub fn with_edge(self, edge: f64) -> Result<Self, HapticsError> {
-        positive("edge", edge, "m")?;
+        NumberError::check_positive("edge", edge, "m")?;
         let [near, far] = self.band;
         if edge <= 0.5 * (far - near) {
             return Ok(Self { edge, ..self });

@@ -9,7 +9,7 @@ use palpate_field::{Point, Vector};
 
 use super::{GuideOptions, finite};
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, positive};
+use palpate_safety::NumberError;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Well<const D: usize> {
@@ -28,9 +28,9 @@ impl<const D: usize> Well<D> {
         reach: f64,
         options: &GuideOptions,
     ) -> Result<Self, HapticsError> {
-        let max_force = positive("max_force", options.max_force, "N")?;
+        let max_force = NumberError::check_positive("max_force", options.max_force, "N")?;
         let inner = max_force / options.stiffness;
-        let reach = positive("reach", reach, "m")?;
+        let reach = NumberError::check_positive("reach", reach, "m")?;
         if reach > inner {
             return Ok(Self { centre: finite("centre", centre)?, inner, reach, max_force });
         }

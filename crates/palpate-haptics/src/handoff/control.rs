@@ -18,7 +18,7 @@ use crate::live::Snapshot;
 use crate::protection::Protection;
 use crate::tool::Coupling;
 use palpate_safety::Accepted;
-use palpate_safety::not_negative;
+use palpate_safety::NumberError;
 
 /// The end of a hand-off for an ordinary thread: edits what a running servo renders, and reads
 /// its state. Made by [`handoff`](crate::handoff) or a [`ServoThread`](crate::ServoThread).
@@ -109,7 +109,7 @@ impl<const D: usize> Control<D> {
     ///
     /// [`HapticsError::Number`] if the limit is negative or not finite.
     pub fn limit_force(&mut self, max_force: f64) -> Result<(), HapticsError> {
-        let max_force = not_negative("max_force", max_force, "N")?;
+        let max_force = NumberError::check_not_negative("max_force", max_force, "N")?;
         self.edit(|edits| edits.max_force = edits.max_force.min(max_force));
         Ok(())
     }
@@ -120,7 +120,7 @@ impl<const D: usize> Control<D> {
     ///
     /// [`HapticsError::Number`] if the limit is negative or not finite.
     pub fn limit_torque(&mut self, max_torque: f64) -> Result<(), HapticsError> {
-        let max_torque = not_negative("max_torque", max_torque, "N·m")?;
+        let max_torque = NumberError::check_not_negative("max_torque", max_torque, "N·m")?;
         self.edit(|edits| edits.max_torque = edits.max_torque.min(max_torque));
         Ok(())
     }

@@ -25,7 +25,15 @@ use crate::live::{Progress, Snapshot};
 use crate::servo::AnyServo;
 
 /// Capacities of a hand-off, allocated when it is made; the servo allocates nothing later.
+///
+/// ```
+/// use palpate_haptics::HandoffOptions;
+///
+/// let options = HandoffOptions::default().with_events(64);
+/// assert_eq!((options.events, options.bodies), (64, 1024));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct HandoffOptions {
     /// The most events in the queue.
     pub events: usize,
@@ -37,6 +45,20 @@ impl Default for HandoffOptions {
     /// 4096 events, 1024 bodies.
     fn default() -> Self {
         Self { events: 4096, bodies: 1024 }
+    }
+}
+
+impl HandoffOptions {
+    /// The same options with room for another number of events.
+    #[must_use]
+    pub const fn with_events(self, events: usize) -> Self {
+        Self { events, ..self }
+    }
+
+    /// The same options with room for another number of bodies.
+    #[must_use]
+    pub const fn with_bodies(self, bodies: usize) -> Self {
+        Self { bodies, ..self }
     }
 }
 

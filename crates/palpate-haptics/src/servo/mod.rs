@@ -47,10 +47,10 @@ use palpate_safety::{Device, PointState};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
-/// let profile = DeviceProfile { max_force: 1.0, ..DeviceProfile::unlimited("example") };
-/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
+/// let profile = DeviceProfile::unlimited("example").with_max_force(1.0);
+/// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
 /// let mut servo = UnprotectedServo::new(bodies, 1, options)?
-///     .protected(&Protection { rise_time: 0.0, ..Protection::new(profile) })?;
+///     .protected(&Protection::new(profile).with_rise_time(0.0))?;
 /// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
 /// servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
 /// assert!((servo.touches()[0].wanted - Vector([0.0, 2.0])).norm() < 1e-4); // 2 N are wanted
@@ -90,7 +90,7 @@ impl<const D: usize> Servo<D> {
     /// let press = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Smooth)?;
     /// let mut device = RecordedDevice::new(vec![press])?;
     /// let mut servo = Servo::for_device(Shape::from_kernel(Ball::new(0.05)?), &device)?;
-    /// let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
+    /// let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
     /// assert_eq!(run(&mut servo, &mut device, options)?.ticks, 1000);
     /// # Ok(())
     /// # }

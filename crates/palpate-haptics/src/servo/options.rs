@@ -7,7 +7,15 @@ use crate::proxy::Probe;
 use palpate_safety::DeviceProfile;
 
 /// Rate, probe and force limit of a servo.
+///
+/// ```
+/// use palpate_haptics::ServoOptions;
+///
+/// let options = ServoOptions::default().with_rate(4000.0).with_max_force(7.5);
+/// assert_eq!((options.rate, options.max_force), (4000.0, 7.5));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ServoOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -33,7 +41,7 @@ impl ServoOptions {
     /// ```
     /// use palpate_haptics::{DeviceProfile, ServoOptions};
     ///
-    /// let device = DeviceProfile { max_force: 7.5, ..DeviceProfile::unlimited("example") };
+    /// let device = DeviceProfile::unlimited("example").with_max_force(7.5);
     /// assert_eq!(ServoOptions::of_device(&device).max_force, 7.5);
     /// ```
     #[must_use]
@@ -45,5 +53,29 @@ impl ServoOptions {
             max_force: if has_limit { device.max_force } else { default.max_force },
             ..default
         }
+    }
+
+    /// The same options with another rate [Hz].
+    #[must_use]
+    pub const fn with_rate(self, rate: f64) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// The same options with another ball that touches.
+    #[must_use]
+    pub const fn with_probe(self, probe: Probe) -> Self {
+        Self { probe, ..self }
+    }
+
+    /// The same options with another force limit [N].
+    #[must_use]
+    pub const fn with_max_force(self, max_force: f64) -> Self {
+        Self { max_force, ..self }
+    }
+
+    /// The same options with another time over which forces rise [s].
+    #[must_use]
+    pub const fn with_rise_time(self, rise_time: f64) -> Self {
+        Self { rise_time, ..self }
     }
 }

@@ -22,10 +22,10 @@ use crate::nearby::Nearby;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{CoupledTool, Coupling, HeldTool, Sides, Tool};
+use palpate_safety::NumberError;
 use palpate_safety::SafetyReport;
 use palpate_safety::WorkspaceMap;
 use palpate_safety::{PointState, TurnState};
-use palpate_safety::{positive, positive_or_infinite};
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;
@@ -92,9 +92,9 @@ impl<const D: usize> Renderer<D> {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        let rate = positive("rate", options.rate, "Hz")?;
-        let rise_time = positive("rise_time", options.rise_time, "s")?;
-        positive_or_infinite("max_force", options.max_force, "N")?;
+        let rate = NumberError::check_positive("rate", options.rate, "Hz")?;
+        let rise_time = NumberError::check_positive("rise_time", options.rise_time, "s")?;
+        NumberError::check_positive_or_infinite("max_force", options.max_force, "N")?;
         Ok(Self {
             bodies,
             contacts: Contacts::new(options.probe, points),

@@ -32,7 +32,7 @@ use palpate_safety::DeviceProfile;
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let options = ServoOptions { probe: Probe::new(0.0)?, ..ServoOptions::default() };
+/// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
 /// let ball = Shape::from_kernel(Ball::new(0.5)?);
 /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(512.0, 0.0)?)?])?;
 /// let mut servo = UnprotectedServo::new(bodies, 1, options)?;
@@ -96,7 +96,7 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0)?);
-    /// let coupling = ToolOptions { stiffness: 500.0, damping: 0.0, ..ToolOptions::default() };
+    /// let coupling = ToolOptions::default().with_stiffness(500.0).with_damping(0.0);
     /// let tool = Tool::new(Shell::ball(0.0625)?, coupling)?;
     /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))]);
@@ -119,7 +119,7 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ground = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     /// let rod = Shell::capsule([Vector([-0.05, 0.0]), Vector([0.05, 0.0])], 0.001, 101)?;
-    /// let coupling = ToolOptions { angular_stiffness: Some(1.0), ..ToolOptions::default() };
+    /// let coupling = ToolOptions::default().with_angular_stiffness(1.0);
     /// let tool = Tool::new(rod, coupling)?;
     /// let mut servo = UnprotectedServo::with_tool(ground, tool, ServoOptions::default())?;
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.01]))]);
@@ -165,7 +165,7 @@ impl<const D: usize> UnprotectedServo<D> {
     /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
     /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
     /// // A damping of 0.5 N·s/m makes 1000 N/m passive at 1 kHz.
-    /// let device = DeviceProfile { least_damping: 0.5, ..DeviceProfile::unlimited("example") };
+    /// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
     /// let servo = UnprotectedServo::new(bodies, 1, Default::default())?
     ///     .protected(&Protection::new(device))?;
     /// assert_eq!(servo.accepted()[0].factor, 0.5);
@@ -190,7 +190,7 @@ impl<const D: usize> UnprotectedServo<D> {
         let coupling = renderer.requested_coupling();
         let bodies = renderer.bodies().clone();
         let mut bodies = protection.accepted_bodies(bodies, coupling, rate)?;
-        let profile = DeviceProfile { max_force: limit, ..protection.profile.clone() };
+        let profile = protection.profile.clone().with_max_force(limit);
         let limited = Protection { profile, ..protection.clone() };
         renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
         renderer.adopt(&mut bodies);

@@ -8,7 +8,7 @@
 use crate::material::Magnet;
 
 use crate::error::HapticsError;
-use palpate_safety::positive;
+use palpate_safety::NumberError;
 
 /// The height of the largest pull, as a part of the reach.
 const PEAK: f64 = 0.25;
@@ -27,8 +27,11 @@ pub(crate) struct Pull {
 
 impl Pull {
     pub(crate) fn new(magnet: &Magnet) -> Result<Self, HapticsError> {
-        let force = positive("magnet.force", magnet.force, "N")?;
-        Ok(Self { force, reach: positive("magnet.distance", magnet.distance, "m")? })
+        let force = NumberError::check_positive("magnet.force", magnet.force, "N")?;
+        Ok(Self {
+            force,
+            reach: NumberError::check_positive("magnet.distance", magnet.distance, "m")?,
+        })
     }
 
     /// The pull at `height` above the surface [N].

@@ -16,8 +16,8 @@ use palpate_field::{Point, Shape, Vector};
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
 use palpate_safety::Impedance;
+use palpate_safety::NumberError;
 use palpate_safety::limited;
-use palpate_safety::{not_negative, positive};
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};
@@ -150,8 +150,8 @@ impl<const D: usize> Surface<D> {
     /// ```
     pub fn smooth(stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
         Self::new(&Material {
-            stiffness: positive("stiffness", stiffness, "N/m")?,
-            damping: not_negative("damping", damping, "N·s/m")?,
+            stiffness: NumberError::check_positive("stiffness", stiffness, "N/m")?,
+            damping: NumberError::check_not_negative("damping", damping, "N·s/m")?,
             static_friction: 0.0,
             dynamic_friction: 0.0,
             ..Material::default()

@@ -8,7 +8,7 @@
 use crate::material::Impact;
 
 use crate::error::HapticsError;
-use palpate_safety::{not_negative, positive};
+use palpate_safety::NumberError;
 
 /// Ringing ends below this part of its first amplitude.
 const SILENCE: f64 = 1e-4;
@@ -25,9 +25,13 @@ pub(crate) struct Ring {
 impl Ring {
     pub(crate) fn new(impact: &Impact) -> Result<Self, HapticsError> {
         Ok(Self {
-            amplitude: not_negative("impact.amplitude", impact.amplitude, "N·s/m")?,
-            frequency: positive("impact.frequency", impact.frequency, "Hz")?,
-            decay: not_negative("impact.decay", impact.decay, "1/s")?,
+            amplitude: NumberError::check_not_negative(
+                "impact.amplitude",
+                impact.amplitude,
+                "N·s/m",
+            )?,
+            frequency: NumberError::check_positive("impact.frequency", impact.frequency, "Hz")?,
+            decay: NumberError::check_not_negative("impact.decay", impact.decay, "1/s")?,
         })
     }
 

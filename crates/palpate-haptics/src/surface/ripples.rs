@@ -10,7 +10,7 @@ use palpate_field::scalar::Scalar;
 use palpate_field::{Kernel, Point, Promise, Vector};
 
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, positive};
+use palpate_safety::NumberError;
 
 /// Rounding errors of a wave, from the products of the phase, their sum and the sine.
 const ROUNDINGS: f64 = 16.0;
@@ -35,8 +35,10 @@ enum Waves<const D: usize> {
 
 impl<const D: usize> Ripples<D> {
     pub(crate) fn new(texture: &Texture) -> Result<Self, HapticsError> {
-        let amplitude = positive("texture.amplitude", texture.amplitude, "m")?;
-        let wavelength = positive("texture.wavelength", texture.wavelength, "m")?;
+        let amplitude =
+            NumberError::check_positive("texture.amplitude", texture.amplitude, "m")?;
+        let wavelength =
+            NumberError::check_positive("texture.wavelength", texture.wavelength, "m")?;
         let number = 2.0 * std::f64::consts::PI / wavelength;
         let Some(direction) = &texture.direction else {
             return Ok(Self { amplitude, wavelength, waves: Waves::Product(number) });
@@ -95,7 +97,7 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
         let rounding = palpate_field::Rounding::of_operations(ROUNDINGS * steepness, 0.0);
         let constant = ROUNDINGS * f64::EPSILON * self.amplitude;
         let rounding = palpate_field::Rounding { constant, ..rounding };
-        Promise { rounding, ..Promise::lipschitz(None, steepness) }
+        Promise::lipschitz(None, steepness).with_rounding(rounding)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::material::Material;
 
 use crate::error::HapticsError;
 use palpate_safety::Impedance;
-use palpate_safety::{not_negative, positive};
+use palpate_safety::NumberError;
 
 /// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
 const LEAST_STIFFNESS: f64 = 1e-9;
@@ -58,16 +58,20 @@ impl Strata {
         let strata = Self::of(material);
         let mut above = 0.0;
         for stratum in strata.all() {
-            not_negative("stiffness", stratum.stiffness, "N/m")?;
-            not_negative("damping", stratum.damping, "N·s/m")?;
-            not_negative("viscosity", stratum.viscosity, "N·s/m")?;
-            not_negative("static_friction", stratum.friction.fixed, "")?;
-            not_negative("dynamic_friction", stratum.friction.slipping, "")?;
-            not_negative("depth of a layer below the one above", stratum.depth - above, "m")?;
+            NumberError::check_not_negative("stiffness", stratum.stiffness, "N/m")?;
+            NumberError::check_not_negative("damping", stratum.damping, "N·s/m")?;
+            NumberError::check_not_negative("viscosity", stratum.viscosity, "N·s/m")?;
+            NumberError::check_not_negative("static_friction", stratum.friction.fixed, "")?;
+            NumberError::check_not_negative("dynamic_friction", stratum.friction.slipping, "")?;
+            NumberError::check_not_negative(
+                "depth of a layer below the one above",
+                stratum.depth - above,
+                "m",
+            )?;
             above = stratum.depth;
             if let Some(pop) = &stratum.pop_through {
-                positive("pop_through.force", pop.force, "N")?;
-                not_negative("pop_through.distance", pop.distance, "m")?;
+                NumberError::check_positive("pop_through.force", pop.force, "N")?;
+                NumberError::check_not_negative("pop_through.distance", pop.distance, "m")?;
             }
         }
         Ok(strata)

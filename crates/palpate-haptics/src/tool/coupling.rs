@@ -6,7 +6,7 @@
 use super::state::ToolOptions;
 use crate::error::HapticsError;
 use palpate_safety::Impedance;
-use palpate_safety::positive;
+use palpate_safety::NumberError;
 
 /// The rendered spring and damper between hand and tool: as requested in the
 /// [options](ToolOptions), or softer if the device of a [`Servo`](crate::Servo) requires it.
@@ -34,10 +34,11 @@ impl Coupling {
     ///
     /// [`HapticsError::Number`] if a stiffness is not positive.
     pub(super) fn new(options: &ToolOptions, reach: f64) -> Result<Self, HapticsError> {
-        let stiffness = positive("stiffness", options.stiffness, "N/m")?;
+        let stiffness = NumberError::check_positive("stiffness", options.stiffness, "N/m")?;
         let natural = 0.5 * stiffness * reach * reach;
         let angular_stiffness = options.angular_stiffness.unwrap_or(natural);
-        let angular_stiffness = positive("angular_stiffness", angular_stiffness, "N·m/rad")?;
+        let angular_stiffness =
+            NumberError::check_positive("angular_stiffness", angular_stiffness, "N·m/rad")?;
         let ToolOptions { damping, angular_damping, .. } = *options;
         Ok(Self {
             stiffness,

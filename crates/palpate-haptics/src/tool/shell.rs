@@ -15,7 +15,7 @@ use palpate_mesh::Mesh;
 
 use super::spread::{Samples, farthest_first, of_field, of_mesh};
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, not_negative, positive};
+use palpate_safety::NumberError;
 
 /// The most points of a shell.
 pub const MOST_POINTS: usize = 8192;
@@ -98,7 +98,7 @@ impl<const D: usize> Shell<D> {
     /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     pub fn ball(radius: f64) -> Result<Self, HapticsError> {
-        let radius = positive("radius", radius, "m")?;
+        let radius = NumberError::check_positive("radius", radius, "m")?;
         Self::new(vec![ShellPoint { centre: Vector::ZERO, radius }], vec![0.0])
     }
 
@@ -126,7 +126,7 @@ impl<const D: usize> Shell<D> {
         radius: f64,
         count: usize,
     ) -> Result<Self, HapticsError> {
-        let radius = positive("radius", radius, "m")?;
+        let radius = NumberError::check_positive("radius", radius, "m")?;
         check_count(count, 2)?;
         let [from, to] = ends;
         let way = (to - from) * (1.0 / (count - 1) as f64);
@@ -151,7 +151,7 @@ impl<const D: usize> Shell<D> {
         count: usize,
         radius: f64,
     ) -> Result<Self, HapticsError> {
-        let radius = not_negative("radius", radius, "m")?;
+        let radius = NumberError::check_not_negative("radius", radius, "m")?;
         check_count(count, 1)?;
         Self::sampled(&of_mesh(mesh, count), count, radius)
     }
@@ -171,7 +171,7 @@ impl<const D: usize> Shell<D> {
         count: usize,
         radius: f64,
     ) -> Result<Self, HapticsError> {
-        let radius = not_negative("radius", radius, "m")?;
+        let radius = NumberError::check_not_negative("radius", radius, "m")?;
         check_count(count, 1)?;
         let bounds = shape.promise().bounds.ok_or(HapticsError::NothingToTouchWith)?;
         Self::sampled(&of_field(shape, &bounds.aabb, count), count, radius)

@@ -11,10 +11,18 @@ use palpate_query::Contact;
 use super::closest::FREEDOMS;
 use super::shell::FIRST_LEVEL;
 use crate::error::HapticsError;
-use palpate_safety::{NumberError, not_negative, positive};
+use palpate_safety::NumberError;
 
 /// The requested virtual coupling of a tool, its limits, and the budget of a tick.
+///
+/// ```
+/// use palpate_haptics::ToolOptions;
+///
+/// let options = ToolOptions::default().with_stiffness(400.0).with_angular_stiffness(2.0);
+/// assert_eq!((options.stiffness, options.angular_stiffness), (400.0, Some(2.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToolOptions {
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -38,6 +46,60 @@ pub struct ToolOptions {
 }
 
 impl ToolOptions {
+    /// The same options with another rate [Hz].
+    #[must_use]
+    pub const fn with_rate(self, rate: f64) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// The same options with another stiffness [N/m].
+    #[must_use]
+    pub const fn with_stiffness(self, stiffness: f64) -> Self {
+        Self { stiffness, ..self }
+    }
+
+    /// The same options with a given angular stiffness [N·m/rad].
+    #[must_use]
+    pub const fn with_angular_stiffness(self, stiffness: f64) -> Self {
+        Self { angular_stiffness: Some(stiffness), ..self }
+    }
+
+    /// The same options with another damping [N·s/m].
+    #[must_use]
+    pub const fn with_damping(self, damping: f64) -> Self {
+        Self { damping, ..self }
+    }
+
+    /// The same options with another angular damping [N·m·s/rad].
+    #[must_use]
+    pub const fn with_angular_damping(self, damping: f64) -> Self {
+        Self { angular_damping: damping, ..self }
+    }
+
+    /// The same options with another force limit [N].
+    #[must_use]
+    pub const fn with_max_force(self, max_force: f64) -> Self {
+        Self { max_force, ..self }
+    }
+
+    /// The same options with another torque limit [N·m].
+    #[must_use]
+    pub const fn with_max_torque(self, max_torque: f64) -> Self {
+        Self { max_torque, ..self }
+    }
+
+    /// The same options with another budget.
+    #[must_use]
+    pub const fn with_budget(self, budget: u32) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// The same options with another time over which the force rises [s].
+    #[must_use]
+    pub const fn with_rise_time(self, rise_time: f64) -> Self {
+        Self { rise_time, ..self }
+    }
+
     /// These options with the damping ratio `ratio` (ζ) for a handle of `mass` [kg] and moment
     /// of inertia `inertia` [kg·m²]: `2 ζ √(K m)` and `2 ζ √(κ I)`. A ratio of 1 is critical
     /// damping.
@@ -47,7 +109,7 @@ impl ToolOptions {
     /// ```
     /// use palpate_haptics::ToolOptions;
     ///
-    /// let options = ToolOptions { stiffness: 400.0, ..ToolOptions::default() };
+    /// let options = ToolOptions::default().with_stiffness(400.0);
     /// let critical = options.with_damping_ratio(1.0, 0.01, 0.0);
     /// assert_eq!(critical.damping, 4.0); // 2 √(400 · 0.01)
     /// ```
@@ -61,10 +123,10 @@ impl ToolOptions {
 
     /// Checks all options except the stiffnesses.
     pub(super) fn check(&self) -> Result<(), HapticsError> {
-        positive("rate", self.rate, "Hz")?;
-        positive("rise_time", self.rise_time, "s")?;
-        not_negative("damping", self.damping, "N·s/m")?;
-        not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;
+        NumberError::check_positive("rate", self.rate, "Hz")?;
+        NumberError::check_positive("rise_time", self.rise_time, "s")?;
+        NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
+        NumberError::check_not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;
         for (parameter, value, unit) in
             [("max_force", self.max_force, "N"), ("max_torque", self.max_torque, "N·m")]
         {

@@ -12,11 +12,9 @@ use palpate_haptics::{
 };
 
 fn options(radius: f64) -> ServoOptions {
-    ServoOptions {
-        probe: Probe::new(radius).unwrap(),
-        max_force: f64::INFINITY,
-        ..ServoOptions::default()
-    }
+    ServoOptions::default()
+        .with_probe(Probe::new(radius).unwrap())
+        .with_max_force(f64::INFINITY)
 }
 
 fn touch(servo: &mut UnprotectedServo<3>, device: Vector<f64, 3>) -> Touch<3> {

@@ -39,7 +39,7 @@ fn surface<const D: usize>(material: &Material) -> Surface<D> {
 
 fn servo<const D: usize>(bodies: Bodies<D>, radius: f64) -> UnprotectedServo<D> {
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
     UnprotectedServo::new(bodies, 1, options).unwrap()
 }
 

@@ -18,13 +18,13 @@ fn servo<const D: usize>(
     radius: f64,
     (stiffness, options): (f64, ServoOptions),
 ) -> UnprotectedServo<D> {
-    let options = ServoOptions { probe: Probe::new(radius).unwrap(), ..options };
+    let options = options.with_probe(Probe::new(radius).unwrap());
     let surface = Surface::smooth(stiffness, 0.0).unwrap();
     UnprotectedServo::new(body(shape, surface), 1, options).unwrap()
 }
 
 fn spring_alone(stiffness: f64) -> (f64, ServoOptions) {
-    (stiffness, ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() })
+    (stiffness, ServoOptions::default().with_max_force(f64::INFINITY))
 }
 
 fn touch<const D: usize>(servo: &mut UnprotectedServo<D>, device: Point<D>) -> Touch<D> {
@@ -119,7 +119,7 @@ fn over_a_convex_edge_the_force_is_continuous_if_the_probe_is_wider_than_the_dep
 fn the_damper_resists_the_approach_alone() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
     let surface = Surface::smooth(512.0, 4.0).unwrap();
-    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
     let mut servo = UnprotectedServo::new(body(&floor, surface), 1, options).unwrap();
     let position = Vector([0.0, -0.001953125, 0.0]);
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
@@ -132,7 +132,7 @@ fn the_damper_resists_the_approach_alone() {
 #[test]
 fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);
-    let options = ServoOptions { max_force: 2.0, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_max_force(2.0);
     let mut servo = servo(&floor, 0.0, (512.0, options));
     touch(&mut servo, Vector([0.0, 0.5, 0.0]));
     assert_eq!(touch(&mut servo, Vector([0.0, -0.5, 0.0])).force, Vector([0.0, 2.0, 0.0]));
@@ -145,7 +145,7 @@ fn the_largest_force_bounds_the_force_and_keeps_its_direction() {
 #[test]
 fn a_hand_that_starts_inside_is_led_out_gently() {
     // 8 ticks of 1/8 each.
-    let options = ServoOptions { rate: 64.0, rise_time: 0.125, ..spring_alone(512.0).1 };
+    let options = spring_alone(512.0).1.with_rate(64.0).with_rise_time(0.125);
     let mut servo = servo(&cuboid([0.5, 0.5, 0.5]), 0.0, (512.0, options));
     let device = Vector([0.0, 0.2421875, 0.125]);
     for tick in 0..12 {
@@ -207,7 +207,7 @@ fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
 
 #[test]
 fn every_point_of_a_servo_is_its_own() {
-    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..spring_alone(500.0).1 };
+    let options = spring_alone(500.0).1.with_probe(Probe::new(0.0).unwrap());
     let mut servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 3, options).unwrap();
     let at = |y: f64| PointState::at_rest(Vector([0.0, y]));
     servo.step(&[at(1.0), at(1.0), at(1.0)]);
@@ -222,10 +222,10 @@ fn wrong_options_are_refused_with_their_numbers() {
     let with = |options| UnprotectedServo::new(shape.clone(), 1, options).map(|_| ());
     let none = UnprotectedServo::new(shape.clone(), 0, ServoOptions::default()).map(|_| ());
     assert_eq!(none, Err(HapticsError::NoContactPoint));
-    let error = with(ServoOptions { rate: 0.0, ..ServoOptions::default() }).unwrap_err();
+    let error = with(ServoOptions::default().with_rate(0.0)).unwrap_err();
     assert_eq!(error.to_string(), "rate must be positive and finite, got 0 Hz");
-    assert!(with(ServoOptions { max_force: f64::NAN, ..ServoOptions::default() }).is_err());
-    assert!(with(ServoOptions { rise_time: -1.0, ..ServoOptions::default() }).is_err());
+    assert!(with(ServoOptions::default().with_max_force(f64::NAN)).is_err());
+    assert!(with(ServoOptions::default().with_rise_time(-1.0)).is_err());
     assert!(Probe::new(-0.1).is_err() && Probe::new(f64::NAN).is_err());
     assert!(Probe::new(0.1).and_then(|p| p.with_budget(3)).is_err());
 }

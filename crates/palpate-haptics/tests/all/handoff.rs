@@ -70,11 +70,9 @@ impl Device<2> for Hand {
 }
 
 fn unprotected(bodies: impl Into<Bodies<2>>, points: usize) -> UnprotectedServo<2> {
-    let options = ServoOptions {
-        probe: Probe::new(0.0).unwrap(),
-        max_force: f64::INFINITY,
-        ..ServoOptions::default()
-    };
+    let options = ServoOptions::default()
+        .with_probe(Probe::new(0.0).unwrap())
+        .with_max_force(f64::INFINITY);
     UnprotectedServo::new(bodies, points, options).unwrap()
 }
 
@@ -100,7 +98,7 @@ fn start(
 }
 
 fn plain() -> ThreadOptions {
-    ThreadOptions { raises_priority: false, ..ThreadOptions::default() }
+    ThreadOptions::default().with_raised_priority(false)
 }
 
 fn up(way: f64) -> Pose<2> {
@@ -110,13 +108,13 @@ fn up(way: f64) -> Pose<2> {
 #[test]
 fn bodies_handed_to_a_protected_servo_are_as_soft_as_its_device_needs() {
     // Once they went as they were, whatever the device could render.
-    let profile = DeviceProfile { least_damping: 0.064, ..DeviceProfile::unlimited("gentle") };
+    let profile = DeviceProfile::unlimited("gentle").with_least_damping(0.064);
     for acceptance in [Acceptance::Scaled, Acceptance::Strict] {
         let servo = unprotected(
             body(&half_space([0.0, 1.0], 0.0), Surface::smooth(64.0, 0.0).unwrap()),
             1,
         );
-        let protection = Protection { acceptance, ..Protection::new(profile.clone()) };
+        let protection = Protection::new(profile.clone()).with_acceptance(acceptance);
         let mut servo = servo.protected(&protection).unwrap();
         let (mut control, mut end) = handoff(&servo, HandoffOptions::default());
         // 2 b / T is 128 N/m.
@@ -253,8 +251,8 @@ fn scenes_come_back_and_are_dropped_by_the_next_call() {
 #[test]
 fn events_come_in_order_with_their_ticks_and_are_counted_where_there_is_no_room() {
     let hand = Hand::at(&[[0.0, 0.25]]);
-    let handoff = HandoffOptions { events: 3, ..HandoffOptions::default() };
-    let options = ThreadOptions { handoff, ..plain() };
+    let handoff = HandoffOptions::default().with_events(3);
+    let options = plain().with_handoff(handoff);
     let (mut thread, mut driver) = start(servo(floor(0.0), 1), &hand, options);
     let mut tap = |times: u64| {
         for _ in 0..times {
@@ -304,10 +302,10 @@ fn an_emergency_stop_takes_all_forces_until_it_is_released() {
 fn ten_kilohertz_have_ten_times_the_ticks() {
     let run = |rate| {
         let hand = Hand::at(&[[0.0, -0.001]]);
-        let options = ServoOptions { rate, ..ServoOptions::default() };
+        let options = ServoOptions::default().with_rate(rate);
         let servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
         let servo = without_limits(servo);
-        let options = ThreadOptions { duration: Some(0.5), ..plain() };
+        let options = plain().with_duration(0.5);
         let hand_of_thread = Box::new(hand.clone());
         let clock = VirtualClock::new();
         let ended =
@@ -371,7 +369,7 @@ fn what_cannot_run_is_refused() {
     let error = ServoThread::start(servo(floor(0.0), 1), two, plain()).unwrap_err();
     assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
     let one = Box::new(Hand::at(&[[0.0, 0.0]]));
-    let options = ThreadOptions { duration: Some(-1.0), ..plain() };
+    let options = plain().with_duration(-1.0);
     assert!(ServoThread::start(servo(floor(0.0), 1), one, options).is_err());
 }
 

@@ -72,7 +72,7 @@ fn in_space_events_are_in_order() {
 
 fn options() -> ServoOptions {
     let probe = Probe::new(0.0).unwrap();
-    ServoOptions { probe, max_force: 1.0, ..ServoOptions::default() }
+    ServoOptions::default().with_probe(probe).with_max_force(1.0)
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn every_layer_pops_once() {
         ..Material::default()
     };
     let body = Body::new(ball::<3>(0.05), Surface::new(&material).unwrap()).unwrap();
-    let options = ServoOptions { max_force: f64::INFINITY, ..options() };
+    let options = options().with_max_force(f64::INFINITY);
     let mut servo =
         UnprotectedServo::new(Bodies::new(vec![body]).unwrap(), 1, options).unwrap();
     for _ in 0..3 {

@@ -19,7 +19,7 @@ fn servo(shapes: Vec<(Shape<3>, Point<3>)>, radius: f64) -> UnprotectedServo<3> 
         .map(|(shape, place)| Body::new(shape, surface())?.at(Pose::translation(place)));
     let bodies = Bodies::new(bodies.collect::<Result<_, _>>().unwrap()).unwrap();
     let probe = Probe::new(radius).unwrap();
-    let options = ServoOptions { probe, max_force: f64::INFINITY, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(probe).with_max_force(f64::INFINITY);
     UnprotectedServo::new(bodies, 1, options).unwrap()
 }
 

@@ -28,13 +28,11 @@ struct Fragile {
 
 impl Fragile {
     fn new() -> Self {
-        let profile = DeviceProfile {
-            max_force: 4.0,
-            max_force_rate: 3000.0,
-            mass: 0.05,
-            least_damping: 0.5,
-            ..DeviceProfile::unlimited("fragile")
-        };
+        let profile = DeviceProfile::unlimited("fragile")
+            .with_max_force(4.0)
+            .with_max_force_rate(3000.0)
+            .with_mass(0.05)
+            .with_least_damping(0.5);
         Self { profile, written: Arc::default() }
     }
 
@@ -90,7 +88,7 @@ fn floor() -> Bodies<2> {
 fn a_run_keeps_the_limits_of_its_device() {
     let mut device = Fragile::new();
     let mut servo = Servo::for_device(floor(), &device).unwrap();
-    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(3.0) };
+    let options = RunOptions::new(3.0).with_pace(Pace::AsFastAsPossible);
     run(&mut servo, &mut device, options).unwrap();
     device.check("run");
 }
@@ -100,7 +98,7 @@ fn a_thread_keeps_the_limits_of_its_device_under_new_bodies_and_stops() {
     let device = Fragile::new();
     let servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+    let options = ThreadOptions::default().with_raised_priority(false);
     let mut thread =
         ServoThread::start_on(clock, servo, Box::new(device.clone()), options).unwrap();
     let switch = thread.control().stop_switch();
@@ -162,32 +160,28 @@ fn a_servo_does_not_run_with_a_device_that_bears_less_than_its_own() {
     let servo = Servo::for_device(floor(), &Fragile::new()).unwrap();
     let run_with = |profile: DeviceProfile| {
         let mut weak = Fragile { profile, ..Fragile::new() };
-        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(0.01) };
+        let options = RunOptions::new(0.01).with_pace(Pace::AsFastAsPossible);
         run(&mut servo.clone(), &mut weak, options).map(|report| report.ticks)
     };
     let own = Fragile::new().profile;
     assert_eq!(run_with(own.clone()), Ok(10));
-    assert_eq!(run_with(DeviceProfile { max_force: 5.0, ..own.clone() }), Ok(10));
+    assert_eq!(run_with(own.clone().with_max_force(5.0)), Ok(10));
     let refused = |profile: DeviceProfile| match run_with(profile) {
         Err(HapticsError::Safety(SafetyError::OtherDevice { limit, .. })) => limit,
         other => panic!("{other:?}"),
     };
-    assert_eq!(refused(DeviceProfile { max_force: 3.9, ..own.clone() }), "max_force");
-    assert_eq!(refused(DeviceProfile { max_force_rate: 1.0, ..own.clone() }), "max_force_rate");
-    assert_eq!(
-        refused(DeviceProfile { continuous_force: 1.0, ..own.clone() }),
-        "continuous_force"
-    );
-    assert_eq!(refused(DeviceProfile { least_damping: 0.4, ..own.clone() }), "least_damping");
-    assert_eq!(refused(DeviceProfile { encoder_step: 1e-5, ..own }), "encoder_step");
+    assert_eq!(refused(own.clone().with_max_force(3.9)), "max_force");
+    assert_eq!(refused(own.clone().with_max_force_rate(1.0)), "max_force_rate");
+    assert_eq!(refused(own.clone().with_continuous_force(1.0)), "continuous_force");
+    assert_eq!(refused(own.clone().with_least_damping(0.4)), "least_damping");
+    assert_eq!(refused(own.with_encoder_step(1e-5)), "encoder_step");
 }
 
 #[test]
 fn a_refused_protection_leaves_nothing_half_done() {
     // Once the map and the largest force of a servo changed before the first check failed.
     let servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
-    let profile =
-        DeviceProfile { max_force: 1.0, least_damping: f64::NAN, ..Fragile::new().profile };
+    let profile = Fragile::new().profile.with_max_force(1.0).with_least_damping(f64::NAN);
     assert!(servo.clone().protected(&Protection::new(profile)).is_err());
     assert_eq!(servo.options().max_force, 3.3);
 }

@@ -51,23 +51,23 @@ fn press() -> HandPath<2> {
 }
 
 fn wall_servo(options: ServoOptions) -> Servo<2> {
-    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..options };
+    let options = options.with_probe(Probe::new(0.0).unwrap());
     let wall = half_space([0.0, 1.0], 0.0);
     without_limits(UnprotectedServo::new(wall, 1, options).unwrap())
 }
 
 fn fast<'a, const D: usize>(duration: f64) -> RunOptions<'a, D> {
-    RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(duration) }
+    RunOptions::new(duration).with_pace(Pace::AsFastAsPossible)
 }
 
 #[test]
 fn a_report_counts_what_happened() {
     let max_force = f64::INFINITY;
     let mut servo =
-        wall_servo(ServoOptions { rate: 128.0, max_force, ..ServoOptions::default() });
+        wall_servo(ServoOptions::default().with_rate(128.0).with_max_force(max_force));
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(4 * 128);
-    let options = RunOptions { recorder: Some(&mut recorder), ..fast(4.0) };
+    let options = fast(4.0).with_recorder(&mut recorder);
     let report = run_on(&mut TestClock::default(), &mut servo, &mut device, options).unwrap();
 
     assert_eq!(report.ending, Ending::Finished);
@@ -95,7 +95,7 @@ fn a_full_recorder_drops_rows_and_says_so() {
     let mut servo = wall_servo(ServoOptions::default());
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     let mut recorder = Recorder::new(100);
-    let options = RunOptions { recorder: Some(&mut recorder), ..fast(1.0) };
+    let options = fast(1.0).with_recorder(&mut recorder);
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(
         (report.rows_dropped, recorder.dropped(), recorder.rows().len()),
@@ -105,12 +105,12 @@ fn a_full_recorder_drops_rows_and_says_so() {
 
 #[test]
 fn a_paced_run_waits_for_every_tick_and_does_not_hurry_after_lost_time() {
-    let mut servo = wall_servo(ServoOptions { rate: 1000.0, ..ServoOptions::default() });
+    let mut servo = wall_servo(ServoOptions::default().with_rate(1000.0));
     let mut device = RecordedDevice::new(vec![press()]).unwrap();
     // In a rehearsal a tenth of a second is lost.
     let busy = vec![(1000, Duration::from_millis(100))];
     let mut clock = TestClock { busy, ..TestClock::default() };
-    let options = RunOptions { rehearses: true, ..RunOptions::new(1.0) };
+    let options = RunOptions::new(1.0).with_rehearsals(true);
     let report = run_on(&mut clock, &mut servo, &mut device, options).unwrap();
     let lateness = report.lateness.unwrap();
     // Two waits a tick: for the rehearsals and for the tick.
@@ -150,9 +150,8 @@ fn hash(pace: Pace) -> u64 {
     let path = Tour::new(bounds, 2.0).unwrap().over(&shape).unwrap();
     let mut device = RecordedDevice::new(vec![path]).unwrap();
     let mut recorder = Recorder::new(2000);
-    let recorder_of_run = Some(&mut recorder);
     let options =
-        RunOptions { recorder: recorder_of_run, pace, rehearses: true, ..RunOptions::new(2.0) };
+        RunOptions::new(2.0).with_pace(pace).with_rehearsals(true).with_recorder(&mut recorder);
     run_on(&mut VirtualClock::new(), &mut servo, &mut device, options).unwrap();
     let numbers = recorder.rows().iter().flat_map(|row| [row.proxy.0, row.force.0].concat());
     numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
@@ -177,7 +176,7 @@ fn a_watch_sees_the_end() {
     let mut seen = Vec::new();
     let mut watch = |progress: &palpate_haptics::Progress| seen.push(*progress);
     let every = Duration::from_millis(1);
-    let options = RunOptions { watch: Some((every, &mut watch)), ..fast(3.0) };
+    let options = fast(3.0).with_watch(every, &mut watch);
     run(&mut servo, &mut device, options).unwrap();
     let last = seen.last().unwrap();
     assert_eq!((last.ticks, last.contacts, last.time), (3000, 1, 2.999));
@@ -220,7 +219,7 @@ struct Watched {
 
 impl Watched {
     fn new() -> Self {
-        let profile = DeviceProfile { max_force: 3.3, ..DeviceProfile::unlimited("watched") };
+        let profile = DeviceProfile::unlimited("watched").with_max_force(3.3);
         Self { profile, written: None }
     }
 }
@@ -295,10 +294,10 @@ fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let left = AtomicBool::new(false);
     let mut device = Leaving { device: Watched::new(), left: &left };
     let protection = Protection::new(device.profile().clone());
-    let options = ServoOptions { probe: Probe::new(0.0).unwrap(), ..ServoOptions::default() };
+    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
     let servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
-    let mut servo = servo.protected(&Protection { rise_time: 0.0, ..protection }).unwrap();
-    let options = RunOptions { interrupt: Some(&left), ..fast(4.0) };
+    let mut servo = servo.protected(&protection.with_rise_time(0.0)).unwrap();
+    let options = fast(4.0).with_interrupt(&left);
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(report.ending, Ending::Interrupted);
     // The hand is at the wall after half a second, and below it in the tick after.

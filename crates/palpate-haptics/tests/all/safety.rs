@@ -17,20 +17,18 @@ const PERIOD: f64 = 1e-3;
 
 /// A device with limits that a chain can be made to meet.
 fn device() -> DeviceProfile {
-    DeviceProfile {
-        max_force: 8.0,
-        continuous_force: 2.0,
-        max_force_rate: 2000.0,
-        mass: 0.05,
-        least_damping: 0.5,
-        ..DeviceProfile::unlimited("example")
-    }
+    DeviceProfile::unlimited("example")
+        .with_max_force(8.0)
+        .with_continuous_force(2.0)
+        .with_max_force_rate(2000.0)
+        .with_mass(0.05)
+        .with_least_damping(0.5)
 }
 
 fn at_once(stiffness: f64) -> SafetyOptions {
     let impedance = Impedance::new(stiffness, 0.0).unwrap();
     let acceptance = Acceptance::AsItIs;
-    SafetyOptions { rise_time: 0.0, acceptance, ..SafetyOptions::new(impedance) }
+    SafetyOptions::new(impedance).with_rise_time(0.0).with_acceptance(acceptance)
 }
 
 fn chain<const D: usize>(device: &DeviceProfile, options: SafetyOptions) -> SafetyChain<D> {
@@ -97,17 +95,12 @@ struct Outcome {
 impl Wall {
     /// Ten seconds under a push of 1 N.
     fn press(&self) -> Outcome {
-        let device = DeviceProfile {
-            mass: self.mass,
-            least_damping: 0.5,
-            encoder_step: self.encoder_step,
-            max_force_rate: self.max_force_rate,
-            ..DeviceProfile::unlimited("wall")
-        };
-        let options = SafetyOptions {
-            has_passivity_control: self.has_control,
-            ..at_once(self.stiffness)
-        };
+        let device = DeviceProfile::unlimited("wall")
+            .with_mass(self.mass)
+            .with_least_damping(0.5)
+            .with_encoder_step(self.encoder_step)
+            .with_max_force_rate(self.max_force_rate);
+        let options = at_once(self.stiffness).with_passivity_control(self.has_control);
         let mut chain = chain::<2>(&device, options);
         let mut estimator = VelocityEstimator::new(RATE, self.encoder_step).unwrap();
         let damping = 0.5 + self.grip;
@@ -211,14 +204,12 @@ fn a_passive_wall_is_never_touched() {
 fn a_material_that_was_accepted_is_never_touched() {
     for (stiffness, damping) in [(500.0, 1.0), (1000.0, 0.2), (3000.0, 0.5), (100.0, 5.0)] {
         for encoder_step in [0.0, 1e-5, 3e-5] {
-            let device = DeviceProfile {
-                mass: 0.05,
-                least_damping: 0.5,
-                encoder_step,
-                ..DeviceProfile::unlimited("wall")
-            };
+            let device = DeviceProfile::unlimited("wall")
+                .with_mass(0.05)
+                .with_least_damping(0.5)
+                .with_encoder_step(encoder_step);
             let wanted = SafetyOptions::new(Impedance::new(stiffness, damping).unwrap());
-            let mut chain = chain::<2>(&device, SafetyOptions { rise_time: 0.0, ..wanted });
+            let mut chain = chain::<2>(&device, wanted.with_rise_time(0.0));
             let impedance = chain.accepted().impedance;
             let mut estimator = VelocityEstimator::new(RATE, encoder_step).unwrap();
             let mut plant = Plant { mass: 0.05, damping: 0.5, x: 0.01, v: 0.0 };
@@ -242,8 +233,7 @@ fn a_material_that_was_accepted_is_never_touched() {
 
 #[test]
 fn a_stiff_wall_still_feels_like_one() {
-    let device =
-        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
+    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
     let mut chain = chain::<2>(&device, at_once(3000.0));
     let mut least = f64::INFINITY;
     for tick in 0..=2000 {
@@ -261,8 +251,7 @@ fn a_stiff_wall_still_feels_like_one() {
 
 #[test]
 fn a_long_rub_does_not_pay_for_an_oscillation() {
-    let device =
-        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
+    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
     let mut chain = chain::<2>(&device, at_once(1000.0));
     // Ten metres against 1 N take 10 J.
     for tick in 0..10_000 {
@@ -283,8 +272,7 @@ fn a_long_rub_does_not_pay_for_an_oscillation() {
 
 #[test]
 fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
-    let device =
-        DeviceProfile { mass: 0.05, least_damping: 0.5, ..DeviceProfile::unlimited("") };
+    let device = DeviceProfile::unlimited("").with_mass(0.05).with_least_damping(0.5);
     let pushed_out = |is_placed: bool| {
         let mut chain = chain::<2>(&device, at_once(500.0));
         let mut plant = Plant { mass: 0.05, damping: 0.5, x: -0.002, v: 0.0 };
@@ -303,10 +291,7 @@ fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
 
 #[test]
 fn where_nothing_is_wrong_nothing_is_changed() {
-    let mut chain = chain::<3>(
-        &device(),
-        SafetyOptions { acceptance: Acceptance::Strict, ..at_once(500.0) },
-    );
+    let mut chain = chain::<3>(&device(), at_once(500.0).with_acceptance(Acceptance::Strict));
     for tick in 0..2000 {
         let depth = 1e-3 * (1.0 - (0.01 * f64::from(tick)).cos());
         let wanted = Vector([0.3, 0.7, -0.2]) * (500.0 * depth);
@@ -330,10 +315,10 @@ fn where_nothing_is_wrong_nothing_is_changed() {
 
 #[test]
 fn every_stage_can_be_made_to_act() {
-    let options = SafetyOptions { rise_time: 0.01, ..SafetyOptions::new(Impedance::default()) };
+    let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.01);
     let impedance = Impedance::new(4000.0, 0.0).unwrap();
     // The controller would not let a force rise that far on a hand at rest.
-    let stiff = SafetyOptions { impedance, has_passivity_control: false, ..options };
+    let stiff = options.with_impedance(impedance).with_passivity_control(false);
     let mut chain = chain::<2>(&device(), stiff);
     assert_eq!(chain.report().impedance.factor, 0.25);
     let mut run = |ticks: u32, force: [f64; 2], state: PortState<2>| {
@@ -374,9 +359,9 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
     cases(60, |u| {
         let device = device();
         let impedance = Impedance::new(f64::from(u.int_in_range(1..=5000)?), 0.0).unwrap();
-        let options = SafetyOptions { rise_time: 0.05, ..SafetyOptions::new(impedance) };
+        let options = SafetyOptions::new(impedance).with_rise_time(0.05);
         let acceptance = *u.choose(&[Acceptance::Scaled, Acceptance::AsItIs])?;
-        let mut chain = chain::<3>(&device, SafetyOptions { acceptance, ..options });
+        let mut chain = chain::<3>(&device, options.with_acceptance(acceptance));
         let mut last = Vector::ZERO;
         for _ in 0..150 {
             let mut wanted = vector(u)? * 20.0;
@@ -437,15 +422,15 @@ fn wrong_numbers_are_named() {
     };
     let fine = DeviceProfile::unlimited("fine");
     assert_eq!(
-        refuses(DeviceProfile { max_force: 0.0, ..fine.clone() }, options),
+        refuses(fine.clone().with_max_force(0.0), options),
         "max_force must be positive, got 0 N"
     );
     assert_eq!(
-        refuses(fine.clone(), SafetyOptions { reserve: f64::NAN, ..options }),
+        refuses(fine.clone(), options.with_reserve(f64::NAN)),
         "reserve must be zero or more and finite, got NaN J"
     );
-    let weak = DeviceProfile { least_damping: 0.1, ..fine.clone() };
-    let strict = SafetyOptions { acceptance: Acceptance::Strict, ..options };
+    let weak = fine.clone().with_least_damping(0.1);
+    let strict = options.with_acceptance(Acceptance::Strict);
     assert!(refuses(weak, strict).contains("K ≤ 2 (b − |B|) / T"));
     assert!(SafetyChain::<3>::new(&fine, f64::INFINITY, options).is_err());
 }

@@ -9,7 +9,7 @@ use crate::common::{ball, body, cuboid, half_space};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::Layer;
 use palpate_haptics::{
-    Bodies, Body, EventKind, Material, Shell, Surface, Tool, ToolOptions, ToolState, ToolTouch,
+    Bodies, Body, EventKind, Material, Shell, Surface, Tool, ToolState, ToolTouch,
 };
 
 #[test]
@@ -115,7 +115,7 @@ fn what_is_dragged_below_the_hand_turns_it() {
     // A ball 0.1 m below the origin is dragged through what it touches.
     let ends = [Vector([0.0, -0.1, 0.0]); 2];
     let shell = Shell::capsule(ends, 0.01, 2).unwrap();
-    let options = ToolOptions { angular_stiffness: Some(50.0), ..springs() };
+    let options = springs().with_angular_stiffness(50.0);
     let mut tool = Tool::new(shell, options).unwrap();
     let viscous = Material { viscosity: 2.0, ..smooth() };
     let mut bodies = body(&half_space([0.0, 1.0, 0.0], 0.0), Surface::new(&viscous).unwrap());

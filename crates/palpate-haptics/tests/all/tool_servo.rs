@@ -24,7 +24,7 @@ const STIFFNESS: f64 = 500.0;
 fn rod() -> Tool<3> {
     let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
     let shell = Shell::capsule(ends, 0.01, 41).unwrap();
-    let options = ToolOptions { stiffness: STIFFNESS, damping: 0.0, ..ToolOptions::default() };
+    let options = ToolOptions::default().with_stiffness(STIFFNESS).with_damping(0.0);
     Tool::new(shell, options).unwrap()
 }
 
@@ -45,7 +45,7 @@ fn press(positions: Vec<[f64; 3]>) -> RecordedDevice<3> {
 
 #[test]
 fn a_servo_feels_what_the_tool_alone_feels() {
-    let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_max_force(f64::INFINITY);
     let mut servo =
         UnprotectedServo::with_tool(ground(Material::default()), rod(), options).unwrap();
     let (mut bodies, mut tool) = (ground(Material::default()), rod());
@@ -82,7 +82,7 @@ fn the_device_turns_and_scales_the_tool_with_its_axes() {
     let servo =
         UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
     let profile = DeviceProfile::unlimited("example");
-    let mut servo = servo.protected(&Protection { map, ..Protection::new(profile) }).unwrap();
+    let mut servo = servo.protected(&Protection::new(profile).with_map(map)).unwrap();
     // The rod stands on its end: its tip is 5 cm below its origin.
     let mut force = Vector::ZERO;
     for _ in 0..200 {
@@ -96,7 +96,7 @@ fn the_device_turns_and_scales_the_tool_with_its_axes() {
 
 #[test]
 fn a_coupling_is_made_as_soft_as_the_device_needs() {
-    let device = DeviceProfile { least_damping: 0.2, ..DeviceProfile::unlimited("example") };
+    let device = DeviceProfile::unlimited("example").with_least_damping(0.2);
     let protection = Protection::new(device);
     let servo =
         UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
@@ -118,7 +118,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
     assert_eq!(servo.accepted()[0].factor, 1.0);
     // Coupling and body damp together.
     let damped = Material { damping: 0.3, ..smooth() };
-    let strict = Protection { acceptance: Acceptance::Strict, ..protection };
+    let strict = protection.with_acceptance(Acceptance::Strict);
     let servo =
         UnprotectedServo::with_tool(ground(damped), rod(), ServoOptions::default()).unwrap();
     let refused = servo.protected(&strict).unwrap_err();
@@ -132,7 +132,7 @@ fn a_coupling_is_made_as_soft_as_the_device_needs() {
 fn a_tool_is_guided_and_limited() {
     let mut servo =
         UnprotectedServo::with_tool(ground(smooth()), rod(), ServoOptions::default()).unwrap();
-    let options = GuideOptions { stiffness: 100.0, damping: 0.0, ..GuideOptions::default() };
+    let options = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
     servo.guide(&[Guide::to_point(Vector([0.0, 0.1, 0.0]), options).unwrap()]);
     let force = servo.step(&[at(0.0, 0.09)])[0].force;
     assert!((force - Vector([0.0, 1.0, 0.0])).norm() < 1e-9, "{force:?}");
@@ -153,11 +153,8 @@ fn a_run_reports_what_the_tool_felt() {
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.02, 0.0], [0.0, 0.007, 0.0]]);
     let mut recorder = Recorder::new(1000);
-    let options = RunOptions {
-        pace: Pace::AsFastAsPossible,
-        recorder: Some(&mut recorder),
-        ..RunOptions::new(1.0)
-    };
+    let options =
+        RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert_eq!((report.points, tool.points), (1, 41));
@@ -176,13 +173,13 @@ fn a_run_reports_what_the_tool_felt() {
 #[test]
 fn a_tool_with_too_small_a_budget_says_so() {
     let shell = Shell::from_field(&ball(0.02), 600, 0.0).unwrap();
-    let options = ToolOptions { budget: 100, ..ToolOptions::default() };
+    let options = ToolOptions::default().with_budget(100);
     let tool = Tool::new(shell, options).unwrap();
     let servo =
         UnprotectedServo::with_tool(ground(smooth()), tool, ServoOptions::default()).unwrap();
     let mut servo = without_limits(servo);
     let mut device = press(vec![[0.0, 0.03, 0.0], [0.03, 0.015, 0.0]]);
-    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(1.0) };
+    let options = RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible);
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert!(report.evaluations.max <= 100 && tool.degraded_ticks > 0, "{report:?}");
@@ -196,7 +193,7 @@ fn a_thread_hands_off_what_the_tool_does() {
     let servo = without_limits(servo);
     let device = Box::new(press(vec![[0.0, 0.02, 0.0]; 2]));
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+    let options = ThreadOptions::default().with_raised_priority(false);
     let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
     driver.advance(Duration::ZERO);
     let held = thread.control().latest().unwrap().tool.unwrap();

@@ -21,10 +21,10 @@ fn tour<const D: usize>(shape: &Shape<D>) -> HandPath<D> {
 
 fn toured<const D: usize>(shape: &Shape<D>) -> RunReport {
     let mut device = RecordedDevice::new(vec![tour(shape)]).unwrap();
-    let options = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
+    let options = ServoOptions::default().with_max_force(f64::INFINITY);
     let servo = UnprotectedServo::new(shape.clone(), 1, options).unwrap();
     let mut servo = without_limits(servo);
-    let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(DURATION) };
+    let options = RunOptions::new(DURATION).with_pace(Pace::AsFastAsPossible);
     run(&mut servo, &mut device, options).unwrap()
 }
 

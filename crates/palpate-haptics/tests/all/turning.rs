@@ -31,14 +31,12 @@ const HALF: f64 = 0.05;
 const UNHURRIED: f64 = 1e-3;
 
 fn coupling() -> ToolOptions {
-    ToolOptions {
-        stiffness: STIFFNESS,
-        angular_stiffness: Some(ANGULAR),
-        damping: 0.0,
-        max_force: f64::INFINITY,
-        max_torque: f64::INFINITY,
-        ..ToolOptions::default()
-    }
+    ToolOptions::default()
+        .with_stiffness(STIFFNESS)
+        .with_angular_stiffness(ANGULAR)
+        .with_damping(0.0)
+        .with_max_force(f64::INFINITY)
+        .with_max_torque(f64::INFINITY)
 }
 
 /// A rod along x of two points at its ends, without a radius.
@@ -58,7 +56,7 @@ fn rigid() -> Material {
 }
 
 fn servo<const D: usize>(material: Material, options: ToolOptions) -> UnprotectedServo<D> {
-    let free = ServoOptions { max_force: f64::INFINITY, ..ServoOptions::default() };
+    let free = ServoOptions::default().with_max_force(f64::INFINITY);
     UnprotectedServo::with_tool(ground(material), rod(options), free).unwrap()
 }
 
@@ -138,10 +136,9 @@ fn a_device_that_does_not_turn_has_no_torque_to_write() {
 fn the_workspace_turns_what_turns_and_shortens_arms() {
     let rotation = Rotation::from_axis_angle(Vector([0.0, 0.0, 1.0]), 0.5).unwrap();
     let map = WorkspaceMap::new(Pose::rotation(rotation), 2.0).unwrap();
-    let turning = Some(TurningProfile::unlimited());
-    let profile = DeviceProfile { turning, ..DeviceProfile::unlimited("example") };
+    let profile = device(TurningProfile::unlimited());
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection { map, rise_time: 0.0, ..Protection::new(profile) };
+    let protection = Protection::new(profile).with_map(map).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     let at_device = |height: f64| map.point_to_device(up(height));
     // In the world turned by −0.3, so by −0.8 against the device's axes.
@@ -160,40 +157,40 @@ fn the_workspace_turns_what_turns_and_shortens_arms() {
 
 /// What a device that turns needs to say, and no limits beside.
 fn device(turning: TurningProfile) -> DeviceProfile {
-    DeviceProfile { turning: Some(turning), ..DeviceProfile::unlimited("example") }
+    DeviceProfile::unlimited("example").with_turning(turning)
 }
 
 /// The same servo for a device that it moves from the first tick on.
 fn for_device(servo: UnprotectedServo<3>, device: &dyn Device<3>) -> Servo<3> {
     let protection = Protection::new(device.profile().clone());
-    servo.protected(&Protection { rise_time: 0.0, ..protection }).unwrap()
+    servo.protected(&protection.with_rise_time(0.0)).unwrap()
 }
 
 #[test]
 fn what_turns_is_accepted_by_the_same_law() {
     let accept = |turning: TurningProfile, options: ToolOptions, acceptance| {
         let servo = servo::<3>(rigid(), options);
-        let protection = Protection { acceptance, ..Protection::new(device(turning)) };
+        let protection = Protection::new(device(turning)).with_acceptance(acceptance);
         let servo = servo.protected(&protection)?;
         Ok((servo.accepted()[0].factor, servo.accepted()[1].clone()))
     };
     let scaled = |turning, options| accept(turning, options, Acceptance::Scaled).unwrap();
     let base = TurningProfile::unlimited();
-    let damped = ToolOptions { angular_damping: 0.001, ..coupling() };
+    let damped = coupling().with_angular_damping(0.001);
     // b / (κ T / 2 + β) = 0.0005 / (0.001 + 0.001)
-    let passive = TurningProfile { least_damping: 5e-4, ..base.clone() };
+    let passive = base.clone().with_least_damping(5e-4);
     let (along, about) = scaled(passive.clone(), damped);
     assert_eq!((along, about.factor), (1.0, 0.25));
     assert_eq!(about.rule, Some(Rule::AngularPassivity));
     assert_eq!((about.device_stiffness, about.device_damping), (0.5, 2.5e-4));
     // 2 f_c / (Δ κ) = 2 · 1e-3 / (2e-3 · 2)
-    let seen = TurningProfile { friction: 1e-3, encoder_step: 2e-3, ..base.clone() };
+    let seen = base.clone().with_friction(1e-3).with_encoder_step(2e-3);
     let (_, about) = scaled(seen, coupling());
     assert_eq!((about.factor, about.rule), (0.5, Some(Rule::AngularQuantisation)));
-    let soft = TurningProfile { max_stiffness: 0.25, ..base.clone() };
+    let soft = base.clone().with_max_stiffness(0.25);
     let (_, about) = scaled(soft, coupling());
     assert_eq!((about.factor, about.rule), (0.125, Some(Rule::MaxAngularStiffness)));
-    let thin = TurningProfile { max_damping: 5e-4, ..base };
+    let thin = base.with_max_damping(5e-4);
     let (_, about) = scaled(thin, damped);
     assert_eq!((about.factor, about.rule), (0.5, Some(Rule::MaxAngularDamping)));
     let refused = accept(passive, damped, Acceptance::Strict).unwrap_err();
@@ -206,9 +203,9 @@ fn what_turns_is_accepted_by_the_same_law() {
 #[test]
 fn a_softer_coupling_turns_the_hand_less() {
     // κ T / 2 = 1e-3 [N·m·s/rad].
-    let turning = TurningProfile { least_damping: 2.5e-4, ..TurningProfile::unlimited() };
+    let turning = TurningProfile::unlimited().with_least_damping(2.5e-4);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection { rise_time: 0.0, ..Protection::new(device(turning)) };
+    let protection = Protection::new(device(turning)).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted()[1].factor, 0.25);
     // Pressed flat by so much that the rod stays level: κ/4 times the angle.
@@ -218,14 +215,12 @@ fn a_softer_coupling_turns_the_hand_less() {
 
 /// Limits that all have to act.
 fn limits() -> TurningProfile {
-    TurningProfile {
-        max_torque: 0.2,
-        continuous_torque: 0.05,
-        max_torque_rate: 20.0,
-        inertia: 1e-4,
-        least_damping: 2e-3,
-        ..TurningProfile::unlimited()
-    }
+    TurningProfile::unlimited()
+        .with_max_torque(0.2)
+        .with_continuous_torque(0.05)
+        .with_max_torque_rate(20.0)
+        .with_inertia(1e-4)
+        .with_least_damping(2e-3)
 }
 
 #[test]
@@ -233,12 +228,8 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
     let mut reports = Vec::new();
     cases(20, |u| {
         let servo = servo::<3>(rigid(), coupling());
-        let profile = DeviceProfile {
-            max_force: 3.0,
-            mass: 0.05,
-            least_damping: 0.5,
-            ..device(limits())
-        };
+        let profile =
+            device(limits()).with_max_force(3.0).with_mass(0.05).with_least_damping(0.5);
         let mut servo = servo.protected(&Protection::new(profile)).unwrap();
         let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 1e-3);
         let (axis, height) = (Vector([draw()?, draw()?, draw()?]), 0.01 * draw()?);
@@ -283,17 +274,16 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
 
 #[test]
 fn the_largest_torque_keeps_its_direction() {
-    let turning = TurningProfile { max_torque: 0.125, ..TurningProfile::unlimited() };
+    let turning = TurningProfile::unlimited().with_max_torque(0.125);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection { rise_time: 0.0, ..Protection::new(device(turning)) };
+    let protection = Protection::new(device(turning)).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.125])).norm() < 1e-9, "{torque:?}");
     let planar = self::servo::<2>(rigid(), coupling());
-    let turning = TurningProfile { max_torque: 0.125, ..TurningProfile::unlimited() };
-    let mut planar = planar
-        .protected(&Protection { rise_time: 0.0, ..Protection::new(device(turning)) })
-        .unwrap();
+    let turning = TurningProfile::unlimited().with_max_torque(0.125);
+    let mut planar =
+        planar.protected(&Protection::new(device(turning)).with_rise_time(0.0)).unwrap();
     let (_, flat) = brought(&mut planar, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((flat - torque).norm() < 1e-9, "{flat:?}");
     let report = servo.safety()[0].clone();
@@ -308,11 +298,10 @@ fn the_largest_torque_keeps_its_direction() {
 #[test]
 fn the_energy_of_force_and_torque_is_counted_together() {
     // Turned into the ground, then lifted off it: torque takes what force gives.
-    let turning =
-        TurningProfile { least_damping: 2e-3, inertia: 1e-3, ..TurningProfile::unlimited() };
-    let profile = DeviceProfile { least_damping: 0.5, mass: 0.1, ..device(turning) };
+    let turning = TurningProfile::unlimited().with_least_damping(2e-3).with_inertia(1e-3);
+    let profile = device(turning).with_least_damping(0.5).with_mass(0.1);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection { rise_time: 0.0, ..Protection::new(profile) };
+    let protection = Protection::new(profile).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     assert!(servo.accepted().iter().all(|a| a.factor == 1.0));
     let mut given = 0.0;
@@ -343,10 +332,10 @@ fn the_energy_of_force_and_torque_is_counted_together() {
 #[test]
 fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     // 2 N·s/m on 5 cm are 5e-3 N·m·s/rad, and the coupling takes 1e-3 of the device's 2e-3.
-    let turning = TurningProfile { least_damping: 2e-3, ..TurningProfile::unlimited() };
+    let turning = TurningProfile::unlimited().with_least_damping(2e-3);
     let material = Material { damping: 2.0, viscosity: 0.0, ..rigid() };
     let servo = servo::<3>(material, coupling());
-    let protection = Protection { rise_time: 0.0, ..Protection::new(device(turning)) };
+    let protection = Protection::new(device(turning)).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, still) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let state = PointState::at_rest(up(0.01));
@@ -372,16 +361,13 @@ fn swing() -> HandPath<3> {
 
 #[test]
 fn a_run_turns_the_tool_and_reports_the_torque() {
-    let turning = TurningProfile { max_torque: 0.1, ..TurningProfile::unlimited() };
+    let turning = TurningProfile::unlimited().with_max_torque(0.1);
     let mut device = RecordedDevice::new(vec![resting(0.005)]).unwrap().with_turns(swing());
     device = device.with_profile(self::device(turning));
     let mut servo = for_device(servo::<3>(rigid(), coupling()), &device);
     let mut recorder = Recorder::new(1001);
-    let options = RunOptions {
-        pace: Pace::AsFastAsPossible,
-        recorder: Some(&mut recorder),
-        ..RunOptions::new(1.001)
-    };
+    let options =
+        RunOptions::new(1.001).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
     let report = run(&mut servo, &mut device, options).unwrap();
     let tool = report.tool.unwrap();
     assert!(tool.largest_torque > 0.15, "{tool:?}");
@@ -441,7 +427,7 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
         let inner = inner.with_profile(device(TurningProfile::unlimited()));
         let mut device = Fragile { inner, ticks: 0, panics, largest: 0.0 };
         let mut servo = for_device(servo::<3>(rigid(), coupling()), &device);
-        let options = RunOptions { pace: Pace::AsFastAsPossible, ..RunOptions::new(2.0) };
+        let options = RunOptions::new(2.0).with_pace(Pace::AsFastAsPossible);
         let report = run(&mut servo, &mut device, options).unwrap();
         assert_eq!(matches!(report.ending, Ending::Panicked { .. }), panics);
         assert_eq!(matches!(report.ending, Ending::DeviceLost { .. }), !panics);
@@ -454,13 +440,9 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
 
 #[test]
 fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
-    let turning = TurningProfile {
-        max_torque: 0.0,
-        encoder_step: UNHURRIED,
-        ..TurningProfile::unlimited()
-    };
+    let turning = TurningProfile::unlimited().with_max_torque(0.0).with_encoder_step(UNHURRIED);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection { rise_time: 0.0, ..Protection::new(device(turning)) };
+    let protection = Protection::new(device(turning)).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted().len(), 1);
     let (force, torque) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
@@ -515,7 +497,7 @@ fn another_thread_limits_and_stops_the_torque() {
     let device = Box::new(Shown(recorded.with_turns(turns.unwrap()), written.clone()));
     let servo = for_device(servo::<3>(rigid(), coupling()), &*device);
     let (clock, mut driver) = VirtualClock::driven();
-    let options = ThreadOptions { raises_priority: false, ..ThreadOptions::default() };
+    let options = ThreadOptions::default().with_raised_priority(false);
     let mut thread = ServoThread::start_on(clock, servo, device, options).unwrap();
     let mut torque_after = |milliseconds| {
         driver.advance(Duration::from_millis(milliseconds));
@@ -541,9 +523,8 @@ fn another_thread_limits_and_stops_the_torque() {
 #[test]
 fn a_device_that_no_longer_says_how_it_is_turned_gets_no_torque() {
     let servo = servo::<3>(rigid(), coupling());
-    let profile = DeviceProfile { max_force_rate: 50.0, ..device(limits()) };
-    let mut servo =
-        servo.protected(&Protection { rise_time: 0.0, ..Protection::new(profile) }).unwrap();
+    let profile = device(limits()).with_max_force_rate(50.0);
+    let mut servo = servo.protected(&Protection::new(profile).with_rise_time(0.0)).unwrap();
     brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let (mut force, mut torque) = (servo.forces()[0], servo.torque());
     assert!(torque.norm() > 0.01);

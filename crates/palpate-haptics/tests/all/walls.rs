@@ -29,8 +29,8 @@ fn a_thin_plate_holds_a_strike_of_five_metres_a_second() {
 fn a_wall_beyond_the_region_of_a_promise_is_not_crossed() {
     // Known to be no steeper than 1 within 0.1 m of the origin; the plate is at x = 0.3.
     let plate = cuboid([0.02, 1.0, 1.0]).translated(Vector([0.3, 0.0, 0.0])).unwrap();
-    let region = Some(BoundingBall { centre: Vector::ZERO, radius: 0.1 });
-    let promise = Promise { region, ..Promise::lipschitz(plate.promise().bounds, 1.0) };
+    let region = BoundingBall { centre: Vector::ZERO, radius: 0.1 };
+    let promise = Promise::lipschitz(plate.promise().bounds, 1.0).with_region(region);
     let shape = Shape::custom(Scaled { shape: plate, factor: 1.0, promise });
     for radius in [0.0, 0.002] {
         let mut proxy = proxy(radius);
@@ -49,9 +49,9 @@ fn a_wall_beyond_the_region_of_a_promise_is_not_crossed() {
 
 #[test]
 fn a_hand_that_starts_beyond_the_region_of_a_promise_touches_nothing_until_it_enters() {
-    let region = Some(BoundingBall { centre: Vector::ZERO, radius: 0.1 });
+    let region = BoundingBall { centre: Vector::ZERO, radius: 0.1 };
     let cube = cuboid([0.05; 3]);
-    let promise = Promise { region, ..Promise::lipschitz(cube.promise().bounds, 1.0) };
+    let promise = Promise::lipschitz(cube.promise().bounds, 1.0).with_region(region);
     let shape = Shape::custom(Scaled { shape: cube, factor: 1.0, promise });
     let mut proxy = proxy(0.002);
     let far = Vector([0.0, 0.5, 0.0]);

@@ -114,10 +114,8 @@ fn poses_that_are_no_numbers_are_refused() -> Result<(), ShapeError> {
 /// there, and 0.02 m about (0.55, 0) beyond.
 fn known_nearby(is_there: bool) -> Shape<2> {
     let aabb = Aabb { min: Vector([-1.0, -1.0]), max: Vector([1.0, 1.0]) };
-    let promise = Promise {
-        region: Some(BoundingBall { centre: Vector::ZERO, radius: 0.5 }),
-        ..Promise::lipschitz(Some(Bounds::of_box(aabb)), 1.0)
-    };
+    let promise = Promise::lipschitz(Some(Bounds::of_box(aabb)), 1.0)
+        .with_region(BoundingBall { centre: Vector::ZERO, radius: 0.5 });
     Shape::from_fn(promise, move |Vector([x, y])| {
         let near = Scalar::norm([x, y]).value <= 0.5;
         if near || !is_there {

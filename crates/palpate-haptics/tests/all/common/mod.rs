@@ -72,16 +72,14 @@ pub(crate) fn scaled<const D: usize>(
 
 /// The same servo behind a device that sees steps, with a safety chain.
 pub(crate) fn protected<const D: usize>(servo: UnprotectedServo<D>) -> Servo<D> {
-    let profile = DeviceProfile {
-        max_force: 4.0,
-        continuous_force: 1.5,
-        max_force_rate: 2000.0,
-        mass: 0.05,
-        least_damping: 0.3,
-        friction: 0.1,
-        encoder_step: 1e-5,
-        ..DeviceProfile::unlimited("protected")
-    };
+    let profile = DeviceProfile::unlimited("protected")
+        .with_max_force(4.0)
+        .with_continuous_force(1.5)
+        .with_max_force_rate(2000.0)
+        .with_mass(0.05)
+        .with_least_damping(0.3)
+        .with_friction(0.1)
+        .with_encoder_step(1e-5);
     servo.protected(&Protection::new(profile)).unwrap()
 }
 
@@ -127,7 +125,7 @@ impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
 /// The same servo for a device without limits: what it wants is given, from the first tick on.
 pub(crate) fn without_limits<const D: usize>(servo: UnprotectedServo<D>) -> Servo<D> {
     let protection = Protection::new(DeviceProfile::unlimited("without limits"));
-    servo.protected(&Protection { rise_time: 0.0, ..protection }).unwrap()
+    servo.protected(&protection.with_rise_time(0.0)).unwrap()
 }
 
 pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {
