@@ -79,8 +79,19 @@ fn cannot(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
     Failure(format!("{} cannot be {verb}: {error}", path.display()))
 }
 
+/// A page, whose links within the project lead somewhere: rustdoc's own lint also takes units in
+/// brackets for links, and is off.
 fn page(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| cannot("read", path, &error))
+    let text = std::fs::read_to_string(path).map_err(|error| cannot("read", path, &error))?;
+    match dead_link(&text) {
+        None => Ok(text),
+        Some(link) => Err(Failure(format!("{}: {link} is not there", path.display()))),
+    }
+}
+
+/// The path of an item that rustdoc did not find.
+fn dead_link(page: &str) -> Option<&str> {
+    attributes(page, "href=\"").into_iter().find(|link| link.contains("::"))
 }
 
 /// What the list lacks, or has too much.
@@ -180,6 +191,12 @@ mod tests {
             <section id="method.new-1"><div id="impl-Limits"><h2 id="trait-implementations">
             <section id="method.clone">"#;
         assert_eq!(members(page).into_iter().collect::<Vec<_>>(), ["field rate", "method new"]);
+    }
+
+    #[test]
+    fn a_link_to_an_item_that_is_not_there_is_refused() {
+        assert_eq!(dead_link(r#"<a href="struct.Shape.html">"#), None);
+        assert_eq!(dead_link(r#"<a href="crate::Tool">"#), Some("crate::Tool"));
     }
 
     #[test]

@@ -5,19 +5,19 @@
 //!
 //! A [`Proxy`] (a god-object with a radius) follows a device point but cannot enter the shape.
 //! A [`Material`] turns the distance between proxy and device point into a force. A [`Servo`]
-//! does both for every contact point of a [`Device`], a thousand times a second and more.
+//! moves the proxies and computes the forces for every contact point of a [`Device`], a thousand times a second and more.
 //! Through a [`handoff`](handoff()), another thread replaces bodies and reads snapshots without
 //! ever making the servo wait.
 //!
 //! The crate `palpate-loop` runs a servo: it paces, counts, records and reports.
 //!
 //! A rigid [`Tool`] renders contact of a whole shape, with force and torque: a virtual coupling
-//! connects it to the hand, and bodies stop it. A servo renders a tool
-//! [instead](Servo::for_tool) of contact points. On a device with six degrees of freedom the
+//! connects it to the hand, and bodies stop it. A servo made by [`Servo::for_tool`] renders a tool
+//! instead of contact points. On a device with six degrees of freedom the
 //! tool turns with the hand and gives a torque.
 //!
 //! In free space, a [`Guide`] holds the hand to a point, line, plane or curve, or pulls it into
-//! a well or down a field.
+//! a well or along a field's negative gradient.
 //!
 //! Simulated and recorded devices are in `palpate-devices`; vibration for devices that shake
 //! instead of push is in `palpate-vibration`.
@@ -26,13 +26,14 @@
 //!
 //! - *The proxy crosses no surface.* It moves only where an evaluation and the field's
 //!   Lipschitz constant prove the path free, at any speed of the hand.
-//! - *The step is total.* [`Servo::step`] allocates nothing, takes no lock, does not panic and
-//!   evaluates the shape at most [`Probe::budget`] times a point. A proxy that runs out of
-//!   budget lags behind; it never ends up inside.
+//! - *The step always ends, in bounded work.* [`Servo::step`] allocates nothing, takes no lock, does not panic and
+//!   evaluates the shape at most [`Probe::budget`] times for each contact point. A proxy that runs
+//!   out of budget lags behind; it does not enter a body.
 //! - *The force of contact never pulls*, is finite, and is no larger than the device's largest
 //!   force.
 //! - *No lengths are built in.* Every tolerance follows from the size of the shape, the probe
-//!   and the motion, so scenes of a micrometre and of a kilometre feel alike.
+//!   and the motion, so that scenes of a micrometre and of a kilometre feel alike if the probe is
+//!   scaled with them.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod accepted_bodies;

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The loop around a servo and its device: it paces, counts, records and reports.
+//! The loop around a servo and its device. The loop paces, counts, records and reports.
 //!
 //! [`run`] runs the loop in a call. A [`ServoThread`] runs the same loop in a thread; its
 //! [`Control`](palpate_haptics::Control) replaces bodies and reads snapshots without ever
-//! making the servo wait. Both accept only a [`Servo`](palpate_haptics::Servo), which has a
-//! safety chain, and write zero forces last, however they end.
+//! making the servo wait. `run` and the thread accept only a [`Servo`](palpate_haptics::Servo),
+//! which has a safety chain. The last that they write are zero forces, after a panic too; the
+//! report says whether the device took them.
 //!
-//! The loop runs on the machine's clock, a [`WallClock`], or in tests on a [`VirtualClock`]. A
+//! The loop runs on the machine's clock, a [`WallClock`], or, in tests, on a [`VirtualClock`]. A
 //! [`Recorder`] keeps every tick, a [`RunReport`] summarises a run, and [`Lateness`] measures
 //! how late a machine wakes up.
 //!

@@ -175,13 +175,14 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 ///
 /// Tick `k` is at the servo's time `k / rate`. In real time the loop sleeps between ticks; a
 /// tick that starts more than a period late shifts all later ones, so that the loop does not
-/// hurry to catch up. However the run ends, the last forces written are zero.
+/// hurry to catch up. However the run ends, the last forces written are
+/// zero, and [`RunReport::is_released`] says whether the device took them.
 ///
 /// # Errors
 ///
 /// [`HapticsError::Number`] if the duration is negative or not finite;
 /// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
-/// points; [`HapticsError::OtherDevice`] if the device has tighter limits than the one that the
+/// points; [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter limits than the one that the
 /// servo was made for. Failures during the run are in the report.
 ///
 /// # Examples

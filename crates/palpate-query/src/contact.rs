@@ -32,7 +32,8 @@ pub struct Contact<const D: usize> {
     pub point_a: Point<D>,
     /// The point on the surface of body `b` [m].
     pub point_b: Point<D>,
-    /// The unit vector from body `a` to body `b`.
+    /// The unit vector from body `a` to body `b`, along which a solver separates them. Where the
+    /// fields give no direction, as in the middle of a ball, it is one of the axes.
     pub normal: Vector<f64, D>,
     /// The distance from `point_a` to `point_b` along the normal,
     /// `(point_b − point_a)·normal` [m]; negative where the bodies overlap.

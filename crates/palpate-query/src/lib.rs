@@ -3,7 +3,7 @@
 
 //! Where fields touch each other, balls, rays, segments, triangles and meshes, with a proof.
 //!
-//! [`Query`] asks all questions, and owns the memory that they need:
+//! A [`Query`] asks about shapes, and owns the memory that its questions need:
 //!
 //! ```
 //! use palpate_field::{Shape, Vector, kernel::{Ball, Cuboid}};
@@ -20,23 +20,25 @@
 //! # }
 //! ```
 //!
-//! Every search returns a [`Certified`] answer: the best point that was found, the bounds
-//! between which the true value lies, and why the search stopped. A search that stops early
-//! returns wider bounds, never wrong ones. Every contact is a [`Contact`].
+//! A search for one number returns a [`Certified`] answer: the best point that was found, the
+//! bounds between which the distance asked for lies, and why the search stopped. A search that
+//! stops early returns wider bounds, never wrong ones. Searches for many contacts return lists of
+//! [`Contact`]s, with such an answer or the reason why they stopped.
 //!
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
-//!   region in which they touch; [`escape`] bounds the minimum translation. [`Track`] follows
+//!   region in which they touch; [`escape`] bounds the minimum translation from above. [`Track`] follows
 //!   a pair that moves, [`World`] many bodies.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
 //!   surface along a [`Ray`].
-//! - [`minimum`] and [`touches`] ask a field over an [`Element`], a segment or a triangle, in
-//!   two or three dimensions; [`contacts`] finds all places where the element touches.
-//! - [`mesh_hits`] and [`mesh_contacts`] ask it over all elements of a mesh.
+//! - [`minimum`] and [`touches`] ask a field, in two or three dimensions, over an [`Element`]: a
+//!   segment or a triangle; [`contacts`] finds all places where the element touches.
+//! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
 //!
-//! These functions take [`Limits`] and a workspace, for real time: once a workspace has
-//! grown, they allocate nothing but the lists of a manifold.
+//! The searches take [`Limits`] and a workspace, for real time: once a workspace has grown,
+//! only [`manifold`] allocates, for its list. A `Query` calls these functions with a workspace of
+//! its own; it has no [`evaluate_point`], [`Track`] or [`World`].
 //!
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].

@@ -10,7 +10,7 @@ use palpate_field::{Point, Rotation, Vector};
 use crate::error::SafetyError;
 
 /// One contact point of a device, as read in a tick, in device coordinates. They equal world
-/// coordinates unless the servo's [protection](crate::Protection) has a workspace map.
+/// coordinates unless the servo's protection has a workspace map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointState<const D: usize> {
     /// The device point: where the hand holds the device [m].
@@ -100,7 +100,8 @@ pub struct DeviceProfile {
 }
 
 impl DeviceProfile {
-    /// An ideal device: no limits, mass, friction or encoder steps.
+    /// An ideal device: no limits, no mass, no encoder steps, and damping and friction that pass
+    /// every rule.
     ///
     /// ```
     /// let ideal = palpate_safety::DeviceProfile::unlimited("ideal");
@@ -467,7 +468,7 @@ pub struct DeviceLost {
 ///
 /// A device with rotation, six degrees of freedom in space or three in the plane, also
 /// implements [`read_turn`](Self::read_turn) and [`write_torque`](Self::write_torque); a rigid
-/// [`Tool`](crate::Tool) then turns with the device's one contact point. Other devices keep the
+/// tool then turns with the device's one contact point. Other devices keep the
 /// provided implementations.
 pub trait Device<const D: usize> {
     /// The number of contact points; it never changes.
@@ -477,9 +478,11 @@ pub trait Device<const D: usize> {
     fn profile(&self) -> &DeviceProfile;
 
     /// Reads every contact point into `points`, which has one place for each, at `time` [s]
-    /// since the servo started.
+    /// since the servo started. For a device with encoder steps, the servo estimates velocities
+    /// from positions; those read here count for other devices.
     ///
-    /// Real-time: called in every tick.
+    /// Real-time: called in every tick, and must return well within one. A call that blocks makes
+    /// ticks late, and the watchdog of the safety chain then releases the hand.
     ///
     /// # Errors
     ///

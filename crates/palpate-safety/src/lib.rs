@@ -3,13 +3,14 @@
 
 //! What stands between a wanted force and a hand: profiles of devices, and the safety chain.
 //!
-//! A [`DeviceProfile`] says what a device can do, a [`Device`] is its transport, a
+//! The wanted force is that of materials, guides or a tool, before any limit. A
+//! [`DeviceProfile`] says what a device can do, a transport implements [`Device`], and a
 //! [`WorkspaceMap`] places it in the world. [`Accepted`] says how stiff a material may be on it,
 //! a [`VelocityEstimator`] how fast the hand moves, and a [`SafetyChain`] gives the force to
-//! write in each tick: no larger, no faster and no longer than the device bears, and giving out
-//! no more energy than it took in. A [`WrenchChain`] does the same for force and torque together.
+//! write in each tick: no larger, changing no faster and lasting no longer than the device bears;
+//! and the chain gives out no more energy than it took in. A [`WrenchChain`] does the same for force and torque together.
 //!
-//! This crate knows nothing of what is touched, so that it can be reviewed alone.
+//! This crate knows nothing of shapes, so that it can be reviewed alone.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod acceptance;

@@ -3,8 +3,8 @@
 
 //! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
 //!
-//! All that palpate asks of a device is where its points are, what to do with the forces, and
-//! what it can bear; no force beyond that reaches the hand. Here the transport is two numbers.
+//! A `Device` reads where its points are, writes forces, and states its limits; the safety chain
+//! keeps every force within these limits. Here the transport is two numbers.
 
 use palpate::devices::{DeviceLost, DeviceProfile, PointState};
 use palpate::prelude::*;
@@ -52,7 +52,7 @@ fn main() -> Result<(), Error> {
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
     let mut servo = Servo::for_device(disc, &device)?;
-    let report = servo.run(&mut device, Seconds(2.0))?;
+    let report = servo.run(&mut device, Seconds(2.0))?.unless_lost()?;
     println!("{} ticks, at most {:.2} N", report.ticks, report.largest_force);
     Ok(())
 }

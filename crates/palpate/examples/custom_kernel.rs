@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A formula of one's own: the gradient, blocks, and bounds over cells follow from it.
+//! A formula of one's own: gradients, answers for arrays of points, and bounds over boxes follow
+//! from it.
 
 use palpate::field::scalar::Scalar;
 use palpate::field::{Kernel, Promise};
 use palpate::prelude::*;
 
-/// A gyroid wall: `|sin x cos y + sin y cos z + sin z cos x| / √3 − t`, in lengths of 1/k.
+/// A wall of a gyroid: `|sin x cos y + sin y cos z + sin z cos x| / (√12 · frequency) −
+/// thickness/2`, where x, y and z are the coordinates times the frequency [1/m].
 #[derive(Clone, Debug)]
 struct Gyroid {
     frequency: f64,

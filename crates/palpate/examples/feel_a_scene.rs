@@ -19,7 +19,8 @@ fn main() -> Result<(), Error> {
     };
     let profile = profile_named("omega")?;
     let map = scene.workspace_of(&profile, None)?;
-    let bounds = scene.bounds().unwrap_or_else(|| unreachable!("the cup has bounds"));
+    let bounds =
+        scene.bounds().ok_or_else(|| std::io::Error::other("the cup has no bounds"))?;
     let tour = Tour::new(bounds, SECONDS)?.over(&scene.whole)?;
     let hand = Hand::new(tour.mapped(|point| map.point_to_device(point))?);
     let device = SimulatedDevice::new(profile, vec![hand])?;
@@ -35,6 +36,7 @@ fn main() -> Result<(), Error> {
         let [x, y, z] = row.device.0;
         writeln!(csv, "{},{x},{y},{z},{}", row.time_s, row.force.norm())?;
     }
+    ended.report.clone().unless_lost()?;
     println!(
         "{} ticks, at most {:.2} N: {}",
         ended.report.ticks,

@@ -23,6 +23,6 @@ fn main() -> Result<(), Error> {
     let AnyScene::Spatial(read) = Scene::from_json(&text)?.build()? else { unreachable!() };
     assert_eq!(read.bodies[0].shape_in_body, plate);
     println!("read back: {}", read.bodies[0].shape_in_body);
-    println!("the peg touches: {:?}", read.world()?.step().len());
+    println!("pairs that touch: {}", read.world()?.step().len());
     Ok(())
 }

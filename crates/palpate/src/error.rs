@@ -11,9 +11,10 @@ use palpate_query::QueryError;
 
 /// What went wrong in any crate of palpate.
 ///
-/// Each error of those crates becomes one by `?`, its text is the same, and what it says is there
-/// as data: see [`kind`](Self::kind), [`parameter`](Self::parameter), [`value`](Self::value),
-/// [`path`](Self::path) and [`line`](Self::line).
+/// Each error of those crates becomes one by `?`, with the same text. What an error knows is there
+/// as data: its [`kind`](Self::kind), the [`parameter`](Self::parameter) with the
+/// [`rule`](Self::rule) it breaks and its [`value`](Self::value); in a scene file the
+/// [`path`](Self::path), [`line`](Self::line) and [`column`](Self::column).
 ///
 /// ```
 /// use palpate::{Error, ErrorKind};
@@ -23,6 +24,7 @@ use palpate_query::QueryError;
 /// assert_eq!(error.to_string(), "radius must be positive, got -1 m");
 /// assert_eq!((error.kind(), error.parameter()), (ErrorKind::Shape, Some("radius")));
 /// assert_eq!((error.value(), error.unit()), (Some(-1.0), Some("m")));
+/// assert_eq!((error.kind().name(), error.rule()), ("shape", Some("positive")));
 /// ```
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
@@ -79,6 +81,24 @@ pub enum ErrorKind {
     File,
 }
 
+impl ErrorKind {
+    /// A name that stays the same, for programs and other languages: "shape", "device_lost".
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Shape => "shape",
+            Self::Query => "query",
+            Self::Haptics => "haptics",
+            Self::Mesh => "mesh",
+            Self::Scene => "scene",
+            Self::Plot => "plot",
+            Self::UnknownName => "unknown_name",
+            Self::DeviceLost => "device_lost",
+            Self::File => "file",
+        }
+    }
+}
+
 impl Error {
     /// What the error is about.
     #[must_use]
@@ -117,6 +137,20 @@ impl Error {
                 Self::Query(
                     QueryError::Coordinate { what, .. } | QueryError::Setting { what, .. },
                 ) => Some(what),
+                _ => None,
+            },
+        }
+    }
+
+    /// What the parameter must be: "positive".
+    #[must_use]
+    pub fn rule(&self) -> Option<&str> {
+        match self.shape_error() {
+            Some(ShapeError::Number { rule, .. } | ShapeError::Count { rule, .. }) => {
+                Some(rule)
+            }
+            _ => match self {
+                Self::Haptics(HapticsError::Number(NumberError { rule, .. })) => Some(rule),
                 _ => None,
             },
         }
@@ -181,6 +215,16 @@ impl Error {
         match self {
             #[cfg(feature = "scene")]
             Self::Scene(error) if error.line > 0 => Some(error.line),
+            _ => None,
+        }
+    }
+
+    /// The column in that line, from 1.
+    #[must_use]
+    pub fn column(&self) -> Option<usize> {
+        match self {
+            #[cfg(feature = "scene")]
+            Self::Scene(error) if error.column > 0 => Some(error.column),
             _ => None,
         }
     }

@@ -3,7 +3,7 @@
 
 //! Signed distance functions that can be touched.
 //!
-//! One crate for everything, of which each part is a crate of its own: the [`field`]s and their
+//! This crate re-exports the crates of palpate: the [`field`]s and their
 //! promises, [`query`] for where things touch, [`mesh`]es, the [`haptics`] proxy and servo,
 //! [`devices`] to touch with, [`scene`] files, [`plot`]s. The [`prelude`] has what most programs
 //! need.
@@ -29,7 +29,7 @@
 //! let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let mut servo = Servo::for_device([Body::new(plate, Material::wood())?], &device)?;
-//! let report = servo.run(&mut device, Seconds(0.01))?; // in real time
+//! let report = servo.run(&mut device, Seconds(0.01))?.unless_lost()?; // in real time
 //! assert_eq!(report.ticks, 10);
 //! # Ok(())
 //! # }
@@ -38,10 +38,10 @@
 //! # Features
 //!
 //! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares batches and worlds
-//! among threads; `plot` draws; `scene` reads and writes scene files; `serde` makes data readable
-//! and writable; `std-loop` runs servos on the machine's clock and in threads; `vibration` turns
-//! touches into vibration. Off by default: `local` has the published searches that prove nothing,
-//! `mint` and `glam` convert vectors and poses.
+//! among threads; `plot` draws; `scene` reads and writes scene files; `serde` implements serde's
+//! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration` makes
+//! commands for motors and audio. Off by default: `local` has local searches from the
+//! literature, without bounds; `mint` and `glam` convert vectors and poses.
 
 mod error;
 pub mod prelude;

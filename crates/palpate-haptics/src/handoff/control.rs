@@ -21,7 +21,7 @@ use palpate_safety::Accepted;
 use palpate_safety::NumberError;
 
 /// The end of a hand-off for an ordinary thread: edits what a running servo renders, and reads
-/// its state. Made by [`handoff`](crate::handoff) or a [`ServoThread`](crate::ServoThread).
+/// its state. Made by [`handoff`](crate::handoff) or a `ServoThread` of `palpate-loop`.
 ///
 /// Edits that the servo has not received yet are merged: before its next tick the servo
 /// receives all of them or none. Replaced bodies are dropped on this thread, by the next call.

@@ -65,7 +65,7 @@ impl HandoffOptions {
 /// The two ends of a hand-off: the first for an ordinary thread, the second for the thread of
 /// `servo`. The capacity for bodies is at least the number of bodies that the servo has.
 ///
-/// [`ServoThread`](crate::ServoThread) makes its own hand-off. A custom loop, for example the
+/// The `ServoThread` of `palpate-loop` makes its own hand-off. A custom loop, for example the
 /// callback of a device driver, [receives](ServoEnd::receive) before each
 /// [step](crate::Servo::step) and [publishes](ServoEnd::publish) after it.
 ///

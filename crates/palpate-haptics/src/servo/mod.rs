@@ -67,7 +67,8 @@ pub struct Servo<const D: usize> {
 
 impl<const D: usize> Servo<D> {
     /// A servo that renders `bodies` to every contact point of `device`, protected by
-    /// [`Protection::new`]: 1 kHz, a ball of 2 mm, forces up to the device's largest.
+    /// [`Protection::new`], with [`ServoOptions::of_device`]: 1 kHz, a ball of 2 mm, forces up to
+    /// the device's largest.
     ///
     /// A plain shape becomes one body with the default surface. For other settings, make an
     /// [`UnprotectedServo`] and call [`protected`](UnprotectedServo::protected).
@@ -169,7 +170,7 @@ impl<const D: usize> Servo<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::OtherDevice`], [`HapticsError::ContactPoints`].
+    /// [`SafetyError::OtherDevice`](crate::SafetyError), [`HapticsError::ContactPoints`].
     pub fn check_device(&self, device: &(impl Device<D> + ?Sized)) -> Result<(), HapticsError> {
         self.protection.profile.check_bears(device.profile())?;
         let (servo, device) = (self.touches().len(), device.points());

@@ -255,6 +255,47 @@ fn a_lost_device_ends_the_run_with_its_reason() {
     assert_eq!(report.largest_force, 3.3);
 }
 
+/// A device that takes every force but none of zero.
+struct Stuck(Watched);
+
+impl Device<2> for Stuck {
+    fn points(&self) -> usize {
+        self.0.points()
+    }
+    fn profile(&self) -> &DeviceProfile {
+        self.0.profile()
+    }
+    fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
+        self.0.read(time, points)
+    }
+    fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
+        let is_zero = forces.iter().all(|force| *force == Vector::ZERO);
+        if is_zero && self.0.written.is_some_and(|force| force != Vector::ZERO) {
+            return Err(DeviceLost { reason: "stuck".to_owned() });
+        }
+        self.0.write(forces)
+    }
+}
+
+/// The last write was ignored: a device that kept its force ended a run as if it had let go.
+#[test]
+fn a_run_says_whether_the_device_took_the_last_zero_forces() {
+    let mut device = Stuck(Watched::new());
+    let mut servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
+    let report = run(&mut servo, &mut device, fast(1.0)).unwrap();
+    assert!(device.0.written.is_some_and(|force| force != Vector::ZERO));
+    assert_eq!((&report.ending, report.is_released), (&Ending::Finished, false));
+    let error = report.unless_lost().unwrap_err();
+    assert!(error.reason.contains("zero forces"), "{error}");
+
+    let mut device = Watched::new();
+    let mut servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
+    let report = run(&mut servo, &mut device, fast(1.0)).unwrap();
+    assert!(report.is_released && report.unless_lost().is_ok());
+    let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
+    assert_eq!(report.unless_lost().unwrap_err().reason, "unplugged");
+}
+
 #[test]
 fn what_cannot_run_is_refused() {
     let mut servo = wall_servo(ServoOptions::default());

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! All questions behind one door.
+//! Questions about shapes, with memory and tolerances of their own.
 
 mod batch;
 mod scratch;
@@ -28,14 +28,13 @@ use scratch::Scratch;
 pub use scratch::ElementMemory;
 pub use tolerance::Tolerance;
 
-/// All questions of this crate, with the memory that they need.
+/// Questions about shapes, with the memory that they need.
 ///
 /// Answers are owned, and may be sent to other threads. Memory is allocated by the first
 /// question that needs it, and kept. Bounds are at most [`Tolerance`] apart, which is a
-/// share of the size of the bodies unless an absolute one is asked for; a search that would
+/// share of the size of the smaller body unless an absolute one is asked for; a search that would
 /// take more evaluations than the budget stops with [`Stop::BudgetSpent`] and what it has
-/// proven. Where nothing may be allocated, the functions that take a workspace ask the same
-/// questions.
+/// proven. To allocate nothing, call the functions of this crate that take a workspace.
 ///
 /// [`Stop::BudgetSpent`]: crate::Stop::BudgetSpent
 ///
@@ -84,14 +83,14 @@ impl<const D: usize> Query<D> {
         Self { tolerance, ..self }
     }
 
-    /// The same questions with another limit of evaluations, each.
+    /// The same questions with another limit of evaluations for each question.
     #[must_use]
     pub fn with_budget(self, budget: u32) -> Self {
         Self { budget, ..self }
     }
 
-    /// The same questions where elements of meshes, segments and triangles count as touching
-    /// up to this gap [m].
+    /// The same questions with another gap [m] up to which segments, triangles and elements of
+    /// meshes count as touching.
     #[must_use]
     pub fn with_gap(self, gap: f64) -> Self {
         Self { gap, ..self }
@@ -111,8 +110,8 @@ impl<const D: usize> Query<D> {
         separation(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
-    /// The points of both surfaces where the bodies are nearest, or overlap most, with the
-    /// bounds of the [`separation`]; see [`Nearest::contact`] for what they promise.
+    /// The points of both surfaces where the bodies are nearest or, if they overlap, deepest in
+    /// each other, with the bounds of the [`separation`]; see [`Nearest::contact`] for what they promise.
     ///
     /// # Errors
     ///
@@ -126,7 +125,7 @@ impl<const D: usize> Query<D> {
         Ok(self.separation(a, b)?.map(|nearest| nearest.contact(a, b)))
     }
 
-    /// Whether two bodies overlap, in [`Certified::is_hit`]; see [`overlap`].
+    /// Whether two bodies overlap: read the answer with [`Certified::is_hit`]; see [`overlap`].
     ///
     /// # Errors
     ///
@@ -157,7 +156,7 @@ impl<const D: usize> Query<D> {
         manifold(a, b, &settings, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
-    /// A short way out of an overlap; see [`escape`].
+    /// A translation that separates two bodies, not always the shortest; see [`escape`].
     ///
     /// # Errors
     ///
@@ -201,7 +200,8 @@ impl<const D: usize> Query<D> {
         contact_ball(shape, centre, radius, &limits, self.scratch.ball())
     }
 
-    /// Whether a ball touches a shape, in [`Certified::is_hit`]; see [`touches_ball`].
+    /// Whether a ball touches a shape: read the answer with [`Certified::is_hit`]; see
+    /// [`touches_ball`].
     ///
     /// # Errors
     ///
@@ -325,13 +325,13 @@ impl<const D: usize> Query<D> {
         mesh_contacts(field, mesh, gap, &limits, self.elements()).cloned()
     }
 
-    /// The separations of two bodies with the second at each of `poses`, `a_from_b`, written
-    /// to `answers` in the same order; see [`separation`].
+    /// The separations of two bodies, one for each pose of the second in the frame of the first
+    /// (`a_from_b`). They are written to `answers` in the order of `poses`; see [`separation`].
     ///
     /// With the feature `parallel` rayon's threads share the work; the bits do not depend on
     /// how many there are. `goes_on` is asked before each pose, on any thread: after it said
-    /// `false`, no further pose is begun, and its answer is `None`. Returns `true` if all
-    /// were answered.
+    /// `false`, no further pose is begun; the answers of poses that were not begun are `None`.
+    /// Returns `true` if all were answered.
     ///
     /// ```
     /// use palpate_field::{Pose, Shape, Vector, kernel::Ball};
@@ -353,8 +353,8 @@ impl<const D: usize> Query<D> {
     /// # Errors
     ///
     /// If there are not as many places as poses, neither body is bounded, or the tolerance or
-    /// a pose is NaN or out of range; the error of a pose has its index. Then no answer is
-    /// written.
+    /// a pose is NaN or out of range; the error of a pose has its index. On any error no
+    /// answer is written.
     pub fn separations(
         &self,
         bodies: [&Shape<D>; 2],

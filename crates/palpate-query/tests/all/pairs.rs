@@ -9,7 +9,7 @@ mod pair_answers;
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::{Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Limits, PairWorkspace, QueryError, Stop, overlap, separation};
+use palpate_query::{Limits, PairWorkspace, Query, QueryError, Stop, overlap, separation};
 use palpate_testkit::arbitrary::Turn;
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
@@ -78,6 +78,31 @@ fn a_box_on_a_floor_is_as_deep_as_it_is() -> Result<(), ShapeError> {
         assert!(answer.upper - answer.lower <= 1e-6, "{answer:?}");
         let Some(normal) = answer.best.normal else { panic!("{answer:?}") };
         assert!((normal - Vector([0.0, -1.0])).norm() < 1e-12, "{answer:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn normals_point_from_the_first_body_to_the_second() -> Result<(), ShapeError> {
+    let plate = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.1, 0.4]))?);
+    let torus = Shape::from_kernel(Torus::new(0.1, 0.03)?);
+    let mut query = Query::new();
+    // On its top, then against its side; apart and in each other.
+    for (direction, reach) in [(Vector([0.0, 1.0, 0.0]), 0.08), (Vector([1.0, 0.0, 0.0]), 0.33)]
+    {
+        for gap in [0.01, -0.005] {
+            let there = torus.clone().translated(direction * (reach + gap))?;
+            for (bodies, sign) in [([&plate, &there], 1.0), ([&there, &plate], -1.0)] {
+                let Ok(found) = query.manifold(bodies[0], bodies[1]) else { panic!("bounded") };
+                let Ok(nearest) = query.closest_points(bodies[0], bodies[1]) else { panic!() };
+                let Some(contact) = nearest.best else { panic!("{nearest:?}") };
+                for contact in found.contacts.iter().chain([&contact]) {
+                    let along = contact.normal.dot(direction * sign);
+                    assert!(along > 0.999, "{gap} m: {contact:?}");
+                    assert!((contact.gap - gap).abs() < 1e-3, "{gap} m: {contact:?}");
+                }
+            }
+        }
     }
     Ok(())
 }
