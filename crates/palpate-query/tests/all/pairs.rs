@@ -96,10 +96,11 @@ fn normals_point_from_the_first_body_to_the_second() -> Result<(), ShapeError> {
                 let Ok(found) = query.manifold(bodies[0], bodies[1]) else { panic!("bounded") };
                 let Ok(nearest) = query.closest_points(bodies[0], bodies[1]) else { panic!() };
                 let Some(contact) = nearest.best else { panic!("{nearest:?}") };
-                for contact in found.contacts.iter().chain([&contact]) {
-                    let along = contact.normal.dot(direction * sign);
-                    assert!(along > 0.999, "{gap} m: {contact:?}");
-                    assert!((contact.gap - gap).abs() < 1e-3, "{gap} m: {contact:?}");
+                assert!(contact.normal.dot(direction * sign) > 0.999, "{gap} m: {contact:?}");
+                assert!((contact.gap - gap).abs() < 1e-3, "{gap} m: {contact:?}");
+                // Beside the deepest contact the torus curves away.
+                for contact in &found.contacts {
+                    assert!(contact.normal.dot(direction * sign) > 0.8, "{gap} m: {contact:?}");
                 }
             }
         }
