@@ -8,7 +8,7 @@ use std::error::Error;
 
 use fidget::context::Tree;
 use palpate::field::kernel::{
-    Argument, Ball, Capsule, Cuboid, Cylinder, Primitive, RegularPolygon, RegularStar,
+    Argument, Ball, Capsule, Cuboid, Cylinder, NamedKernel, RegularPolygon, RegularStar,
     RoundedCuboid, Torus,
 };
 use palpate::field::operator::{Boolean, Profile};
@@ -40,7 +40,7 @@ pub(crate) trait Space<const D: usize> {
 /// The two dimensions.
 pub(crate) struct Dimensions;
 
-fn of<K: Primitive<D>, const D: usize>(
+fn of<K: NamedKernel<D>, const D: usize>(
     arguments: &[Argument],
     p: Point<D>,
 ) -> Result<Expression, Box<dyn Error>> {

@@ -32,7 +32,7 @@ pub struct Entry<const D: usize> {
 }
 
 impl<const D: usize> Entry<D> {
-    const fn of<K: Primitive<D>>() -> Self {
+    const fn of<K: NamedKernel<D>>() -> Self {
         Self {
             name: K::NAME,
             about: K::ABOUT,

@@ -16,7 +16,7 @@ use palpate_safety::VelocityEstimator;
 use palpate_safety::WorkspaceMap;
 use palpate_safety::turn_between;
 use palpate_safety::{
-    Acceptance, Accepted, Limits, PassivityReport, PerMotion, PortState, SafetyChain,
+    Acceptance, Accepted, DeviceLimits, PassivityReport, PerMotion, PortState, SafetyChain,
     SafetyOptions, SafetyReport, WrenchChain,
 };
 use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
@@ -184,7 +184,7 @@ impl<const D: usize> Protection<D> {
             part = part.max((layer.stiffness() / coupling.stiffness).min(1.0));
             damping = damping.max(layer.damping());
         }
-        let limits = Limits::about(turning);
+        let limits = DeviceLimits::about(turning);
         // A torque at the device is this multiple of the torque in the world.
         let scale = 1.0 / self.map.scale();
         let of =
@@ -207,7 +207,7 @@ impl<const D: usize> Protection<D> {
 
     fn accepted(&self, impedance: Impedance, rate: f64) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
-        let limits = Limits::along(&self.profile);
+        let limits = DeviceLimits::along(&self.profile);
         Ok(Accepted::of(impedance, scale, &limits, self.acceptance, rate)?)
     }
 
@@ -235,7 +235,7 @@ impl<const D: usize> Protection<D> {
         let Some(turning) = &self.profile.turning else { return Ok(None) };
         let chain = if let Some((along, about)) = bodies.wrench() {
             let (along_limits, about_limits) =
-                (Limits::along(&self.profile), Limits::about(turning));
+                (DeviceLimits::along(&self.profile), DeviceLimits::about(turning));
             let limits = PerMotion { along: &along_limits, about: &about_limits };
             let options = self.safety_options(along.impedance);
             let accepted = PerMotion { along: along.clone(), about: about.clone() };

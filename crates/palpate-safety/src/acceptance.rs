@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::impedance::Impedance;
-use crate::limits::Limits;
+use crate::limits::DeviceLimits;
 
 /// How a material that a device cannot render is treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -141,7 +141,7 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        Self::of(impedance, scale, &Limits::along(device), Acceptance::Scaled, rate)
+        Self::of(impedance, scale, &DeviceLimits::along(device), Acceptance::Scaled, rate)
     }
 
     /// As [`new`](Self::new), but refuses an impedance that would have to be scaled.
@@ -170,7 +170,7 @@ impl Accepted {
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        Self::of(impedance, scale, &Limits::along(device), Acceptance::Strict, rate)
+        Self::of(impedance, scale, &DeviceLimits::along(device), Acceptance::Strict, rate)
     }
 
     /// The part of `impedance` that a device with these limits renders; lengths in the world,
@@ -182,7 +182,7 @@ impl Accepted {
     pub fn of(
         impedance: Impedance,
         scale: f64,
-        limits: &Limits,
+        limits: &DeviceLimits,
         acceptance: Acceptance,
         rate: f64,
     ) -> Result<Self, SafetyError> {
@@ -235,7 +235,7 @@ fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, Safet
 fn factors(
     stiffness: f64,
     damping: f64,
-    limits: &Limits,
+    limits: &DeviceLimits,
     rate: f64,
 ) -> Result<[(f64, Rule); 4], SafetyError> {
     let period = 1.0 / NumberError::check_positive("rate", rate, "Hz")?;

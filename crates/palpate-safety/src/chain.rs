@@ -15,7 +15,7 @@ use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::impedance::Impedance;
-use crate::limits::Limits;
+use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
 
@@ -231,7 +231,7 @@ impl<const D: usize> SafetyChain<D> {
     ) -> Result<Self, SafetyError> {
         let rate = NumberError::check_positive("rate", rate, "Hz")?;
         let SafetyOptions { impedance, scale, .. } = options;
-        let limits = Limits::along(device);
+        let limits = DeviceLimits::along(device);
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
         let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {

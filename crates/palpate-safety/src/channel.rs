@@ -12,7 +12,7 @@ use crate::continuous::ContinuousLimit;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::force_limit::ForceLimit;
-use crate::limits::Limits;
+use crate::limits::DeviceLimits;
 use crate::ramp::Ramp;
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
 use crate::slew::SlewLimit;
@@ -51,7 +51,7 @@ impl<const D: usize> Channel<D> {
     /// [`SafetyError::Number`] if a limit is not positive, or a time of the options negative or
     /// not finite.
     pub(crate) fn new(
-        limits: &Limits,
+        limits: &DeviceLimits,
         options: &SafetyOptions,
         rate: f64,
     ) -> Result<Self, SafetyError> {

@@ -42,7 +42,7 @@ pub use effect::Effect;
 pub use error::{NumberError, SafetyError};
 pub use impedance::Impedance;
 pub use limit::{limited, part_of};
-pub use limits::Limits;
+pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
 pub use rotation::{cross, in_place, in_space, turn_between, turned};

@@ -37,7 +37,7 @@ impl Limit {
 /// The translational or rotational numbers of a profile, under the names of the translational
 /// ones.
 #[derive(Clone, Debug)]
-pub struct Limits {
+pub struct DeviceLimits {
     pub(crate) max_force: Limit,
     pub(crate) continuous_force: Limit,
     pub(crate) max_force_rate: Limit,
@@ -53,7 +53,7 @@ pub struct Limits {
     pub(crate) assumed: Cow<'static, [&'static str]>,
 }
 
-impl Limits {
+impl DeviceLimits {
     /// The translational limits of a device.
     #[must_use]
     pub fn along(device: &DeviceProfile) -> Self {

@@ -15,7 +15,7 @@ use palpate_field::Vector;
 
 use crate::channel::{Channel, TickInput};
 use crate::error::{NumberError, SafetyError};
-use crate::limits::Limits;
+use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
 
@@ -132,7 +132,7 @@ struct AxisLimits {
 }
 
 impl AxisLimits {
-    fn new(limits: &Limits) -> Result<Self, SafetyError> {
+    fn new(limits: &DeviceLimits) -> Result<Self, SafetyError> {
         Ok(Self {
             damping: limits.least_damping.positive()?,
             mass: limits.mass.not_negative()?,
@@ -166,7 +166,7 @@ impl<const D: usize> WrenchChain<D> {
     ///
     /// As [`SafetyChain::new`](crate::SafetyChain::new).
     pub fn new(
-        limits: PerMotion<&Limits>,
+        limits: PerMotion<&DeviceLimits>,
         accepted: PerMotion<Accepted>,
         options: &SafetyOptions,
         rate: f64,

@@ -3,11 +3,15 @@
 
 //! A shape as a file gives it.
 
+use indexmap::IndexMap;
+use palpate_field::Shape;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
+use crate::build;
 use crate::error::SceneError;
-use crate::json::Document;
+use crate::json::{self, Document};
+use crate::write::Writer;
 
 /// A shape as a file gives it: an object that makes it, or the name of another shape.
 ///
@@ -46,6 +50,44 @@ impl WrittenShape {
     /// makes a shape is checked by [`Scene::build`](crate::Scene::build).
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
         Document::parse(text).map(|document| Self::new(document.into_value()))
+    }
+
+    /// A shape made in code, as a file holds it: the same node, and the same bits of every
+    /// distance, when it is read. What the shape holds more than once is written as often.
+    ///
+    /// # Errors
+    ///
+    /// If the shape holds what files cannot say (a kernel, field or closure of a user), a rotation
+    /// that deviates from orthonormal by more than 1e-9, or more than a million nodes.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_scene::WrittenShape;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let cup = Shape::cylinder(0.04, 0.09)? - Shape::cylinder(0.037, 0.08)?;
+    /// let written = WrittenShape::of(&cup)?;
+    /// assert_eq!(WrittenShape::from_json(&written.to_json())?.build::<3>()?, cup);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn of<const D: usize>(shape: &Shape<D>) -> Result<Self, SceneError> {
+        Writer::new(IndexMap::new()).shape(shape).map_err(|problem| problem.located(None))
+    }
+
+    /// Makes the shape, which must not refer to another by name.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, with its path; [`ShapeError`](palpate_field::ShapeError)s as they say.
+    pub fn build<const D: usize>(&self) -> Result<Shape<D>, SceneError> {
+        build::alone(self).map_err(|problem| problem.located(None))
+    }
+
+    /// The JSON text, as it stands in a scene file.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        json::write(&self.0)
     }
 
     /// Takes a JSON value.

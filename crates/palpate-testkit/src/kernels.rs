@@ -3,7 +3,7 @@
 
 //! From a name in the catalogue to the type of its kernel.
 
-use palpate_field::kernel::{self, Argument, Entry, Primitive};
+use palpate_field::kernel::{self, Argument, Entry, NamedKernel};
 use palpate_field::{Shape, ShapeError};
 
 /// What to do with a kernel whose type is only known by name.
@@ -12,7 +12,7 @@ pub trait Visit<const D: usize> {
     type Output;
 
     /// Called with the kernel.
-    fn visit<K: Primitive<D>>(self, kernel: K) -> Self::Output;
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> Self::Output;
 }
 
 /// What differs between the plane and space.
@@ -51,9 +51,9 @@ macro_rules! dimension {
                 visit: V,
             ) -> Result<V::Output, ShapeError> {
                 $(
-                    if name == <$kernel as Primitive<$dimension>>::NAME {
+                    if name == <$kernel as NamedKernel<$dimension>>::NAME {
                         let kernel =
-                            <$kernel as Primitive<$dimension>>::from_arguments(arguments)?;
+                            <$kernel as NamedKernel<$dimension>>::from_arguments(arguments)?;
                         return Ok(visit.visit(kernel));
                     }
                 )*
@@ -94,7 +94,7 @@ pub struct IntoShape;
 impl<const D: usize> Visit<D> for IntoShape {
     type Output = Shape<D>;
 
-    fn visit<K: Primitive<D>>(self, kernel: K) -> Shape<D> {
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> Shape<D> {
         Shape::from_kernel(kernel)
     }
 }

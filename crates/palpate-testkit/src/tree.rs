@@ -7,7 +7,7 @@
 //! the operators' definitions directly, in any number: what the nodes of
 //! `palpate-field` must agree with.
 
-use palpate_field::kernel::{Argument, Primitive};
+use palpate_field::kernel::{Argument, NamedKernel};
 use palpate_field::operator::{Copies, Profile};
 use palpate_field::scalar::{Circular, Cubic, Exponential, Quadratic, Quartic, Root, Scalar};
 use palpate_field::{Pose, Shape, ShapeError, Vector};
@@ -154,7 +154,7 @@ struct At<S, const D: usize>(Vector<S, D>);
 impl<S: Scalar, const D: usize> Visit<D> for At<S, D> {
     type Output = S;
 
-    fn visit<K: Primitive<D>>(self, kernel: K) -> S {
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> S {
         kernel.distance(self.0)
     }
 }

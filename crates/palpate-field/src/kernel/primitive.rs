@@ -82,7 +82,7 @@ pub enum ModelRule {
 /// A kernel with a name, which can be made from arguments.
 ///
 /// Implemented by the `primitive!` declaration beside each kernel.
-pub trait Primitive<const D: usize>: Kernel<D> + Sized {
+pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     /// The name in scene files.
     const NAME: &'static str;
     /// The primitive described in one sentence.
@@ -452,7 +452,7 @@ macro_rules! primitive {
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
-        impl<$($generics)*> $crate::kernel::Primitive<$dimension> for $kernel {
+        impl<$($generics)*> $crate::kernel::NamedKernel<$dimension> for $kernel {
             const NAME: &'static str = stringify!($name);
             const ABOUT: &'static str = $about;
             const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
@@ -469,7 +469,7 @@ macro_rules! primitive {
             ) -> Result<Self, $crate::error::ShapeError> {
                 let name = stringify!($name);
                 let parameters =
-                    <Self as $crate::kernel::Primitive<$dimension>>::PARAMETERS;
+                    <Self as $crate::kernel::NamedKernel<$dimension>>::PARAMETERS;
                 $crate::kernel::primitive::check_count(name, parameters, arguments)?;
                 let mut pairs = parameters.iter().zip(arguments);
                 let mut next = || pairs.next().ok_or($crate::error::ShapeError::Count {

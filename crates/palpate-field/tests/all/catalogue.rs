@@ -5,7 +5,7 @@
 
 use palpate_field::catalogue::{ALIASES, Entry};
 use palpate_field::kernel::{
-    Argument, CappedTorus, Cuboid, Polygon, Primitive, RegularStar, Segment, Simplex,
+    Argument, CappedTorus, Cuboid, NamedKernel, Polygon, RegularStar, Segment, Simplex,
     TriangularPrism,
 };
 use palpate_field::{Node, Shape, ShapeError, Vector};
@@ -18,7 +18,7 @@ struct Arguments;
 impl<const D: usize> Visit<D> for Arguments {
     type Output = Vec<Argument>;
 
-    fn visit<K: Primitive<D>>(self, kernel: K) -> Vec<Argument> {
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> Vec<Argument> {
         kernel.arguments()
     }
 }

@@ -8,7 +8,9 @@
 //! bits of the kernel.
 
 use palpate_field::field::Placement;
-use palpate_field::kernel::{Ball, CappedCone, Cuboid, Kernel, Primitive, RegularStar, Torus};
+use palpate_field::kernel::{
+    Ball, CappedCone, Cuboid, Kernel, NamedKernel, RegularStar, Torus,
+};
 use palpate_field::scalar::{Expression, Quadratic, Recorded, Scalar};
 use palpate_field::{Point, Pose, Promise, Rotation, Shape, ShapeError, Vector};
 use palpate_testkit::arbitrary::Turn;
@@ -58,7 +60,7 @@ struct Agrees<const D: usize>(Vec<Point<D>>);
 impl<const D: usize> Visit<D> for Agrees<D> {
     type Output = Result<(), String>;
 
-    fn visit<K: Primitive<D>>(self, kernel: K) -> Result<(), String> {
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> Result<(), String> {
         let formula = recorded(|p| kernel.distance(p));
         for p in self.0 {
             let direct: f64 = kernel.distance(p);

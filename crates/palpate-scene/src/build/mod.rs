@@ -9,6 +9,8 @@ mod operator;
 mod primitive;
 mod size;
 
+use std::any::Any;
+
 use indexmap::IndexSet;
 use palpate_field::{Point, Pose, Shape};
 
@@ -18,7 +20,9 @@ use crate::guide::WrittenGuide;
 use crate::pose::{Turning, Turns, vector};
 use crate::problem::Problem;
 use crate::scene::{Dimension, Scene};
+use crate::shape::WrittenShape;
 use builder::{Builder, Space};
+pub(crate) use size::MOST;
 
 /// A built scene, in its dimension.
 #[derive(Clone, Debug)]
@@ -72,6 +76,19 @@ pub struct BuiltBody<const D: usize> {
     pub world_from_body: Pose<D>,
     /// Its material.
     pub material: Material,
+}
+
+/// Builds a shape that refers to no other.
+pub(crate) fn alone<const D: usize>(written: &WrittenShape) -> Result<Shape<D>, Problem> {
+    let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
+    let scene = Scene::new(dimension);
+    let mut builder = Builder::new(&scene);
+    let shape: Box<dyn Any> = match dimension {
+        Dimension::Two => Box::new(builder.shape::<2>(written)?),
+        Dimension::Three => Box::new(builder.shape::<3>(written)?),
+    };
+    let shape = shape.downcast().map_err(|_| Problem::new("shapes are in 2D or 3D"));
+    shape.map(|shape| *shape)
 }
 
 /// Checks and builds a scene.

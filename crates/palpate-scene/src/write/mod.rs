@@ -14,7 +14,7 @@ use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::scene::{Dimension, Scene, WrittenBody};
 use crate::written_material::WrittenMaterial;
-use shape::Writer;
+pub(crate) use shape::Writer;
 
 /// A shape made in code as a body of a scene: with its name, and where and of what it is.
 ///

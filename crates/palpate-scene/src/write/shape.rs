@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::{rotation, translation};
 use crate::angle::degrees;
+use crate::build::MOST;
 use crate::catalogue::file_key;
 use crate::keys;
 use crate::pose;
@@ -27,28 +28,30 @@ fn address<const D: usize>(shape: &Shape<D>) -> Address {
 }
 
 /// Writes shapes, those that are there more than once as named ones.
-pub(super) struct Writer {
+pub(crate) struct Writer {
     /// How often each shape is held.
     uses: HashMap<Address, usize>,
     /// The names of those that are written already.
     names: HashMap<Address, String>,
     /// The named shapes of the scene.
     shapes: IndexMap<String, WrittenShape>,
+    /// How many objects were written.
+    objects: usize,
 }
 
 impl Writer {
     /// A writer for a scene that has `shapes` already.
-    pub(super) fn new(shapes: IndexMap<String, WrittenShape>) -> Self {
-        Self { uses: HashMap::new(), names: HashMap::new(), shapes }
+    pub(crate) fn new(shapes: IndexMap<String, WrittenShape>) -> Self {
+        Self { uses: HashMap::new(), names: HashMap::new(), shapes, objects: 0 }
     }
 
     /// The named shapes, those of this writer included.
-    pub(super) fn finish(self) -> IndexMap<String, WrittenShape> {
+    pub(crate) fn finish(self) -> IndexMap<String, WrittenShape> {
         self.shapes
     }
 
     /// Counts the uses of a shape and of those in it; the shape must outlive the writer.
-    pub(super) fn count<const D: usize>(&mut self, shape: &Shape<D>) {
+    pub(crate) fn count<const D: usize>(&mut self, shape: &Shape<D>) {
         let uses = self.uses.entry(address(shape)).or_default();
         *uses += 1;
         if *uses > 1 {
@@ -80,7 +83,7 @@ impl Writer {
     }
 
     /// A shape that was counted, or the reference to it.
-    pub(super) fn shape<const D: usize>(
+    pub(crate) fn shape<const D: usize>(
         &mut self,
         shape: &Shape<D>,
     ) -> Result<WrittenShape, Problem> {
@@ -91,6 +94,10 @@ impl Writer {
         let address = address(shape);
         if let Some(name) = self.names.get(&address) {
             return Ok(name.as_str().into());
+        }
+        self.objects += 1;
+        if self.objects > MOST {
+            return Err(Problem::new(format!("a file holds at most {MOST} shapes")));
         }
         let json = self.object(shape.node())?;
         if self.uses.get(&address).is_none_or(|uses| *uses < 2) {

@@ -9,7 +9,7 @@ use palpate_field::operator::{Copies, Profile};
 use palpate_field::scalar::{Dual, Scalar};
 use palpate_field::{Kernel, Point, Pose, Promise, Rotation, Shape, ShapeError, Vector};
 use palpate_haptics::Material;
-use palpate_scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody};
+use palpate_scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody, WrittenShape};
 use palpate_testkit::arbitrary::{Turn, arguments, point, tree};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
@@ -434,4 +434,20 @@ fn bodies_of_another_dimension_are_refused() {
     let circle = Shape::circle(1.0).unwrap();
     let error = Scene::new(Dimension::Three).with_bodies([SceneBody::new("flat", circle)]);
     assert_eq!(error.unwrap_err().to_string(), "bodies: the scene is 3D, its bodies are 2D");
+}
+
+#[test]
+fn a_shape_alone_is_written_and_read_without_a_scene() {
+    let pin = Shape::cylinder(0.002, 0.03).unwrap();
+    let pair = pin.clone().translated([0.01, 0.0, 0.0]).unwrap() | pin;
+    let written = WrittenShape::of(&pair).unwrap();
+    assert_eq!(written.build::<3>().unwrap(), pair);
+    assert_eq!(WrittenShape::from_json(&written.to_json()).unwrap(), written);
+
+    let flat = written.build::<2>().unwrap_err();
+    assert_eq!(flat.path, "union[0].of.cylinder");
+    let named = WrittenShape::reference("cup").build::<3>().unwrap_err();
+    assert_eq!(named.to_string(), "unknown shape `cup`; there are none here");
+    let opaque = Shape::from_fn(Promise::lipschitz(None, 1.0), |p| p.0[1]);
+    assert_eq!(WrittenShape::of(&(pair | opaque)).unwrap_err().path, "union[2]");
 }

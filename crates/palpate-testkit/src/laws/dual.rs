@@ -3,7 +3,7 @@
 
 //! Gradients written by hand are the derivatives of the formula.
 
-use palpate_field::kernel::Primitive;
+use palpate_field::kernel::NamedKernel;
 use palpate_field::scalar::Dual;
 use palpate_field::{Point, Shape, Vector};
 
@@ -30,7 +30,7 @@ pub struct GradientIsTheDual<const D: usize> {
 impl<const D: usize> Visit<D> for GradientIsTheDual<D> {
     type Output = Result<(), String>;
 
-    fn visit<K: Primitive<D>>(self, kernel: K) -> Result<(), String> {
+    fn visit<K: NamedKernel<D>>(self, kernel: K) -> Result<(), String> {
         let shape = Shape::from_kernel(kernel.clone());
         for p in self.points {
             let (f, g): (f64, Vector<f64, D>) = kernel.distance_gradient(p);
