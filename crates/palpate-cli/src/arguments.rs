@@ -18,8 +18,8 @@ Examples:
   palpate plot scenes/memoir_star.json --output star.svg
   palpate check scenes/cup.json --json
 
-Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input is bad, 130 if it was
-interrupted.";
+Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input cannot be used,
+130 if a signal ended the run.";
 
 /// Signed distance functions that can be touched.
 #[derive(Debug, Parser)]
@@ -39,7 +39,7 @@ Examples:
   palpate feel scenes/cup.json --path hand.csv --rate 2000
   palpate feel --points 10 --fast --json")]
     Feel(FeelOptions),
-    /// Distance, gradient and nearest surface point, at one point or many.
+    /// Print distance, gradient and nearest surface point, at one point or many.
     #[command(after_help = "\
 Examples:
   palpate eval scenes/s3.json --at 0.1,0.5,-0.2
@@ -48,19 +48,19 @@ Examples:
 
 The points file has the header x_m,y_m,z_m (x_m,y_m in 2D).")]
     Eval(EvalOptions),
-    /// Where the bodies of a scene touch, with proof; status 1 if none do.
+    /// Find where the bodies of a scene touch, with a proof; status 1 if none do.
     #[command(after_help = "\
 Examples:
   palpate contact scenes/peg_in_hole.json
   palpate contact scenes/nut_on_bolt.json --margin 0.0002 --json
   palpate contact scenes/gears.json --tolerance 1e-6
 
-Bounds are of the separation: between bodies that are exact outside, their distance; of
-bodies that overlap, minus the width of the widest ball in both. The truth lies between
-them, rounding included. A pair that the budget leaves open is undecided, with bounds.")]
+The separation of bodies that are exact outside is their distance; that of bodies that
+overlap is minus the diameter of the largest ball inside both. It lies between the printed
+bounds, which include rounding. A pair that the budget leaves open is undecided.")]
     Contact(ContactOptions),
-    /// Follow a local search over a triangle or a segment, or between two bodies, beside
-    /// what is proven.
+    /// Compare a local search over a triangle or a segment, or between two bodies, with the
+    /// proven minimum.
     #[command(after_help = "\
 Examples:
   palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99
@@ -69,8 +69,9 @@ Examples:
   palpate descend scenes/s3.json --segment -1,0,0 1,0.2,0.1 --method golden_section --json
   palpate descend scenes/memoir_two_bodies.json --start -0.2,0.5 --start 0.15,0.4
 
-With --start the search is for a point in the first two bodies of the scene. A local search finds an upper bound of the least value and proves nothing; what it
-missed is said.")]
+With --start the search is for a point inside the first two bodies of the scene. A local
+search finds an upper bound of the least value and proves nothing; the answer says by how
+much the search missed the proven minimum.")]
     Descend(DescendOptions),
     /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
     #[command(after_help = "\
@@ -83,35 +84,35 @@ Examples:
   palpate plot scenes/memoir_star.json --map promise --output promise.png
   palpate plot scenes/peg_in_hole.json --contacts --proof --output proof.png")]
     Plot(PlotOptions),
-    /// Draw every primitive and operator, many small pictures on a few sheets.
+    /// Draw every primitive and operator as small pictures on a few sheets.
     #[command(after_help = "\
 Examples:
   palpate gallery
   palpate gallery --output pictures --map promise --plane xy
   palpate gallery --each --format svg --json")]
     Gallery(GalleryOptions),
-    /// Check a scene file; status 1 and the place if something is wrong.
+    /// Check a scene file; status 1, with the line, if it is wrong.
     #[command(
         after_help = "Examples:\n  palpate check scenes/cup.json\n  palpate check scenes/cup.json --json"
     )]
     Check(CheckOptions),
-    /// Volume, mass, centroid and moments of the bodies, with bounds on their errors.
+    /// Compute volume, mass, centroid and moments of the bodies, with error bounds.
     #[command(after_help = "\
 Examples:
   palpate mass scenes/cup.json
   palpate mass scenes/cup.json --density 7850 --tolerance 1e-4 --json
 
-Second moments are the integrals of density times coordinates about the centroid; the
-inertia tensor is their trace times the identity less them. In 2D a body is one metre
-thick. Status 1 if the error of a volume stays above the tolerance.")]
+Second moments are the integrals of density times products of coordinates about the
+centroid; the inertia tensor is their trace times the identity, minus the second moments.
+In 2D a body is one metre thick. Status 1 if the error of a volume stays above the tolerance.")]
     Mass(MassOptions),
-    /// Check a mesh file (OBJ, STL, PLY, GLB): is it watertight, what is odd about it.
+    /// Check whether a mesh file (OBJ, STL, PLY, GLB) is watertight, and list its defects.
     #[command(after_help = "\
 Examples:
   palpate mesh testdata/meshes/nut.ply
   palpate mesh part.stl --scale 0.001 --json
 
-Status 1 if the mesh is not watertight, or has triangles without an area.")]
+Status 1 if the mesh is not watertight, or has triangles without area.")]
     Mesh(MeshOptions),
     /// Print the JSON schema of scene files.
     #[command(after_help = "Examples:\n  palpate schema > scene.schema.json")]
@@ -119,10 +120,10 @@ Status 1 if the mesh is not watertight, or has triangles without an area.")]
     /// List the primitives: parameters, units, promises, how they bound cells.
     #[command(after_help = "Examples:\n  palpate shapes\n  palpate shapes --json")]
     Shapes(ShapesOptions),
-    /// List the devices that can be simulated: limits, sources, what of it is assumed.
+    /// List the devices that can be simulated: limits, sources, assumed numbers.
     #[command(after_help = "Examples:\n  palpate devices\n  palpate devices --json")]
     Devices(DevicesOptions),
-    /// Measure how late a loop wakes on this machine, and what would help.
+    /// Measure how late a loop wakes on this machine, and advise how to wait.
     #[command(
         after_help = "Examples:\n  palpate jitter\n  palpate jitter --rate 4000 --duration 20 --json"
     )]
@@ -130,13 +131,13 @@ Status 1 if the mesh is not watertight, or has triangles without an area.")]
 }
 
 impl Default for Command {
-    /// What `palpate` alone does: `palpate feel` with its defaults.
+    /// `palpate` without a command is `palpate feel` with its defaults.
     fn default() -> Self {
         Self::Feel(FeelOptions::parse_from_nothing())
     }
 }
 
-/// What is felt, and how.
+/// The options of `palpate feel`.
 #[derive(Args, Debug)]
 pub(crate) struct FeelOptions {
     /// The scene file; the built-in gallery if left out.
@@ -144,24 +145,24 @@ pub(crate) struct FeelOptions {
     /// Ticks a second [Hz].
     #[arg(long, default_value_t = 1000.0)]
     pub(crate) rate: f64,
-    /// How long to feel [s]; 10 s, or as long as the hand path.
+    /// How long to feel [s]; the length of the hand path, or else 10 s, if left out.
     #[arg(long)]
     pub(crate) duration: Option<f64>,
-    /// The hand's path: time_s,x_m,y_m[,z_m] and perhaps point; a built-in one over
-    /// the surfaces if left out.
+    /// The hand's path, with the columns time_s,x_m,y_m[,z_m] and optionally point; a built-in
+    /// tour of the surfaces if left out.
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
-    /// What the hand holds: recorded (it follows its path whatever the force),
-    /// simulated:NAME (a device that gives way, with the limits of `palpate devices`; one that
-    /// turns, as sigma7, turns a tool with a shape), or glove (no force feedback). On the
-    /// built-in gallery simulated:omega, else recorded, if left out.
+    /// What the hand holds: recorded (the hand follows its path whatever the force),
+    /// simulated:NAME (a device of `palpate devices` with its limits, in a hand that yields;
+    /// one with rotation, such as sigma7, turns a tool with a shape), or glove (no force
+    /// feedback). If left out, simulated:omega on the built-in gallery, else recorded.
     #[arg(long)]
     pub(crate) device: Option<DeviceChoice>,
-    /// How many contact points the built-in hand has; those of the scene's tool, or 10 on the
-    /// built-in gallery, else 1, if left out. A tool with a shape is felt as a whole instead.
+    /// The number of contact points of the built-in hand; if left out, that of the scene's
+    /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
     #[arg(long, alias = "contacts", conflicts_with = "path")]
     pub(crate) points: Option<usize>,
-    /// Refuse bodies that the device cannot render, instead of making them softer.
+    /// Refuse bodies that the device cannot render stably, instead of making them softer.
     #[arg(long)]
     pub(crate) strict: bool,
     /// Stiffness of the surface [N/m]; that of each body if left out.
@@ -170,21 +171,21 @@ pub(crate) struct FeelOptions {
     /// Damping of the surface [N·s/m]; that of each body if left out.
     #[arg(long)]
     pub(crate) damping: Option<f64>,
-    /// The largest force on a contact point [N]; the tool's, the simulated device's, or 3.3 N,
-    /// if left out.
+    /// The force limit of a contact point [N]; if left out, that of the tool or of the
+    /// simulated device, or else 3.3 N.
     #[arg(long)]
     pub(crate) max_force: Option<f64>,
-    /// Radius of the ball that touches, or of those that cover a tool with a shape [m]; the
-    /// tool's, or 2 mm, if left out.
+    /// The radius of the probe, or of the balls that cover a tool with a shape [m]; the tool's,
+    /// or else 2 mm, if left out.
     #[arg(long)]
     pub(crate) radius: Option<f64>,
-    /// One tick after the other, without waiting for the clock.
+    /// Run the ticks without waiting for the clock.
     #[arg(long)]
     pub(crate) fast: bool,
     /// Write every tick to a CSV file.
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
-    /// Write what all contact points vibrate like to a WAV file.
+    /// Write the vibration of all contact points to a WAV file.
     #[arg(long, value_name = "WAV")]
     pub(crate) wav: Option<PathBuf>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.
@@ -195,12 +196,12 @@ pub(crate) struct FeelOptions {
     pub(crate) json: bool,
 }
 
-/// What a hand holds.
+/// What the hand holds.
 #[derive(Clone, Debug)]
 pub(crate) enum DeviceChoice {
     /// A hand that follows its path whatever the force.
     Recorded,
-    /// A device of this profile in a hand that gives way.
+    /// A device of this profile in a hand that yields.
     Simulated(Box<DeviceProfile>),
     /// Fingers without force feedback.
     Glove,
@@ -217,7 +218,7 @@ impl FromStr for DeviceChoice {
                 let profile = profile_named(name).map_err(|unknown| unknown.to_string())?;
                 Ok(Self::Simulated(Box::new(profile)))
             }
-            _ => Err(format!("{text:?} is not recorded, simulated:NAME or glove")),
+            _ => Err(format!("must be recorded, simulated:NAME or glove, got {text:?}")),
         }
     }
 }
@@ -234,7 +235,7 @@ impl FeelOptions {
     }
 }
 
-/// What is asked, and where.
+/// The options of `palpate eval`.
 #[derive(Args, Debug)]
 pub(crate) struct EvalOptions {
     /// The scene file.
@@ -250,19 +251,19 @@ pub(crate) struct EvalOptions {
     /// Many points, from a CSV file.
     #[arg(long, value_name = "CSV", conflicts_with = "at")]
     pub(crate) points: Option<PathBuf>,
-    /// Where the answers for many points go; standard output if left out.
+    /// The file for the answers to many points; standard output if left out.
     #[arg(long, value_name = "FILE", requires = "points")]
     pub(crate) output: Option<PathBuf>,
-    /// Threads that evaluate; as many as the machine has if left out. The answers
-    /// have the same bits for any number.
+    /// The number of threads; as many as the machine has if left out. Answers have the same
+    /// bits for any number.
     #[arg(long, requires = "points")]
     pub(crate) threads: Option<usize>,
-    /// Print JSON: one object, or one a line.
+    /// Print JSON: one object, or one per line for many points.
     #[arg(long)]
     pub(crate) json: bool,
 }
 
-/// Where a search goes down, and how.
+/// The options of `palpate descend`.
 #[derive(Args, Debug)]
 pub(crate) struct DescendOptions {
     /// The scene file.
@@ -294,11 +295,12 @@ pub(crate) struct DescendOptions {
     )]
     pub(crate) start: Vec<String>,
     /// The search: projected_gradient, frank_wolfe or golden_section over an element,
-    /// alternating_projection or minimax_proximal between bodies; the first if left out.
+    /// alternating_projection or minimax_proximal between bodies; the first of these if left
+    /// out.
     #[arg(long)]
     pub(crate) method: Option<String>,
-    /// How far apart the proven bounds may be [m]; a ten-thousandth of the longest edge,
-    /// of the element or of the scene's box, if left out.
+    /// How far apart the proven bounds may be [m]; a ten-thousandth of the longest edge of the
+    /// element or of the scene's box if left out.
     #[arg(long)]
     pub(crate) tolerance: Option<f64>,
     /// Draw the path over the isolines, on the element's plane: .svg or .png.
@@ -309,7 +311,7 @@ pub(crate) struct DescendOptions {
     pub(crate) json: bool,
 }
 
-/// What is drawn.
+/// The options of `palpate plot`.
 #[derive(Args, Debug)]
 pub(crate) struct PlotOptions {
     /// The scene file.
@@ -321,29 +323,29 @@ pub(crate) struct PlotOptions {
     /// The third coordinate of a plane along two axes [m].
     #[arg(long, allow_hyphen_values = true)]
     pub(crate) at: Option<f64>,
-    /// The point in the middle of the picture, x,y or x,y,z [m]; the whole scene if
-    /// left out. A plane along two axes goes through it.
+    /// The point in the middle of the picture, x,y or x,y,z [m]; the picture shows the whole
+    /// scene if left out. A plane along two axes goes through this point.
     #[arg(long, requires = "size", allow_hyphen_values = true)]
     pub(crate) centre: Option<String>,
-    /// How wide and high a part of the scene is shown [m].
+    /// Width and height of the part of the scene that is shown [m].
     #[arg(long, requires = "centre", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// What colours show.
     #[arg(long, value_enum, default_value_t = Map::Distance)]
     pub(crate) map: Map,
-    /// The distance between isolines [m]; for the map of distances.
+    /// The distance between isolines [m]; only for --map distance.
     #[arg(long)]
     pub(crate) step: Option<f64>,
-    /// Where bodies touch: contacts, normals, and the ways between bodies. A plane along
-    /// two axes goes through the deepest contact if it is not said where.
+    /// Draw contacts, normals, and the shortest segments between bodies that are apart. A plane
+    /// along two axes goes through the deepest contact unless --at or --centre says where.
     #[arg(long)]
     pub(crate) contacts: bool,
-    /// The proof: the boxes that were ruled out.
+    /// Draw the proof: the boxes that the search ruled out.
     #[arg(long, requires = "contacts")]
     pub(crate) proof: bool,
     #[command(flatten)]
     pub(crate) question: ContactQuestion,
-    /// The picture: .svg or .png; the scene's name with .svg if left out.
+    /// The picture, .svg or .png; the scene's name with .svg if left out.
     #[arg(long)]
     pub(crate) output: Option<PathBuf>,
     /// The width of a PNG [pixels].
@@ -354,15 +356,15 @@ pub(crate) struct PlotOptions {
     pub(crate) json: bool,
 }
 
-/// Where bodies touch.
+/// The options of `palpate contact`.
 #[derive(Args, Debug)]
 pub(crate) struct ContactOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) question: ContactQuestion,
-    /// Pairs that are apart too, with the bounds of their separation; as is done for
-    /// scenes of at most 12 bodies.
+    /// List pairs that are apart too, with the bounds of their separation; always on for scenes
+    /// of at most 12 bodies.
     #[arg(long)]
     pub(crate) all: bool,
     /// Print JSON.
@@ -370,41 +372,42 @@ pub(crate) struct ContactOptions {
     pub(crate) json: bool,
 }
 
-/// What counts as touching, and how finely it is looked at.
+/// What counts as touching, and how finely contacts are found.
 #[derive(Args, Debug)]
 pub(crate) struct ContactQuestion {
-    /// Up to this gap bodies touch [m]; 0.2 % of the smallest body if left out.
+    /// The largest gap at which bodies count as touching [m]; 0.2 % of the smallest body if
+    /// left out.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) margin: Option<f64>,
-    /// How finely regions of contact are looked at [m]; 4 % of the smallest body if left
-    /// out.
+    /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
+    /// left out.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) spacing: Option<f64>,
     /// How far apart the bounds of a separation may be [m]; half the margin if left out.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
-    /// The most evaluations of fields for a pair.
+    /// The budget: the most evaluations of fields for each pair.
     #[arg(long, default_value_t = 200_000)]
     pub(crate) budget: u32,
 }
 
-/// What the gallery shows.
+/// The options of `palpate gallery`.
 #[derive(Args, Debug)]
 pub(crate) struct GalleryOptions {
-    /// The folder that the pictures go to; it is made if need be.
+    /// The folder for the pictures; created if it is missing.
     #[arg(long, value_name = "DIR", default_value = "gallery")]
     pub(crate) output: PathBuf,
     /// What colours show.
     #[arg(long, value_enum, default_value_t = Map::Distance)]
     pub(crate) map: Map,
-    /// The plane through the middle of shapes of space; xy and xz if left out. May be
-    /// given more than once.
+    /// The plane through the middle of each shape of space; xy and xz if left out. May be given
+    /// more than once.
     #[arg(long, value_enum)]
     pub(crate) plane: Vec<Plane>,
-    /// Draw a picture of each shape too, in a folder beside its sheet.
+    /// Also draw each shape as a picture of its own, in a folder beside its sheet.
     #[arg(long)]
     pub(crate) each: bool,
-    /// The kind of the pictures.
+    /// The format of the pictures.
     #[arg(long, value_enum, default_value_t = Format::Png)]
     pub(crate) format: Format,
     /// The width of a PNG [pixels].
@@ -475,8 +478,8 @@ pub(crate) enum Map {
     Distance,
     /// The direction of the gradient, and where its length is not one.
     Gradient,
-    /// What values promise on each side, and how they compare with it: in the plane, the
-    /// value over the true distance; in space, the length of the gradient.
+    /// The promise of each side, and how values compare with it: in the plane, the value over
+    /// the true distance; in space, the length of the gradient.
     Promise,
 }
 
@@ -491,7 +494,7 @@ impl Map {
     }
 }
 
-/// What is checked.
+/// The options of `palpate check`.
 #[derive(Args, Debug)]
 pub(crate) struct CheckOptions {
     /// The scene file.
@@ -501,7 +504,7 @@ pub(crate) struct CheckOptions {
     pub(crate) json: bool,
 }
 
-/// What is weighed.
+/// The options of `palpate mass`.
 #[derive(Args, Debug)]
 pub(crate) struct MassOptions {
     /// The scene file.
@@ -509,10 +512,10 @@ pub(crate) struct MassOptions {
     /// The density of all bodies [kg/m³].
     #[arg(long, default_value_t = 1000.0)]
     pub(crate) density: f64,
-    /// The error of the volume, in parts of it, at which to stop.
+    /// The relative error of the volume at which to stop.
     #[arg(long, default_value_t = 1e-3)]
     pub(crate) tolerance: f64,
-    /// The most cells to look at; a million take 160 MB.
+    /// The budget: the most cells; a million take 160 MB.
     #[arg(long, default_value_t = 3_000_000)]
     pub(crate) cells: usize,
     /// Print JSON.
@@ -520,15 +523,15 @@ pub(crate) struct MassOptions {
     pub(crate) json: bool,
 }
 
-/// Which mesh is checked.
+/// The options of `palpate mesh`.
 #[derive(Args, Debug)]
 pub(crate) struct MeshOptions {
     /// The mesh file: .obj, .stl, .ply or .glb.
     pub(crate) file: PathBuf,
-    /// How many metres its unit is: 0.001 for millimetres.
+    /// The unit of the file in metres: 0.001 for millimetres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) scale: Option<f64>,
-    /// Make one vertex of those that are exactly equal. In STL they are already.
+    /// Merge vertices that are exactly equal, as is always done for STL.
     #[arg(long)]
     pub(crate) weld: bool,
     /// Print JSON.
@@ -536,10 +539,10 @@ pub(crate) struct MeshOptions {
     pub(crate) json: bool,
 }
 
-/// Which primitives are listed.
+/// The options of `palpate shapes`.
 #[derive(Args, Debug)]
 pub(crate) struct ShapesOptions {
-    /// Those of one dimension alone.
+    /// List only the primitives of this dimension.
     #[arg(long, value_enum)]
     pub(crate) dimension: Option<Dimension>,
     /// Print JSON.
@@ -547,7 +550,7 @@ pub(crate) struct ShapesOptions {
     pub(crate) json: bool,
 }
 
-/// How devices are listed.
+/// The options of `palpate devices`.
 #[derive(Args, Debug)]
 pub(crate) struct DevicesOptions {
     /// Print JSON.
@@ -555,13 +558,13 @@ pub(crate) struct DevicesOptions {
     pub(crate) json: bool,
 }
 
-/// What loop is measured.
+/// The options of `palpate jitter`.
 #[derive(Args, Debug)]
 pub(crate) struct JitterOptions {
     /// Ticks a second, at most 10 kHz [Hz].
     #[arg(long, default_value_t = 1000.0)]
     pub(crate) rate: f64,
-    /// How long to measure, all ways to wait together [s].
+    /// How long to measure in all, shared by the ways to wait [s].
     #[arg(long, default_value_t = 5.0)]
     pub(crate) duration: f64,
     /// Print JSON.

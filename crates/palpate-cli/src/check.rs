@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate check`: is a scene file good?
+//! `palpate check`: checks a scene file.
 
 use std::io::Write;
 

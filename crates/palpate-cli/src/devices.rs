@@ -12,12 +12,12 @@ use crate::arguments::DevicesOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 
-/// A number of a profile, along axes or about them.
+/// A number of a profile, for translation or for rotation.
 struct Column<P: 'static> {
     /// The field.
     key: &'static str,
     unit: &'static str,
-    /// Two lines above the column; the unit is the third.
+    /// The first two lines of the column's head; the third is the unit.
     head: [&'static str; 2],
     of: fn(&P) -> f64,
 }
@@ -124,7 +124,10 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     let along: Vec<_> =
         PROFILES.iter().map(|(name, profile)| (*name, profile, &*profile.assumed)).collect();
     write_table(&mut out, &COLUMNS, &along, 9)?;
-    writeln!(out, "those that turn, about their axes; without a torque, they sense it alone")?;
+    writeln!(
+        out,
+        "devices with rotation, about their axes; those without a torque only sense it"
+    )?;
     let about = PROFILES.iter().filter_map(|(name, profile)| {
         profile.turning.as_ref().map(|turning| (*name, turning, &*turning.assumed))
     });
@@ -140,7 +143,8 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     Ok(Outcome::Yes)
 }
 
-/// A row for each profile, with its name and what of it is assumed; columns `wide` places wide.
+/// A row for each profile, with its name and its assumed numbers; columns are `wide` characters
+/// wide.
 fn write_table<P>(
     out: &mut impl Write,
     columns: &[Column<P>],
@@ -161,7 +165,7 @@ fn write_table<P>(
     Ok(())
 }
 
-/// A number with a sign before it if it is assumed.
+/// A number, after a `~` if it is assumed.
 fn cell(value: f64, is_assumed: bool) -> String {
     let mark = if is_assumed { "~" } else { "" };
     let is_small = value < 1e-3 && value != 0.0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate gallery`: every primitive and operator, in small pictures.
+//! `palpate gallery`: draws every primitive and operator in small pictures.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,16 +21,16 @@ use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
 
-/// Every operator on a simple example, a body each.
+/// A scene with one body for each operator.
 const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
-/// Tiles in a row: longer names than those of the catalogue would not fit in six.
+/// Tiles in a row: with six, the longest names of the catalogue would not fit.
 const COLUMNS: usize = 5;
 /// Cells along a tile, two to a pixel of the figure.
 const TILE_CELLS: usize = 140;
 /// Room around a shape, as a share of its longest edge.
 const MARGIN: f64 = 0.2;
-/// What is shown of a shape without bounds, along each axis: about what the examples measure,
-/// and more of what is below, where the infinite cone is [m].
+/// The range shown of a shape without bounds, along each axis [m]: about the size of the
+/// examples, with more below, where the infinite cone is.
 const UNBOUNDED: [f64; 2] = [-1.2, 0.8];
 
 /// A shape with its name.
@@ -39,7 +39,7 @@ struct Specimen<const D: usize> {
     shape: Shape<D>,
 }
 
-/// What is drawn, and where it goes.
+/// The options of a run, its progress bar, and its requests to end.
 struct Work<'a> {
     options: &'a GalleryOptions,
     bar: ProgressBar,
@@ -68,8 +68,7 @@ pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Out
             ("shapes-of-space", "Shapes of space", &spatial),
             ("operators", "Operators", &operators),
         ] {
-            let title =
-                format!("{title}, cut along {} through their middle", name.to_uppercase());
+            let title = format!("{title}, {} slices through their middle", name.to_uppercase());
             written.extend(work.draw(&format!("{stem}-{name}"), &title, specimens, through)?);
         }
     }
@@ -85,7 +84,7 @@ pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Out
         output::answer().json(&answer)?;
     }
     Ok(if interrupt.is_asked() {
-        output::remark("interrupted: what was drawn is whole");
+        output::remark("interrupted: the pictures listed are complete, the others are missing");
         Outcome::Interrupted
     } else {
         Outcome::Yes
@@ -98,7 +97,7 @@ struct Written {
     shapes: Vec<String>,
 }
 
-/// A line for each picture.
+/// Prints a line for each picture.
 fn say(written: &[Written]) -> Result<(), Failure> {
     let mut out = output::answer();
     for picture in written {
@@ -112,8 +111,8 @@ fn say(written: &[Written]) -> Result<(), Failure> {
 }
 
 impl Work<'_> {
-    /// Draws `specimens` on one sheet, and on a picture each if that is asked for, and says
-    /// which pictures are done. If interrupted there is no sheet: it would not be whole.
+    /// Draws `specimens` on one sheet, and with `--each` on a picture each, and returns the
+    /// finished pictures. An interrupted run writes no sheet, which would be incomplete.
     fn draw<const D: usize>(
         &self,
         stem: &str,
@@ -181,8 +180,8 @@ impl Work<'_> {
         self.save(&figure, &self.picture(path)?, vec![specimen.name.clone()])
     }
 
-    /// A picture at `path`, which gets the ending of its kind. No two have one name, and
-    /// nothing is read.
+    /// A picture at `path` with the ending of its format. Names differ and the run reads no
+    /// file, so no output can overwrite another or an input.
     fn picture(&self, path: &Path) -> Result<Picture, Failure> {
         let path = path.with_extension(self.options.format.name());
         Picture::new(&mut Files::default(), &path)
@@ -245,9 +244,9 @@ fn operators() -> Result<Vec<Specimen<3>>, Failure> {
 
 fn caption(map: Map) -> &'static str {
     match map {
-        Map::Distance => "Distances; each shape at a scale of its own, its bar below",
-        Map::Gradient => "Directions of gradients; each shape at a scale of its own",
-        Map::Promise => "What values promise, and what they are; each at a scale of its own",
+        Map::Distance => "Distances; each shape at its own scale, with a scale bar",
+        Map::Gradient => "Directions of gradients; each shape at its own scale",
+        Map::Promise => "Promises, and how values compare; each shape at its own scale",
     }
 }
 

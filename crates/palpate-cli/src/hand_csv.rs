@@ -14,8 +14,7 @@ use crate::outcome::Failure;
 
 const AXES: [&str; 3] = ["x_m", "y_m", "z_m"];
 
-/// Where the coordinates are in a row: the columns named `prefix` and `x_m`, `y_m`
-/// (and `z_m` in space).
+/// The columns of the coordinates: `prefix` and then `x_m`, `y_m` (and `z_m` in space).
 pub(crate) fn columns<const D: usize>(
     header: &StringRecord,
     prefix: &str,
@@ -27,7 +26,7 @@ pub(crate) fn columns<const D: usize>(
             .ok_or_else(|| format!("line 1: there is no column {name} for a {D}D scene"))?;
     }
     if position(header, &format!("{prefix}z_m")).is_some() && D == 2 {
-        return Err("line 1: there is a column z_m, but the scene is 2D".to_owned());
+        return Err("line 1: the column z_m is for 3D scenes, but this scene is 2D".to_owned());
     }
     Ok(columns)
 }
@@ -36,8 +35,8 @@ fn position(header: &StringRecord, name: &str) -> Option<usize> {
     header.iter().position(|column| column == name)
 }
 
-/// Reads `time_s,x_m,y_m[,z_m]`, and perhaps `point`, which says whose row it is:
-/// one path for each contact point.
+/// Reads a path for each contact point from the columns `time_s,x_m,y_m[,z_m]` and, optionally,
+/// `point`, the number of the row's contact point.
 pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Failure> {
     let wrong = |problem: String| Failure::file(path, problem);
     let file = File::open(path).map_err(|error| Failure::file(path, error))?;
@@ -51,13 +50,12 @@ pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Fail
     for record in reader.records() {
         let record = record.map_err(|error| Failure::file(path, error))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let number =
-            |column: usize| -> Result<f64, Failure> {
-                let field = record.get(column).unwrap_or_default();
-                field.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                    wrong(format!("line {line}: a number is needed, got {field:?}"))
-                })
-            };
+        let number = |column: usize| -> Result<f64, Failure> {
+            let field = record.get(column).unwrap_or_default();
+            field.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                wrong(format!("line {line}: every field must be a number, got {field:?}"))
+            })
+        };
         let index = match point {
             None => 0,
             Some(column) => whole(record.get(column).unwrap_or_default(), paths.len())
@@ -85,12 +83,12 @@ pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Fail
         .collect()
 }
 
-/// The number of a contact point: one already seen, or the next.
+/// The number of a contact point: one of the `known`, or the next.
 fn whole(field: &str, known: usize) -> Result<usize, String> {
     match field.parse::<usize>() {
         Ok(index) if index <= known => Ok(index),
-        _ => {
-            Err(format!("points are numbered 0, 1, 2 … in order; got {field:?} after {known}"))
-        }
+        _ => Err(format!(
+            "points must be numbered 0, 1, 2 … in order, got {field:?} after {known} points"
+        )),
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Reading scenes and points.
+//! Reads scenes and points.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use palpate::scene::{AnyScene, BuiltScene, Scene};
 
 use crate::outcome::Failure;
 
-/// The scene that is felt if none is named.
+/// The built-in gallery, which `palpate feel` feels if no scene is named.
 const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
 
-/// A scene with the name it goes by in reports.
+/// A scene with its name in reports.
 pub(crate) struct Named {
     pub(crate) name: String,
     pub(crate) scene: AnyScene,
@@ -31,7 +31,7 @@ pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
     }
 }
 
-/// What is written in a file.
+/// The text of a file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|error| Failure::file(path, error))
 }
@@ -59,8 +59,8 @@ pub(crate) fn joined(numbers: &[f64]) -> String {
     numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// What is said where a scene must have bounds.
-pub(crate) const NO_BOUNDS: &str = "no body of the scene has bounds";
+/// The error of a scene without bounds where bounds are needed.
+pub(crate) const NO_BOUNDS: &str = "the scene must have a body with bounds";
 
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How a run is asked to end early.
+//! Requests to end a run early.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Asks a run to end early.
+/// A request to end a run early.
 ///
-/// A signal handler that finds [`at_once`](Self::at_once) set ends the process; else it sets both
-/// flags, and the command ends by itself: forces are set to zero first, then what was done is
-/// written and reported.
+/// A signal handler ends the process if [`at_once`](Self::at_once) is set. Otherwise it sets
+/// both flags, and the command ends by itself: it sets forces to zero, then writes and reports
+/// what is done.
 #[derive(Clone, Debug)]
 pub struct Interrupt {
     asked: Arc<AtomicBool>,
@@ -21,7 +21,7 @@ impl Interrupt {
     /// The exit status of a run that was asked to end.
     pub const STATUS: u8 = 130;
 
-    /// Nothing is asked yet.
+    /// No request yet.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -36,14 +36,14 @@ impl Interrupt {
         Arc::clone(&self.asked)
     }
 
-    /// `true` while a signal should end the process at once: the command has nothing to finish,
-    /// or was asked before.
+    /// `true` while a signal should end the process at once, because the command has nothing to
+    /// finish or was asked to end before.
     #[must_use]
     pub fn at_once(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.at_once)
     }
 
-    /// From now on the command looks whether it is asked to end.
+    /// Promises that from now on the command checks whether it is asked to end.
     pub(crate) fn heed(&self) {
         self.at_once.store(self.is_asked(), Ordering::Relaxed);
     }
@@ -52,7 +52,7 @@ impl Interrupt {
         self.asked.load(Ordering::Relaxed)
     }
 
-    /// The flag, for loops that look at it themselves.
+    /// The flag, for loops that read it themselves.
     pub(crate) fn flag(&self) -> &AtomicBool {
         &self.asked
     }

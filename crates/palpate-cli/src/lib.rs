@@ -3,8 +3,8 @@
 
 //! The palpate program as a function: signed distance functions that can be touched.
 //!
-//! [`run`] does what `palpate` does with a command line, on the standard output and error of the
-//! process. The allocator and the handling of signals are the caller's.
+//! [`run`] runs a command line as `palpate` does, on the standard output and error of the
+//! process. The caller chooses the allocator and handles signals.
 
 mod arguments;
 mod check;
@@ -51,8 +51,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     run_until(arguments, &Interrupt::new())
 }
 
-/// As [`run`], until `interrupt` asks for an end: what was done until then is written and
-/// reported, and the status is 130.
+/// As [`run`], but ends early when `interrupt` asks for it: what is done until then is written
+/// and reported, and the status is 130.
 ///
 /// # Examples
 ///

@@ -11,22 +11,23 @@ use palpate_cli::{Interrupt, run_until};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// Worlds are built of many small nodes: `docs/decisions/allocator.md`.
+/// Worlds are many small nodes, which this allocator frees fast: `docs/decisions/allocator.md`.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
     let interrupt = Interrupt::new();
     if let Err(error) = listen(&interrupt) {
-        eprintln!("palpate: signals cannot be handled: {error}");
+        eprintln!("palpate: cannot handle Ctrl-C and SIGTERM: {error}");
     }
     ExitCode::from(run_until(std::env::args_os(), &interrupt))
 }
 
-/// Has Ctrl-C and SIGTERM ask for an end; the second time they end the process at once.
+/// Lets Ctrl-C and SIGTERM ask the run to end; a second signal ends the process at once.
 fn listen(interrupt: &Interrupt) -> io::Result<()> {
     for signal in [SIGINT, SIGTERM] {
-        // In this order: a signal ends the process if the one before asked it to end.
+        // The order matters: a signal ends the process only if an earlier one asked the run to
+        // end.
         let status = Interrupt::STATUS.into();
         flag::register_conditional_shutdown(signal, status, interrupt.at_once())?;
         flag::register(signal, interrupt.at_once())?;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate mass`: what the bodies of a scene weigh.
+//! `palpate mass`: computes volume, mass and moments of the bodies of a scene.
 
 use std::io::Write;
 
@@ -80,7 +80,7 @@ fn report<const D: usize>(
     Ok(outcome)
 }
 
-/// Infinite errors are null.
+/// Writes infinite errors as null.
 fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
     let rows: Vec<_> = mass.second_moments.iter().map(|row| row.to_vec()).collect();
     json!({

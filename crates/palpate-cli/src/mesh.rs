@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate mesh`: is a mesh file good?
+//! `palpate mesh`: checks a mesh file.
 
 use std::io::Write;
 
@@ -68,13 +68,13 @@ fn in_words(report: &Report<3>) -> String {
         None => "  volume   none: not watertight".to_owned(),
     };
     let flaws = [
-        (report.boundary, "edges of one triangle alone"),
+        (report.boundary, "edges of one triangle only"),
         (report.non_manifold, "edges of more than two triangles"),
-        (report.inconsistent, "edges between triangles that do not agree on the inside"),
-        (report.degenerate, "triangles without an area"),
-        (report.duplicates, "triangles that are there already"),
+        (report.inconsistent, "edges between triangles that disagree on the inside"),
+        (report.degenerate, "triangles without area"),
+        (report.duplicates, "triangles that repeat an earlier one"),
         (report.unreferenced, "vertices of no triangle"),
-        (report.coincident, "vertices at the place of another: --weld joins them"),
+        (report.coincident, "vertices at the position of another: --weld joins them"),
     ];
     for (count, what) in flaws.into_iter().filter(|(count, _)| *count > 0) {
         words += &format!("\n  {count:<8} {what}");

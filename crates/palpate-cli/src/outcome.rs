@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How a command ends: yes, no, or not at all.
+//! How a command ends: with yes, with no, interrupted, or with a failure.
 
 use std::fmt;
 use std::io;
 
 use crate::interrupt::Interrupt;
 
-/// What a command answers.
+/// The answer of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Done; the answer is yes.
     Yes,
     /// Done; the answer is no.
     No,
-    /// Asked to end before all was done.
+    /// Interrupted before all was done.
     Interrupted,
 }
 
@@ -30,7 +30,7 @@ impl Outcome {
     }
 }
 
-/// Why a command could not answer.
+/// Why a command has no answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// What was wrong with the input, in a sentence.
@@ -48,7 +48,7 @@ impl Failure {
         Self::Input(problem.to_string())
     }
 
-    /// All that went wrong of several things that were done; nothing if all are good.
+    /// All failures of several results in one; `Ok` if there are none.
     pub(crate) fn any(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
         let failures = results.into_iter().filter_map(Result::err);
         let problems: Vec<_> = failures.map(|failure| failure.to_string()).collect();
@@ -60,7 +60,7 @@ impl Failure {
         Self::Input(format!("{}: {error}", path.display()))
     }
 
-    /// `true` if whoever reads the output has stopped, as `head` does: no error.
+    /// `true` if the reader of the output closed the pipe, as `head` does, which is no error.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -82,7 +82,7 @@ impl From<io::Error> for Failure {
 }
 
 impl From<csv::Error> for Failure {
-    /// That of a table that is written.
+    /// An error of a table that the command writes.
     fn from(error: csv::Error) -> Self {
         Self::Output(error.into())
     }

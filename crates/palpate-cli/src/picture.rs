@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Isolines of shapes, and picture files.
+//! Samples shapes for pictures, and writes picture files.
 
 use std::path::Path;
 
@@ -22,14 +22,14 @@ pub(crate) const WIDTH: u32 = 1200;
 
 /// A dimension whose shapes can be drawn.
 pub(crate) trait Drawable<const D: usize> {
-    /// The window that shows `bounds` on `plane`, with `margin` times its longer side
-    /// around it.
+    /// The window that shows `bounds` on `plane`, with a margin of `margin` times its longer
+    /// side.
     fn view(plane: &Slice, bounds: &Aabb<D>, margin: f64) -> Result<View, PlotError>;
 
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
 
-    /// What a picture measures to compare with a promise.
+    /// The number that a picture compares with the promise.
     const GAUGE: Gauge;
 
     /// The parts of a gradient to the right, up, and towards the viewer.
@@ -95,7 +95,7 @@ where
     })
 }
 
-/// What a picture asks for the values and gradients of `shape` on `plane`.
+/// A function of plane coordinates that gives values and gradients of `shape` on `plane`.
 pub(crate) fn slopes<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
@@ -119,7 +119,7 @@ where
     }
 }
 
-/// What colours show of `shape` on `plane`, its isolines if they show distances.
+/// The picture of `shape` on `plane` with the colours of `map`.
 pub(crate) fn mapped<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
@@ -145,7 +145,7 @@ where
     }
 }
 
-/// A picture that is to be written.
+/// A picture file to be written.
 #[derive(Debug)]
 pub(crate) struct Picture {
     destination: Destination,
@@ -153,15 +153,14 @@ pub(crate) struct Picture {
 }
 
 impl Picture {
-    /// A picture at `path`, of the kind that its ending says, as an output of the run of
-    /// `files`.
+    /// A picture at `path`, in the format of its ending, as an output of the run of `files`.
     pub(crate) fn new(files: &mut Files, path: &Path) -> Result<Self, Failure> {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let format = match ending.to_ascii_lowercase().as_str() {
             "svg" => Format::Svg,
             "png" => Format::Png,
             _ => {
-                let problem = "a picture's name must end in .svg or .png";
+                let problem = "the name of a picture must end in .svg or .png";
                 return Err(Failure::file(path, problem));
             }
         };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate plot`: isolines, gradients and promises on a plane.
+//! `palpate plot`: draws isolines, gradients and promises on a plane.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     }
 }
 
-/// The contacts, if they are to be shown.
+/// The contacts, if `--contacts` asks for them.
 fn touched<const D: usize>(
     options: &PlotOptions,
     scene: &BuiltScene<D>,
@@ -43,16 +43,16 @@ fn touched<const D: usize>(
     options.contacts.then(find).transpose()
 }
 
-/// What the picture shows.
+/// The part of the scene that the picture shows.
 struct Window<const D: usize> {
     bounds: Aabb<D>,
-    /// Room around them, as a share of their longer side.
+    /// Room around the bounds, as a share of their longer side.
     margin: f64,
 }
 
 impl<const D: usize> Window<D> {
-    /// A square about the centre that is asked for; else the scene's box, or a metre
-    /// about the origin if no body has bounds.
+    /// A square about `--centre`; else the scene's box, or a metre about the origin if no body
+    /// has bounds.
     fn of(options: &PlotOptions, scene: &BuiltScene<D>) -> Result<Self, Failure> {
         if let (Some(centre), Some(size)) = (&options.centre, options.size) {
             if !(size > 0.0 && size <= LARGEST_LENGTH) {
@@ -70,7 +70,7 @@ impl<const D: usize> Window<D> {
     }
 }
 
-/// A scene that is drawn.
+/// A scene and what to draw of it.
 struct Plot<'a, const D: usize> {
     options: &'a PlotOptions,
     picture: &'a Picture,
@@ -83,7 +83,7 @@ impl<'a, const D: usize> Plot<'a, D>
 where
     Dimensions: Drawable<D>,
 {
-    /// Finds what is to be drawn.
+    /// Prepares a scene for the options.
     fn of(
         options: &'a PlotOptions,
         picture: &'a Picture,
@@ -91,7 +91,7 @@ where
     ) -> Result<Self, Failure> {
         if options.step.is_some() && options.map != Map::Distance {
             return Err(Failure::input(
-                "--step is for --map distance: other maps have no isolines",
+                "--step is only for --map distance: other maps have no isolines",
             ));
         }
         let window = Window::of(options, scene)?;
@@ -99,7 +99,7 @@ where
         Ok(Self { options, picture, scene, window, touched })
     }
 
-    /// Draws the scene on `plane`, and says what was drawn.
+    /// Draws the scene on `plane`, and reports the picture.
     fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
         let Self { options, scene, window, .. } = self;
         let view = Dimensions::view(plane, &window.bounds, window.margin);
@@ -172,17 +172,17 @@ where
     }
 }
 
-/// What was drawn, in numbers.
+/// The numbers of a picture.
 struct Drawn {
     /// Between isolines [m].
     step: f64,
     /// The smallest and the largest value [m].
     range: (f64, f64),
-    /// What was measured to compare with a promise.
+    /// The extremes of the number that is compared with the promise.
     measured: Option<Measured>,
 }
 
-/// The key of what is measured to compare with a promise.
+/// The JSON key of the number that is compared with the promise.
 fn gauge<const D: usize>() -> &'static str
 where
     Dimensions: Drawable<D>,
@@ -205,7 +205,7 @@ pub(crate) fn title(scene: &Path) -> String {
     scene.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ")
 }
 
-/// The plane that is asked for; along two axes through `middle`, unless said otherwise.
+/// The plane of `--plane`; one along two axes goes through `middle` unless `--at` is given.
 fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure> {
     let at = |axis: usize| options.at.unwrap_or(middle[axis]);
     match options.plane.as_str() {
@@ -216,8 +216,8 @@ fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure
             let points: Vec<_> =
                 free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
             let [origin, right, up] = points.try_into().map_err(|_| {
-                let rule = "xy, xz, yz, or origin:right:up with three numbers each";
-                Failure::input(format!("a plane is {rule}, got {free:?}"))
+                let rule = "xy, xz, yz, or origin:right:up, each of these three numbers joined by commas";
+                Failure::input(format!("--plane must be {rule}, got {free:?}"))
             })?;
             Slice::free(origin.0, right.0, up.0)
         }

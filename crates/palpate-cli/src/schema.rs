@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate schema`: the JSON schema of scene files.
+//! `palpate schema`: prints the JSON schema of scene files.
 
 use std::io::Write;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate shapes`: the catalogue of primitives.
+//! `palpate shapes`: lists the primitives of the catalogue.
 
 use std::io::Write;
 
@@ -66,8 +66,7 @@ fn described<const D: usize>(entry: &Entry<D>) -> Result<Value, Failure> {
     }))
 }
 
-/// A parameter as scene files write it: angles in degrees, with a key that says
-/// so.
+/// A parameter as scene files write it: angles in degrees, with a key that ends in `_degrees`.
 fn parameter(parameter: &Parameter) -> Value {
     let is_angle = parameter.kind == ParameterKind::Angle;
     let key = if is_angle {

@@ -21,11 +21,11 @@ pub(crate) fn quantiles(times: &Distribution) -> String {
     )
 }
 
-/// A bar a line for each bucket.
+/// Writes a line with a bar for each bucket.
 pub(crate) fn write_histogram(out: &mut String, times: &Distribution) -> std::fmt::Result {
     let most = times.buckets.iter().map(|bucket| bucket.count).max().unwrap_or(1).max(1);
     for bucket in &times.buckets {
-        // Never no bar for a bucket that is not empty.
+        // A bucket that is not empty has a bar of at least one block.
         let length = (bucket.count * BAR).div_ceil(most) as usize;
         let up_to = bucket.up_to_ns / 1000;
         writeln!(out, "    up to {up_to:>8} µs {:>8} {}", bucket.count, "█".repeat(length))?;
@@ -33,7 +33,7 @@ pub(crate) fn write_histogram(out: &mut String, times: &Distribution) -> std::fm
     Ok(())
 }
 
-/// A time to be read.
+/// A time as text.
 pub(crate) fn microseconds(ns: u64) -> String {
     format!("{:.2} µs", 1e-3 * ns as f64)
 }

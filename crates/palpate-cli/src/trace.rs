@@ -13,8 +13,8 @@ use crate::outcome::Failure;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The names of the columns; those of a tool with a shape are the last, and after them those of a
-/// device that turns.
+/// The names of the columns. Those of a tool with a shape come last, followed by those of a
+/// device with rotation.
 pub(crate) fn header<const D: usize>(has_tool: bool, turns_hand: bool) -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "point".to_owned()];
     let vectors =
@@ -37,7 +37,7 @@ pub(crate) fn header<const D: usize>(has_tool: bool, turns_hand: bool) -> Vec<St
     names
 }
 
-/// What turns: about all axes in space, about the last in the plane.
+/// The components of a rotation: about all axes in space, about z in the plane.
 fn turns<T, const D: usize>(axes: [T; 3]) -> impl Iterator<Item = T> {
     axes.into_iter().skip(if D == 2 { 2 } else { 0 })
 }

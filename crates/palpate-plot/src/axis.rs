@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Axes: which ticks, and how they are drawn around a plot.
+//! Axes: chooses ticks, and draws axes around a plot.
 
 use crate::drawing::{Drawing, Path, Stroke, TextPaint, TextStyle};
 use crate::geometry::Rect;
@@ -11,7 +11,7 @@ use crate::text::{Anchor, CAP_HEIGHT, Text, Weight};
 
 /// Length of a tick [px].
 const TICK: f64 = 4.0;
-/// Labels keep this far from the edge of the picture [px]; one that cannot is left out.
+/// The least distance of labels from the edge of the picture [px]; closer ones are left out.
 const EDGE: f64 = 4.0;
 /// Space between tick, label and axis name [px].
 const GAP: f64 = 6.0;
@@ -40,7 +40,7 @@ impl Axis {
         Self { name: name.to_owned(), start, end, step, ticks }
     }
 
-    /// Where `value` is on the way from start to end, 0 to 1.
+    /// The place of `value` between start (0) and end (1).
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         (value - self.start) / (self.end - self.start)
     }

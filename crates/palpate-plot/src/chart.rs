@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Line charts: a quantity over time, or over any other.
+//! Line charts: a quantity over time, or over any other quantity.
 
 use crate::axis::{Axis, BELOW};
 use crate::drawing::{Drawing, Path, Stroke, TextStyle};
@@ -14,14 +14,14 @@ use crate::text::{Anchor, CAP_HEIGHT};
 
 /// Height of a chart's plot [px].
 const HEIGHT: f64 = 210.0;
-/// Distance of ticks aimed at, across and up [px].
+/// The desired distance of ticks, across and up [px].
 const TICK_SPACING: [f64; 2] = [95.0, 34.0];
-/// Room above the highest and below the lowest value, of the span.
+/// Room above the highest and below the lowest value, as a share of the span.
 const MARGIN: f64 = 0.06;
 /// Width of the lines [px].
 const LINE: f64 = 1.9;
 
-/// What an axis of a chart measures, and in which unit.
+/// The quantity and unit of an axis of a chart.
 ///
 /// # Examples
 ///
@@ -89,13 +89,13 @@ impl Series {
         Ok(Self { name, points, color: None, dash: None })
     }
 
-    /// With a colour of its own instead of the next in the series.
+    /// With this colour instead of the next of the palette.
     #[must_use]
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// With a dash of its own instead of the next in the series.
+    /// With this dash instead of the next in order.
     #[must_use]
     pub fn with_dash(self, dash: Dash) -> Self {
         Self { dash: Some(dash), ..self }
@@ -139,7 +139,7 @@ impl Chart {
         self
     }
 
-    /// With a heading of its own, for figures of several parts.
+    /// With a heading above the chart, for figures of several parts.
     #[must_use]
     pub fn with_title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
@@ -198,13 +198,13 @@ impl Chart {
     }
 }
 
-/// A range that shows all of `[low, high]` with a `margin` of its span, and never a point.
+/// A range that holds `[low, high]` with a `margin` relative to its span, and is never empty.
 fn widened(low: f64, high: f64, margin: f64) -> [f64; 2] {
     if low > high {
         return [0.0, 1.0]; // no data
     }
     let span = high - low;
-    // A span below rounding cannot be divided into ticks; show the value as a level line.
+    // A span below rounding has no ticks; the value is shown as a level line.
     if span <= 1e-9 * low.abs().max(high.abs()) {
         let room = if low == 0.0 { 1.0 } else { 0.5 * low.abs() };
         return [low - room, high + room];
@@ -232,8 +232,8 @@ fn draw_grid(drawing: &mut Drawing, plot: &Rect, x: &Axis, y: &Axis) {
     drawing.stroke(axes, Stroke::new(Color::MUTED, 1.0));
 }
 
-/// Keeps what can be seen of many samples: of those in one column of pixels the first, the
-/// highest, the lowest and the last, in their order.
+/// Drops samples that do not change the picture: of those in one column of pixels, the first,
+/// the highest, the lowest and the last stay, in their order.
 fn thin(pixels: &[Point]) -> Vec<Point> {
     /// Width of a column [px]: fine enough for a picture at twice the size.
     const COLUMN: f64 = 0.5;

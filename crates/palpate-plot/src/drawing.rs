@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a picture consists of: filled and stroked paths and images, in order.
+//! The elements of a picture: filled and stroked paths and images, in order.
 //!
 //! A [`Drawing`] is made once and written by [`svg`](crate::svg) or [`png`](crate::png), so the
 //! two formats show the same picture.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What can be wrong with a figure.
+//! The errors of figures.
 
 use crate::view::{MAX_ASPECT, MAX_SIZE, MIN_SIZE};
 

@@ -69,11 +69,13 @@ impl Figure {
         self
     }
 
-    /// With several views of one scene, such as slices along different planes: drawn at one
-    /// scale, side by side if that is not much smaller than one below the other, with one legend.
+    /// With several views of one scene, such as slices along different planes, at one scale and
+    /// with one legend. They stand side by side unless they are much larger one below the
+    /// other.
     ///
-    /// The legend names what is called the same once. Give the views one
-    /// [step](Isolines::with_step) and their arrows one [length](crate::Arrows::with_full_length).
+    /// The legend has one entry for overlays of the same name. Give the views one
+    /// [step](Isolines::with_step) and their arrows one
+    /// [length](crate::Arrows::with_full_length).
     #[must_use]
     pub fn with_views(mut self, views: impl IntoIterator<Item = Isolines>) -> Self {
         self.parts.push(Part::Views(Views::new(views.into_iter().collect())));
@@ -131,7 +133,7 @@ impl Figure {
             Part::Sheet(_) => 0.0,
             Part::Chart(chart) => chart.gutter(),
         });
-        // Parts share their left edge; absurdly wide labels may not push them out.
+        // Parts share their left edge; the limit keeps very wide labels from pushing plots out.
         let gutter = gutters.fold(0.0, f64::max).min(0.4 * room);
         for (index, part) in self.parts.iter().enumerate() {
             if index > 0 {
@@ -171,7 +173,7 @@ mod tests {
     use crate::drawing::{Item, Verb};
     use crate::{Arrow, Arrows, Markers, Polyline, Quantity, Sampling, Series, Slice, View};
 
-    /// Every coordinate of the figure lies in it, and so is finite.
+    /// Checks that every coordinate lies in the figure, and so is finite.
     fn check(figure: &Figure) {
         let drawing = figure.draw();
         assert!(drawing.height > 0.0 && drawing.height < 3000.0, "{}", drawing.height);

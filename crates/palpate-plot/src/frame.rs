@@ -6,8 +6,8 @@
 use crate::geometry::{Point, Rect};
 use crate::view::View;
 
-/// How far a drawn line may be from the line it stands for [px]: unseen, and straight lines
-/// stay straight to the last grey of a PNG.
+/// The largest error of a drawn line [px]: invisible, and straight lines keep every grey level
+/// of a PNG.
 pub(crate) const TOLERANCE: f64 = 0.02;
 
 /// A window drawn into a rectangle of the same shape.

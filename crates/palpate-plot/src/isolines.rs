@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The picture of a field in a plane: bands, isolines, and what lies over them.
+//! The picture of a field in a plane: bands, isolines and overlays.
 
 use crate::axis::{Axis, BELOW};
 use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
@@ -29,7 +29,7 @@ use crate::wheel::{self, AxisArrow};
 pub(crate) const MOST_HEIGHT: f64 = 720.0;
 /// Between a picture and its legend [px].
 pub(crate) const ABOVE_LEGEND: f64 = 10.0;
-/// Distance of ticks aimed at, across and up [px].
+/// The desired distance of ticks, across and up [px].
 const TICK_SPACING: [f64; 2] = [80.0, 70.0];
 
 /// The axes of the plane in a small picture.
@@ -41,8 +41,8 @@ fn axis_stroke() -> Stroke {
 ///
 /// Blue bands are inside (negative values), orange ones outside, lighter with the value; the
 /// heavy line is the surface, where the field is zero. Thin isolines at round levels carry
-/// their value in metres. A field that is nowhere negative but closer to zero than a sampling
-/// cell (a curve or a sheet, which has no interior) shows its surface as a line all the same.
+/// their value in metres. A surface without interior, such as a curve or a sheet, is also drawn
+/// as a line: where a field that is nowhere negative comes closer to zero than a sampling cell.
 ///
 /// # Examples
 ///
@@ -76,23 +76,23 @@ pub struct Isolines {
     overlays: Vec<Overlay>,
 }
 
-/// What lies under the lines.
+/// The ground below the lines.
 #[derive(Debug, Clone)]
 enum Ground {
     /// Bands of distance, with isolines.
     Distance,
     /// The direction of the gradient.
     Gradient(Image),
-    /// What values promise, and what they are.
+    /// Promises, and how values compare with them.
     Promise(Box<Trust>),
 }
 
 impl Isolines {
     /// Samples `field` in the window `view` of `slice`.
     ///
-    /// `field` is called with the plane coordinates of some points \[m\] and a slice of the same
-    /// length for their values \[m\]; use [`Slice::point`] to take the points to space. It is
-    /// asked up to a cell outside the window.
+    /// `field` is called with the plane coordinates of some points \[m\] and a slice of the
+    /// same length for their values \[m\]; [`Slice::point`] gives the points in space. Points
+    /// lie up to a cell outside the window.
     ///
     /// # Errors
     ///
@@ -130,9 +130,10 @@ impl Isolines {
     /// With the direction of the gradient as colour in place of the bands, and the surface as
     /// the only line.
     ///
-    /// Lightness and hue say where the field grows in the plane, as the disc in the legend
-    /// shows; colours fade to grey where the gradient is shorter than one there, because it is
-    /// flatter or because it leans out of the plane, and darken where it is longer.
+    /// Lightness and hue show the direction in which the field grows in the plane; the disc in
+    /// the legend explains them. Colours fade to grey where the gradient's part in the plane is
+    /// shorter than one, because the field is flat or the gradient leans out of the plane. They
+    /// darken where it is longer.
     ///
     /// `field` is called with the plane coordinates of some points \[m\] and a slice of the
     /// same length for their [`Slope`]s.
@@ -173,13 +174,13 @@ impl Isolines {
         Ok(Self { ground: Ground::Gradient(image), ..self })
     }
 
-    /// With what values promise in place of the bands, and the surface as the only line.
+    /// With the promises in place of the bands, and the surface as the only line.
     ///
     /// Each side of the surface has the tint and hatching of what is `promised` outside and
-    /// inside. Over it, what `gauge` measures: the tint itself is one, darker is less (the
-    /// value falls short of the distance), redder more. Of [`Gauge::Distance`] only what the
-    /// picture's accuracy, a cell of the grid, leaves no doubt of is shown; nothing where
-    /// a nearer surface may lie more than a window's size outside the window.
+    /// inside. The tint itself means that `gauge` measures one; darker is less (the value falls
+    /// short of the distance), redder is more. [`Gauge::Distance`] shows only differences
+    /// larger than the picture's error, a cell of the grid, and nothing where a nearer surface
+    /// may lie more than a window's size outside the window.
     ///
     /// `field` is called as in [`with_gradient`](Self::with_gradient), and for
     /// [`Gauge::Distance`] up to a window's size outside the window.
@@ -242,7 +243,7 @@ impl Isolines {
         }
     }
 
-    /// With a heading of its own, for figures of several parts.
+    /// With a heading above the picture, for figures of several parts.
     #[must_use]
     pub fn with_title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
@@ -362,7 +363,7 @@ impl Isolines {
     /// What [`draw_tile`](Self::draw_tile) draws.
     pub(crate) fn tile_legend(&self) -> Vec<Entry> {
         let mut entries = self.legend();
-        // Tiles have steps of their own, and promises for either side.
+        // Each tile has its own step, and its own promises of both sides.
         entries.retain(|entry| !matches!(&entry.key, Key::Line(line) if line.width < 1.0));
         for entry in &mut entries {
             if let Key::Promised(promised) = entry.key {
@@ -411,7 +412,7 @@ impl Isolines {
         Axis::new(axis.name, ends, length, TICK_SPACING[index])
     }
 
-    /// The levels whose lines are drawn: the surface alone where colours say something else
+    /// The levels whose lines are drawn: only the surface where colours show something other
     /// than the distance.
     fn drawn_levels(&self) -> Levels {
         let mut levels = self.levels.clone();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Where labels go: along isolines and beside points, clear of everything placed before.
+//! Places labels along isolines and beside points, clear of everything placed before.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,16 +18,16 @@ const CLEARANCE: f64 = 4.5;
 const REPEAT: f64 = 280.0;
 /// Candidates along an isoline are this far apart [px].
 const STRIDE: f64 = 5.0;
-/// A line that bends more than this over the length of its label [px] is not labelled there.
+/// A line is not labelled where it bends more than this over the length of its label [px].
 const MOST_BEND: f64 = 4.5;
-/// What a label pays for each pixel to the nearest label of the level before: labels one above
-/// the other are read as a scale.
+/// The penalty of a label for each pixel to the nearest label of the level before: labels above
+/// one another read as a scale.
 const STRAY: f64 = 0.012;
 
 /// Lines this close to vertical count as vertical [rad].
 const VERTICAL: f64 = 0.05;
 
-/// Room that is taken: discs for symbols and text, lines.
+/// Occupied room: discs for symbols and text, and lines.
 #[derive(Debug, Default)]
 pub(crate) struct Occupied {
     discs: Vec<(Point, f64)>,
@@ -47,7 +47,7 @@ impl Occupied {
         self.discs.extend(discs(text));
     }
 
-    /// Whether `text` keeps clear of all discs, and of all lines if `and_lines`.
+    /// `true` if `text` is clear of all discs, and of all lines if `and_lines`.
     fn is_free(&self, text: &Text<'_>, and_lines: bool) -> bool {
         discs(text).into_iter().all(|(center, radius)| {
             let reach = radius + CLEARANCE;
@@ -78,12 +78,12 @@ fn discs(text: &Text<'_>) -> Vec<(Point, f64)> {
         .collect()
 }
 
-/// Where a label sits on an isoline.
+/// The place of a label on an isoline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Spot {
     /// Middle of the baseline [px].
     pub(crate) at: Point,
-    /// [rad], clockwise in the picture.
+    /// The angle [rad], clockwise in the picture.
     pub(crate) angle: f64,
 }
 
@@ -102,7 +102,7 @@ impl Spot {
 }
 
 /// Spots for `label` along the `lines` of one level, all [px], within `plot`, preferably near
-/// the spots of the level before; marks them taken.
+/// the spots of the level before; marks them as occupied.
 pub(crate) fn place_on_lines(
     lines: &[Vec<Point>],
     label: &str,
@@ -176,8 +176,8 @@ fn candidates(line: &[Point], width: f64) -> Vec<(f64, Spot)> {
         .collect()
 }
 
-/// A place for `label` beside the symbol of a point [px], within `plot`; marks it taken.
-/// `None` if there is no room at all.
+/// A place for `label` beside the symbol of a point [px], within `plot`; marks it as occupied.
+/// `None` if there is no room.
 pub(crate) fn place_at_point<'a>(
     point: Point,
     label: &'a str,

@@ -19,7 +19,7 @@ const BETWEEN: f64 = 22.0;
 /// Height of a row [px].
 const ROW: f64 = 22.0;
 
-/// What stands for an entry in the legend.
+/// The symbol of an entry in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Key {
     /// Bands, from the surface outwards.
@@ -36,7 +36,7 @@ pub(crate) enum Key {
     Swatch(Color),
     /// The tint and hatching of a promise.
     Promised(Promised),
-    /// The colours of what is measured, between two numbers.
+    /// The colours of a measurement, between two numbers.
     Scale(Promised, [f64; 2]),
     /// Words only.
     None,

@@ -6,7 +6,8 @@
 use crate::error::PlotError;
 use crate::numbers::{multiples, round_up};
 
-/// Isolines aimed at when the step is not given: enough to read slopes, few enough to label.
+/// The desired number of isolines if no step is given: enough to show slopes, few enough to
+/// label.
 const AIM: f64 = 14.0;
 /// Most isolines of a figure. At 800 px they are then about 4 px apart.
 const MOST: usize = 200;
@@ -25,7 +26,7 @@ impl Levels {
     /// The step is the round number (1, 2, 5 times a power of ten) that gives up to 14 levels.
     pub(crate) fn choose(low: f64, high: f64, size: f64) -> Self {
         let span = high - low;
-        // A constant field has no span to divide; nor has one that is constant to rounding.
+        // A field that is constant, or constant to rounding, has no span to divide.
         let span = if span > 1e-9 * low.abs().max(high.abs()) { span } else { size };
         let step = round_up(span / AIM);
         Self { step, values: multiples(low, high, step, MOST) }
@@ -47,7 +48,7 @@ impl Levels {
         Ok(Self { step, values: multiples(low, high, step, MOST + 1) })
     }
 
-    /// Bands from zero outwards on the inside and the outside.
+    /// The number of bands inside and outside.
     pub(crate) fn bands(&self) -> (usize, usize) {
         let inside = self.values.iter().filter(|&&v| v < 0.0).count() + 1;
         let outside = self.values.iter().filter(|&&v| v > 0.0).count() + 1;

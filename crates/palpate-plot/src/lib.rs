@@ -4,17 +4,15 @@
 //! Figures of signed distance fields, as SVG and PNG.
 //!
 //! A picture is made in three steps. A [`Slice`] is a plane in space and a [`View`] a window of
-//! it. [`Isolines::sample`] asks a field for its values there, through a closure, a row of
-//! points at a time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene
-//! and [`Chart`]s and writes them with
-//! [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
+//! it. [`Isolines::sample`] evaluates a field there through a closure, a row of points at a
+//! time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene and [`Chart`]s
+//! and writes them with [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
 //!
 //! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
 //! [`Slice::project`] takes points of space there.
 //!
-//! Everything is checked where it enters, so drawing cannot fail: [`PlotError`] says what was
-//! wrong, with numbers and units. The same figure gives the same bytes, and no installed font
-//! is used.
+//! Input is checked where it enters, so drawing cannot fail; [`PlotError`] says what is wrong,
+//! with numbers and units. The same figure gives the same bytes, and no installed font is used.
 //!
 //! # Examples
 //!

@@ -21,9 +21,9 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Sorts `segments`; a point is a segment of no length. Points asked for are within `size`
-    /// of each other, more or less: without it, small sets of segments have buckets so small
-    /// that there are too many to cross.
+    /// Sorts `segments`; a point is a segment of no length. `size` is about the extent of the
+    /// points that [`distance`](Self::distance) is called with. It keeps the buckets of small
+    /// sets of segments so large that a search crosses few.
     pub(crate) fn new(segments: Vec<[Point; 2]>, size: f64) -> Self {
         let ends = || segments.iter().flatten();
         let bound = |i: usize, start: f64, pick: fn(f64, f64) -> f64| {
@@ -49,17 +49,18 @@ impl Nearest {
         Self { segments, ..nearest }
     }
 
-    /// The distance from `p` to the nearest segment, known to be `at_least` that far; infinite
-    /// if there is none.
+    /// The distance from `p` to the nearest segment, infinite if there is none. The caller
+    /// knows that it is `at_least` this.
     ///
-    /// Rings of buckets around that of `p`, until no farther one can hold a nearer segment.
+    /// Searches rings of buckets around that of `p` until no farther ring can hold a nearer
+    /// segment.
     pub(crate) fn distance(&self, p: Point, at_least: f64) -> f64 {
         let mut best = f64::INFINITY;
         if self.segments.is_empty() {
             return best;
         }
         let [x, y] = self.bucket(p);
-        // From outside the buckets, the nearest and the farthest ring that meet them.
+        // The nearest and the farthest ring that meet the buckets, also from outside them.
         let gap = |i: i64, count: i64| (-i).max(i - count + 1).max(0);
         let far = |i: i64, count: i64| i.abs().max((count - 1 - i).abs());
         let first = gap(x, self.count[0]).max(gap(y, self.count[1]));

@@ -32,12 +32,12 @@ fn power(digit: u8, exponent: i32) -> f64 {
     format!("{digit}e{exponent}").parse().unwrap_or(f64::NAN)
 }
 
-/// Beyond this multiple, neighbours cannot be told apart: 64-bit floats have 53 bits.
+/// The largest multiple whose neighbours differ: 64-bit floats have 53 bits.
 const COUNTABLE: f64 = 1e15;
 
 /// Multiples of `step` in `[low, high]`, ascending; none if there are over `most`.
 pub(crate) fn multiples(low: f64, high: f64, step: f64, most: usize) -> Vec<f64> {
-    // A multiple that misses the end by rounding alone belongs to the interval.
+    // A multiple that misses the end only by rounding belongs to the interval.
     let slack = 1e-9;
     let first = (low / step - slack).ceil();
     let last = (high / step + slack).floor();
@@ -47,7 +47,7 @@ pub(crate) fn multiples(low: f64, high: f64, step: f64, most: usize) -> Vec<f64>
     (first as i64..=last as i64).map(|k| multiple(k, step)).collect()
 }
 
-/// `k · step`, as a decimal would give it: 3 · 0.1 is 0.3.
+/// `k · step` in decimal arithmetic: 3 · 0.1 is 0.3.
 fn multiple(k: i64, step: f64) -> f64 {
     let inverse = 1.0 / step;
     if step < 1.0 && (inverse - inverse.round()).abs() < 1e-9 * inverse {

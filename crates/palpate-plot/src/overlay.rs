@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a figure shows over the isolines: paths, arrows and points.
+//! Overlays of isolines: paths, arrows and points.
 
 use crate::error::{LARGEST, PlotError, finite_points};
 use crate::palette::Color;
 
-/// How a line is broken, so that it can be told apart without colour.
+/// How a line is broken, which tells lines apart without colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dash {
     /// Unbroken.
@@ -18,7 +18,7 @@ pub enum Dash {
 }
 
 impl Dash {
-    /// The dash of the line number `index` that names none.
+    /// The dash of line number `index`, if none is given.
     pub(crate) fn of_series(index: usize) -> Self {
         [Self::Solid, Self::Dashed, Self::Dotted][index % 3]
     }
@@ -71,7 +71,7 @@ impl Polyline {
         Self::of_pieces(name, [Vec::from_iter(points)])
     }
 
-    /// The path that is seen in `pieces` \[m\] only, such as those near a slice.
+    /// The path of which only `pieces` \[m\] are drawn, such as those near a slice.
     ///
     /// # Errors
     ///
@@ -95,19 +95,19 @@ impl Polyline {
         Ok(Self { name, pieces, color: None, dash: None, is_faint: false })
     }
 
-    /// Thin and grey, for what matters less; unbroken unless asked otherwise.
+    /// Thin and grey, for lines that matter less; unbroken unless a dash is given.
     #[must_use]
     pub fn faint(self) -> Self {
         Self { is_faint: true, ..self }
     }
 
-    /// With a colour of its own instead of the next in the series.
+    /// With this colour instead of the next of the palette.
     #[must_use]
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// With a dash of its own instead of the next in the series.
+    /// With this dash instead of the next in order.
     #[must_use]
     pub fn with_dash(self, dash: Dash) -> Self {
         Self { dash: Some(dash), ..self }
@@ -143,7 +143,8 @@ pub struct Arrows {
     pub(crate) unit: Option<String>,
     pub(crate) arrows: Vec<Arrow>,
     pub(crate) color: Option<Color>,
-    /// The vector drawn at full length, in its unit; the longest if none is said.
+    /// The length of the vector drawn at full length, in its unit; that of the longest if
+    /// `None`.
     pub(crate) full: Option<f64>,
 }
 
@@ -177,14 +178,14 @@ impl Arrows {
         Ok(Self { name, unit: None, arrows, color: None, full: None })
     }
 
-    /// With a colour of its own instead of the next in the series.
+    /// With this colour instead of the next of the palette.
     #[must_use]
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 
-    /// With the length \[unit\] that is drawn longest, instead of the largest here: for several
-    /// pictures of one scale. Ignored unless positive.
+    /// With this length \[unit\] drawn at full length instead of the largest of these arrows,
+    /// for several pictures of one scale. Ignored unless positive.
     #[must_use]
     pub fn with_full_length(self, length: f64) -> Self {
         let full = (length > 0.0 && length <= LARGEST).then_some(length);
@@ -237,14 +238,14 @@ impl Markers {
         Self { labels: labels.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// With a colour of its own instead of the next in the series.
+    /// With this colour instead of the next of the palette.
     #[must_use]
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
     }
 }
 
-/// What lies over the isolines, in the order it was added.
+/// An overlay of isolines.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Overlay {
     Polyline(Polyline),

@@ -19,10 +19,10 @@ const LONGEST_ARROW: f64 = 78.0;
 const DIRECTION: f64 = 34.0;
 /// Width of lines [px].
 const LINE: f64 = 2.4;
-/// Width of faint lines [px], and how much of what is below they hide.
+/// Width of faint lines [px], and their opacity.
 const FAINT: (f64, f64) = (1.1, 0.8);
 
-/// The overlays of a picture, with the colour, dash and symbol of each settled.
+/// The overlays of a picture, each with its colour, dash and symbol.
 #[derive(Debug)]
 pub(crate) struct Overlays<'a> {
     frame: Frame,
@@ -82,7 +82,7 @@ impl<'a> Overlays<'a> {
         all
     }
 
-    /// Marks what the overlays cover as taken.
+    /// Marks the room that the overlays cover as occupied.
     pub(crate) fn occupy(&self, occupied: &mut Occupied) {
         for (line, _) in self.lines.iter().filter(|(line, _)| !line.is_faint) {
             self.pieces(line).into_iter().for_each(|piece| occupied.add_line(piece));
@@ -123,7 +123,7 @@ impl<'a> Overlays<'a> {
             drawing.stroke(path.clone(), rim);
             paths.push((path, stroke));
         }
-        // Over all rims, so that no line is cut by the next.
+        // Drawn over all rims, so that no rim cuts another line.
         for (path, stroke) in paths {
             drawing.stroke(path, stroke.clone());
         }
@@ -146,7 +146,7 @@ impl<'a> Overlays<'a> {
         let seen = line.pieces.iter().flat_map(|piece| {
             let mut thinned: Vec<Point> = Vec::new();
             for p in self.frame.pixels(piece) {
-                // Thousands of samples in one place are one point of a picture.
+                // Thousands of samples at one place become one point.
                 if thinned.last().is_none_or(|&last| distance(last, p) > 5.0 * TOLERANCE) {
                     thinned.push(p);
                 }

@@ -3,7 +3,7 @@
 
 //! Colours that colour-blind readers, grey printers and projectors keep apart.
 //!
-//! Blue is inside, orange is outside: the pair that survives every common colour deficiency.
+//! Blue is inside, orange is outside: the pair differs under every common colour deficiency.
 //! Lightness grows with the value of the field, from deep inside to far outside, so the bands
 //! keep their order in grey. Overlays use the other hues of Okabe and Ito ("Color Universal
 //! Design", 2008), darkened to stand out on the bands, and differ in dash as well as in hue.
@@ -52,12 +52,12 @@ impl Color {
         format!("#{:02x}{:02x}{:02x}", self.red, self.green, self.blue)
     }
 
-    /// The colour of the overlay or series number `index` that names none.
+    /// The colour of overlay or series number `index`, if none is given.
     pub(crate) fn of_series(index: usize) -> Self {
         [Self::GREEN, Self::PURPLE, Self::VERMILION, Self::NAVY, Self::INK][index % 5]
     }
 
-    /// `self` for `t` = 0, `other` for `t` = 1, and even steps to the eye between.
+    /// `self` for `t` = 0, `other` for `t` = 1, with perceptually even steps between.
     pub(crate) fn mix(self, other: Self, t: f64) -> Self {
         let (a, b) = (self.to_oklab(), other.to_oklab());
         Self::from_oklab([0, 1, 2].map(|i| a[i] + t * (b[i] - a[i])))
@@ -137,8 +137,8 @@ impl Side {
     }
 }
 
-/// Bands over which the colours of a side fade, at least: few bands stay near the surface's
-/// colour, so that a shallow inside does not look deep.
+/// The least number of bands over which the colours of a side fade: fewer bands stay near the
+/// surface's colour, so that a shallow inside does not look deep.
 const FADE: usize = 6;
 /// Neighbouring bands alternate by this much lightness around the ramp.
 const ALTERNATION: f64 = 0.006;

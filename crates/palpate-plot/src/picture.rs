@@ -14,8 +14,8 @@ use crate::palette::{self, Color, Side};
 use crate::sampling::Samples;
 use crate::text::Anchor;
 
-/// Rings smaller than this are specks [px]: dust where a field just reaches a level. The
-/// surface is drawn however small it is.
+/// Rings smaller than this are not drawn [px]: specks where a field just reaches a level. The
+/// surface is always drawn.
 const SPECK: f64 = 2.5;
 
 /// Width of the line of the surface [px], and of the white rim with it.
@@ -51,7 +51,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Marks what the surface covers as taken.
+    /// Marks the room that the surface covers as occupied.
     pub(crate) fn occupy(&self, occupied: &mut Occupied) {
         let surface = self.surface.iter().chain(&self.thin);
         surface.for_each(|line| occupied.add_line(line.clone()));
@@ -59,7 +59,7 @@ impl Lines {
 }
 
 impl Picture<'_> {
-    /// Paints the lowest band everywhere, then each higher one over it: no seams.
+    /// Paints the lowest band everywhere, then each higher one over it, which leaves no seams.
     pub(crate) fn draw_bands(&self, drawing: &mut Drawing) {
         let step = self.levels.step;
         let lowest = match self.levels.values.first() {
@@ -128,7 +128,8 @@ impl Picture<'_> {
                 for spot in &spots {
                     let text = spot.text(&label);
                     let (around, width) = (self.around(*level), 4.5);
-                    // Between letters, above a decimal point, the line would show.
+                    // Covers the line, which would show between letters and above a decimal
+                    // point.
                     drawing.stroke(text.middle(), Stroke::new(around, width));
                     let color = side_of(*level).label();
                     drawing.text(&text, TextPaint { color, halo: Some((around, width)) });
@@ -189,7 +190,8 @@ impl Picture<'_> {
         self.band(level - half).mix(self.band(level + half), 0.5)
     }
 
-    /// Rings around the points within a cell of a surface without interior, if it has none.
+    /// Rings around the points within a cell of a surface without interior; empty for other
+    /// fields.
     fn thin_surface(&self) -> Vec<Vec<Point>> {
         if !self.samples.has_thin_surface() {
             return Vec::new();

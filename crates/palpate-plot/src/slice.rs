@@ -279,8 +279,8 @@ impl Slice {
     }
 }
 
-/// Below this sine of their angle [1], two directions do not span a plane to a picture's
-/// accuracy: an error of one part in 1e16 in them would turn the plane by more than 1e-10.
+/// The least sine of the angle between two directions that span a plane [1]: below it, an error
+/// of one part in 1e16 would turn the plane by more than 1e-10.
 const SMALLEST_SINE: f64 = 1e-6;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -29,8 +29,8 @@ impl Slope {
     }
 }
 
-/// Pixels for each cell of the grid that isolines are found on. Lines are interpolated between
-/// samples and colours are not, so these need more.
+/// Pixels for each cell of the grid of isolines. Lines are interpolated between samples but
+/// colours are not, so colours need more samples.
 const FINER: f64 = 2.5;
 
 /// A grid of pixels that covers a window exactly.
@@ -42,7 +42,7 @@ pub(crate) struct Pixels {
 }
 
 impl Pixels {
-    /// The pixels of `view`, [`FINER`] than the cells of `sampling`.
+    /// The pixels of `view`: [`FINER`] pixels for each cell of `sampling`.
     pub(crate) fn of(view: &View, sampling: Sampling) -> Self {
         let cells = (FINER * sampling.cells() as f64).round();
         let edge = view.width().max(view.height()) / cells;
@@ -51,13 +51,13 @@ impl Pixels {
         Self { min: view.min(), size: [0, 1].map(|i| sides[i] / count[i] as f64), count }
     }
 
-    /// Asks `field` at the centres of the pixels, a row at a time, and colours each as `color`
-    /// says of its place and slope.
+    /// Evaluates `field` at the centres of the pixels, a row at a time, and colours each by
+    /// `color` of its place and slope.
     ///
     /// # Errors
     ///
-    /// [`PlotError::Sample`] for the first value that is not a length,
-    /// [`PlotError::Gradient`] for the first gradient that has none.
+    /// [`PlotError::Sample`] for the first value that is not a length, [`PlotError::Gradient`]
+    /// for the first gradient without a finite length.
     pub(crate) fn paint(
         &self,
         mut field: impl FnMut(&[[f64; 2]], &mut [Slope]),

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How far points are from the surface that a picture finds.
+//! Distances from the surface that a picture finds.
 
 use crate::contours::rings;
 use crate::error::PlotError;
@@ -11,32 +11,32 @@ use crate::sampling::{Samples, Sampling};
 use crate::slope::Slope;
 use crate::view::View;
 
-/// The surface is looked for this many window sizes across.
+/// The surface is searched in a square this many window sizes wide.
 const WIDER: f64 = 3.0;
 
 /// The surface in and around a window, in plane coordinates [m].
 #[derive(Debug, Clone)]
 pub(crate) struct Surface {
-    /// What was found in the window, and around it.
+    /// The surface found in the window, and the one found around it.
     parts: Vec<Part>,
-    /// Where it was looked for.
+    /// The searched part of the plane.
     region: Rect,
 }
 
-/// What one grid shows of a surface.
+/// The surface as one grid finds it.
 #[derive(Debug, Clone)]
 struct Part {
     nearest: Nearest,
-    /// How far what was found may be from the surface.
+    /// The largest distance between the found and the true surface.
     error: f64,
-    /// The last point asked for and its distance: the next one is most often beside it.
+    /// The last evaluated point and its distance, since the next point is mostly beside it.
     last: (Point, f64),
 }
 
 impl Surface {
     /// The zero isolines of `samples` in `view`, and around it those of samples three times as
-    /// coarse. Samples on creases at zero count as surface too, as curves without interior and
-    /// slits without width have no zero isoline.
+    /// coarse. Samples on creases at zero count as surface too, because curves without interior
+    /// and slits without width have no zero isoline.
     ///
     /// # Errors
     ///
@@ -67,9 +67,9 @@ impl Surface {
         Ok(Self { parts: vec![inner, outer], region })
     }
 
-    /// `value` [m] over the distance of `p` from the surface: the number nearest to one that
-    /// the picture's accuracy allows, so that what differs from one does so for sure. `None`
-    /// where a nearer surface may lie beyond what was looked at.
+    /// `value` [m] over the distance of `p` from the surface. Of the ratios that the picture's
+    /// error allows, it is the one nearest to one, so a ratio other than one is certain. `None`
+    /// where a nearer surface may lie outside the searched part.
     pub(crate) fn ratio(&mut self, p: Point, value: f64) -> Option<f64> {
         let mut range = [f64::INFINITY; 2];
         for part in &mut self.parts {
@@ -91,7 +91,7 @@ impl Surface {
 }
 
 impl Part {
-    /// The segments that `samples` show, with an end where `is_here`.
+    /// The segments of surface in `samples` that have an end where `is_here`.
     fn new(samples: &Samples, size: f64, is_here: impl Fn(&Point) -> bool) -> Self {
         let mut segments = segments(samples);
         segments.retain(|[a, b]| is_here(a) || is_here(b));
@@ -126,9 +126,9 @@ fn segments(samples: &Samples) -> Vec<[Point; 2]> {
     edges.chain(points).collect()
 }
 
-/// Whether a sample is within half a cell's diagonal of zero, and the field falls to it and
-/// rises again there, as a distance does across a curve: along one axis the sum of its
-/// neighbours exceeds twice its own value by 0.7 cells at least where the distance is exact.
+/// `true` if a sample is within half a cell's diagonal of zero and on a crease, as a distance
+/// has across a curve. If the distance is exact, then along one axis the sum of the sample's
+/// neighbours exceeds twice its value by at least 0.7 cells.
 fn touches_crease(samples: &Samples, index: usize) -> bool {
     const LEAST_CREASE: f64 = 0.5;
     let size = |index: usize| samples.values.get(index).map(|value| value.abs());
@@ -169,7 +169,7 @@ mod tests {
             for i in 0..50 {
                 let i = f64::from(i);
                 let p = [4.0 * (0.618 * i).fract() - 1.5, 3.0 * (0.414 * i).fract() - 1.5];
-                // The edge of what was looked at is at least 3 away.
+                // The edge of the searched part is at least 3 away.
                 let ratio = surface.ratio(p, field(p));
                 assert!(ratio == Some(1.0) || ratio.is_none() && field(p).abs() > 2.9, "{p:?}");
             }

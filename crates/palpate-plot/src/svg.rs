@@ -35,8 +35,8 @@ pub(crate) fn write(drawing: &Drawing) -> String {
     svg
 }
 
-/// A stroke lies under its fill, as a halo does. They are two paths where a mark has both: not
-/// every renderer knows `paint-order`, and the halos of labels would cover their text.
+/// A stroke lies under its fill, as a halo does. A mark with both becomes two paths: not every
+/// renderer knows `paint-order`, and without it the halos of labels would cover their text.
 fn write_mark(svg: &mut String, mark: &Mark) {
     if let Some(stroke) = &mark.stroke {
         svg.push_str("<path fill=\"none\"");
@@ -66,7 +66,7 @@ fn write_data(svg: &mut String, mark: &Mark) {
 
 /// Writes an image as PNG within the document, as a data URL (RFC 2397).
 fn write_image(svg: &mut String, rect: &Rect, image: &Image) {
-    // An image without pixels shows nothing; writing to memory cannot fail otherwise.
+    // Writing to memory fails only for an image without pixels, which is invisible.
     let Ok(png) = png::write_image(image) else { return };
     let [x, y] = rect.min.map(Number);
     let (width, height) = (Number(rect.width()), Number(rect.height()));
@@ -149,7 +149,7 @@ fn hundredths(x: f64) -> i64 {
     (x * 100.0).round() as i64
 }
 
-/// A minus separates numbers by itself.
+/// A minus sign needs no space before it.
 fn separate(svg: &mut String, next: i64) {
     if next >= 0 {
         svg.push(' ');
@@ -180,7 +180,7 @@ impl std::fmt::Display for Number {
     }
 }
 
-/// `text` with XML's own characters escaped, and without those that XML cannot hold.
+/// `text` with the special characters of XML escaped, and without those that XML forbids.
 fn escape(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {

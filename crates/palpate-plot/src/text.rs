@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Text as outlines, so that a figure looks the same on a machine without fonts.
+//! Text as outlines, so that a figure looks the same with any installed fonts.
 
 use std::sync::LazyLock;
 
@@ -20,7 +20,7 @@ pub(crate) enum Weight {
     SemiBold,
 }
 
-/// Which point of a text its position is.
+/// The point of a text that its position gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -39,7 +39,7 @@ struct Face {
     outlines: OutlineGlyphCollection<'static>,
 }
 
-/// The bundled fonts; `None` cannot happen, as a test reads them both.
+/// The bundled fonts; `None` cannot happen, because a test reads them both.
 static FACES: LazyLock<[Option<Face>; 2]> = LazyLock::new(|| {
     [
         Face::new(include_bytes!("../fonts/Inter-Regular.ttf")),

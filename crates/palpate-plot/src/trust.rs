@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What values promise, and what they are, as colours.
+//! Promises and how values compare with them, as colours.
 
 use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
 use crate::error::PlotError;
@@ -12,8 +12,7 @@ use crate::palette::Color;
 use crate::slope::{Pixels, Slope};
 use crate::text::Anchor;
 
-/// What a field promises of its values f on one side of the surface, where the surface is the
-/// distance d away.
+/// The promise of a field's values f on one side of the surface, at the distance d from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Promised {
     /// |f| = d.
@@ -24,30 +23,32 @@ pub enum Promised {
     Lipschitz(f64),
 }
 
-/// What is measured to compare with the promise.
+/// The number that is compared with the promise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gauge {
-    /// |f| over the distance to the surface that the picture shows. For fields in the plane: of
-    /// a slice through space, the nearest surface may lie outside the slice.
+    /// |f| over the distance to the surface that the picture shows. Only for fields in the
+    /// plane: on a slice through space, the nearest surface may lie outside the slice.
     Distance,
-    /// The length of the gradient: one where the value is a distance, but not only there.
+    /// The length of the gradient, which is one where the value is a distance, and possibly
+    /// elsewhere.
     Steepness,
 }
 
-/// The extremes of what was measured, with their places in plane coordinates \[m\].
+/// The extremes of a [`Gauge`] over a picture, with their places in plane coordinates \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// The smallest number: how loose values are.
+    /// The smallest number, of the loosest value.
     pub smallest: f64,
-    /// Where it was found first.
+    /// The first place where it was found.
     pub smallest_at: [f64; 2],
-    /// The largest number: how much too steep values are.
+    /// The largest number, above one where values are too steep.
     pub largest: f64,
-    /// Where it was found first.
+    /// The first place where it was found.
     pub largest_at: [f64; 2],
 }
 
-/// Where values are too small, and too large: the pair that survives colour deficiencies.
+/// Colours of values that are too small and too large; the pair differs under colour
+/// deficiencies.
 const LOOSE: Color = Color::rgb(0x45, 0x1C, 0x70);
 const STEEP: Color = Color::rgb(0xC4, 0x4A, 0x00);
 /// Lines of a hatching are this far apart [px].
@@ -81,7 +82,7 @@ impl Promised {
         }
     }
 
-    /// The legend of a side of any field.
+    /// The legend of a side for all fields of a sheet.
     pub(crate) fn entry(self) -> Entry {
         let text = match self {
             Self::Lipschitz(_) => "Lipschitz: value at most L times the distance".to_owned(),
@@ -99,7 +100,7 @@ impl Promised {
         }
     }
 
-    /// Hatches the part of `area` [px] where `is_here`, seen at each pixel.
+    /// Hatches the part of `area` [px] where `is_here` is true, tested at each pixel.
     pub(crate) fn hatch(
         self,
         drawing: &mut Drawing,
@@ -129,7 +130,7 @@ impl Promised {
     }
 }
 
-/// Adds the straight `line` by its ends, and empties it.
+/// Adds the straight `line` to `path` by its ends, and empties it.
 fn add_ends(path: &mut Path, line: &mut Vec<Point>) {
     if let [first, .., last] = line[..] {
         path.add_line(&[first, last]);
@@ -148,7 +149,7 @@ pub(crate) struct Trust {
 }
 
 impl Trust {
-    /// Asks `measure` at each pixel.
+    /// Calls `measure` at each pixel.
     ///
     /// # Errors
     ///
@@ -179,7 +180,7 @@ impl Trust {
         Ok(Self { promised, gauge, image, measured: extremes })
     }
 
-    /// Hatches the plot; `value` is that of a pixel.
+    /// Hatches the plot; `value` gives the field at a pixel.
     pub(crate) fn hatch(
         &self,
         drawing: &mut Drawing,
@@ -191,7 +192,7 @@ impl Trust {
         inside.hatch(drawing, plot, |p| value(p) < 0.0);
     }
 
-    /// The legend, if there is an outside, and an inside.
+    /// The legend, with the outside and the inside if there are any.
     pub(crate) fn entries(&self, [has_outside, has_inside]: [bool; 2]) -> Vec<Entry> {
         let [outside, inside] = self.promised;
         let mut entries = Vec::new();

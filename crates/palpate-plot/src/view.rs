@@ -12,8 +12,8 @@ pub(crate) const MIN_SIZE: f64 = 1e-9;
 pub(crate) const MAX_SIZE: f64 = 1e9;
 /// Largest ratio of the sides: a sliver has no room for its labels.
 pub(crate) const MAX_ASPECT: f64 = 20.0;
-/// Largest ratio of a window's distance from the origin to its size: 400 cells across then
-/// still differ by thousands of roundings.
+/// Largest ratio of a window's distance from the origin to its size: neighbours of 400 cells
+/// then still differ by thousands of roundings.
 const MAX_DISTANCE: f64 = 1e9;
 
 /// A window of a [`Slice`]: centre, width and height in plane coordinates \[m\].

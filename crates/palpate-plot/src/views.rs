@@ -10,10 +10,10 @@ use crate::legend::{self, Entry};
 
 /// Between two views [px].
 const BETWEEN: f64 = 24.0;
-/// Views stand one below the other where that makes them this many times as large: a figure
-/// that fits a page is worth some size.
+/// Views stand one below the other only if that makes them this many times as large, because a
+/// wide figure fits a page better.
 const WORTH_STACKING: f64 = 1.5;
-/// The least width of a plot beside others [px]: ticks and a scale bar find room.
+/// The least width of a plot beside others [px], with room for ticks and a scale bar.
 const NARROWEST: f64 = 150.0;
 
 /// Views of one scene.
@@ -74,8 +74,8 @@ impl Views {
     }
 }
 
-/// The larger of a row and a column of windows of these widths and heights [m], in room of
-/// `width` [px].
+/// The layout, a row or a column, that draws windows of these widths and heights [m] larger
+/// within `width` [px].
 fn layout(extents: &[[f64; 2]], width: f64, gutter: f64) -> Layout {
     let sum = |i: usize| extents.iter().map(|extent| extent[i]).sum::<f64>();
     let largest = |i: usize| extents.iter().map(|extent| extent[i]).fold(0.0, f64::max);

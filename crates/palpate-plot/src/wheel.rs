@@ -5,9 +5,9 @@
 //!
 //! The plane of directions is laid into Oklab as a flat ellipse: lightness grows to the right,
 //! yellow upwards and blue downwards, and a green part to the right and a red one to the left
-//! set the hues further apart. Where red and green are not told apart, what is left is a circle
-//! of lightness against blue and yellow, which is even as well; the tests see it with the
-//! deficiencies of Machado, Oliveira and Fernandes, "A Physiologically-based Model for
+//! set the hues further apart. For readers who do not tell red from green, a circle of
+//! lightness against blue and yellow is left, which is even too. The tests simulate the
+//! deficiencies by Machado, Oliveira and Fernandes, "A Physiologically-based Model for
 //! Simulation of Color Vision Deficiency" (2009).
 
 use std::f64::consts::FRAC_PI_2;
@@ -18,16 +18,16 @@ use crate::legend::draw_arrow;
 use crate::palette::Color;
 use crate::text::{Anchor, CAP_HEIGHT};
 
-/// Lightness of no direction.
+/// Lightness of a zero gradient.
 const MIDDLE: f64 = 0.69;
-/// Change of Oklab's lightness, red and yellow with one unit to the right. The red part is
+/// The change of Oklab's lightness, red and yellow over one unit to the right. The red part is
 /// 0.06 times cos 195°.
 const RIGHT: [f64; 3] = [0.12, -0.057_955_5, 0.0];
-/// The same with one unit up; the red part is −0.06 times sin 195°.
+/// The same over one unit up; the red part is −0.06 times sin 195°.
 const UP: [f64; 3] = [0.0, 0.015_529_1, 0.12];
 
-/// The colour of a gradient with these parts in the plane: grey where there is none, full
-/// where its length is one, darker where it is longer.
+/// The colour of a gradient with these parts in the plane: grey if they are zero, saturated if
+/// their length is one, darker if it is larger.
 pub(crate) fn color([x, y]: [f64; 2]) -> Color {
     let length = x.hypot(y);
     let beyond = length.max(1.0);
@@ -41,14 +41,14 @@ pub(crate) fn color([x, y]: [f64; 2]) -> Color {
 pub(crate) const SIZE: f64 = 116.0;
 /// Radius of the disc [px].
 const RADIUS: f64 = 40.0;
-/// Arrows begin within the disc and end outside, at these shares of its radius.
+/// Where arrows begin, within the disc, and end, outside, over its radius.
 const ARROW: [f64; 2] = [0.25, 1.16];
 /// From an arrow's tip to the middle of its axis's name, over the disc's radius.
 const NAME: f64 = 1.36;
 /// Pixels along the edge of the disc's image: two a pixel of the figure.
 const PIXELS: usize = 160;
 
-/// An axis as the disc names it.
+/// The name and sense of an axis beside the disc.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AxisArrow {
     pub(crate) name: String,

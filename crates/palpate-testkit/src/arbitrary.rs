@@ -3,8 +3,8 @@
 
 //! Generators of trees and points, biased towards what breaks formulas.
 //!
-//! They draw from [`Unstructured`], so that property tests and fuzzing share
-//! them, and fail only as it does, when a case runs out of entropy.
+//! They draw from [`Unstructured`], so property tests and fuzzing share them. They fail only
+//! when a case runs out of entropy.
 #![expect(clippy::missing_errors_doc, reason = "all errors are those of Unstructured")]
 
 use arbitrary::{Result, Unstructured};
@@ -66,7 +66,7 @@ pub fn direction<const D: usize>(u: &mut Unstructured<'_>) -> Result<Vector<f64,
     Ok(v.normalized().unwrap_or(Vector::unit(0)))
 }
 
-/// As many points as a primitive needs, in a plane where it needs them there.
+/// As many points as a primitive needs, in one plane if the primitive needs that.
 fn points<const D: usize>(u: &mut Unstructured<'_>, primitive: &str) -> Result<Vec<Vec<f64>>> {
     if primitive == "quad_sheet" {
         // The ends of two diagonals that cross.
@@ -94,9 +94,9 @@ fn argument<const D: usize>(
         (0..D).map(|_| if positive { length(u) } else { coordinate(u) }).collect()
     };
     Ok(match what.kind {
-        // Most thicknesses of up to 1.5 m fill what they are the thickness of.
+        // Walls of up to 1.5 m would mostly fill their shape.
         ParameterKind::Length if what.name == "thickness" => Argument::Number(0.2 * length(u)?),
-        // Deeper ones leave little of what they are taken from.
+        // A deeper dip would leave little of the shape.
         ParameterKind::Length if what.name == "dip" => Argument::Number(0.15 * length(u)?),
         ParameterKind::Length => Argument::Number(length(u)?),
         ParameterKind::LengthOrZero => {
@@ -109,7 +109,7 @@ fn argument<const D: usize>(
             1 => std::f64::consts::PI,
             _ => within(u, 0.01, std::f64::consts::TAU)?,
         }),
-        // Two is an exponent of some, which refuse it or not.
+        // Some primitives accept an exponent of two, others refuse it.
         ParameterKind::Count if what.name.ends_with("exponent") => {
             Argument::Count(*u.choose(&[2, 4, 6, 8])?)
         }
@@ -172,7 +172,7 @@ pub trait Turn<const D: usize> {
     /// A rotation, at times along the axes.
     fn rotation(u: &mut Unstructured<'_>) -> Result<Rotation<D>>;
 
-    /// A solid of a profile of at most `depth`, where there are solids.
+    /// A solid of a profile of at most `depth`; `None` in the plane, which has no solids.
     fn solid(u: &mut Unstructured<'_>, depth: usize) -> Result<Option<Tree<D>>>;
 }
 
@@ -209,7 +209,7 @@ impl Turn<3> for Space {
     }
 }
 
-/// A rigid motion of at most 1.5 m a coordinate.
+/// A rigid motion by at most 1.5 m along each axis.
 pub fn pose<const D: usize>(u: &mut Unstructured<'_>) -> Result<Pose<D>>
 where
     Space: Turn<D>,
@@ -234,7 +234,7 @@ where
         return leaf(u);
     }
     let tree = operator(u, depth - 1)?;
-    // What an operator refuses (shrinking to nothing) becomes a leaf.
+    // A tree that an operator refuses, such as one that shrinks to nothing, becomes a leaf.
     if tree.shape().is_ok() { Ok(tree) } else { leaf(u) }
 }
 
@@ -269,7 +269,7 @@ fn copies(u: &mut Unstructured<'_>, width: f64) -> Result<Copies> {
     })
 }
 
-/// A profile of smooth booleans.
+/// The profile of a smooth boolean.
 fn profile(u: &mut Unstructured<'_>) -> Result<Profile> {
     Ok(*u.choose(&[
         Profile::Quadratic,
@@ -344,8 +344,8 @@ where
     })
 }
 
-/// Two shapes of trees of at most `depth`, one of them bounded at least, the second
-/// somewhere about the first; `None` if what was drawn has no bounds.
+/// Two shapes of trees of at most `depth`, the second placed about the first; `None` if neither
+/// is bounded.
 pub fn two<const D: usize>(
     u: &mut Unstructured<'_>,
     depth: usize,
@@ -367,8 +367,8 @@ pub fn size<const D: usize>(shape: &Shape<D>) -> f64 {
     shape.promise().bounds.map_or(2.0, |b| b.radius_about_origin()).max(1e-12)
 }
 
-/// A point near a shape: anywhere about it, on an axis or at a corner of its
-/// box, on its surface, a few ulp from such a point, or far away.
+/// A point near a shape: anywhere in or around its box, on an axis or at a corner of the box,
+/// on the surface, a few ulp from such a point, or far away.
 pub fn point<const D: usize>(
     u: &mut Unstructured<'_>,
     shape: &Shape<D>,
@@ -403,7 +403,7 @@ pub fn point<const D: usize>(
             }
         }
     }
-    // Onto the surface, or to what the field takes for it.
+    // Steps onto the surface, or where the field's value is zero.
     if u.ratio(1_u8, 4_u8)? {
         for _ in 0..3 {
             let (f, g) = shape.distance_gradient(p);
@@ -418,7 +418,7 @@ pub fn point<const D: usize>(
     Ok(if p.is_finite() { p } else { centre })
 }
 
-/// Points all over a segment or a triangle, `along` on an edge, its ends included.
+/// Points all over a segment or a triangle, `along` of them on each edge, its ends included.
 pub fn all_over<const N: usize, const D: usize>(
     vertices: &[Point<D>; N],
     along: u32,

@@ -8,7 +8,7 @@ use arbitrary::Unstructured;
 /// Bytes of entropy a case may draw.
 const ENTROPY: usize = 1 << 14;
 
-/// Complaints shown of those that differ in more than numbers.
+/// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
 
 /// Checks `property` for the seeds `0..count`.
@@ -18,7 +18,7 @@ const SHOWN: usize = 12;
 ///
 /// # Panics
 ///
-/// If the property fails: with the simplest complaints and their seeds.
+/// If the property fails; the message has the simplest complaints and their seeds.
 pub fn check(
     count: u64,
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
@@ -36,7 +36,7 @@ pub fn check(
     if failures.is_empty() {
         return;
     }
-    // The shortest first: they are the simplest cases.
+    // The shortest complaints come from the simplest cases.
     failures.sort_by_key(|(_, complaint)| complaint.len());
     let mut kinds = Vec::new();
     let mut shown = Vec::new();
@@ -50,12 +50,12 @@ pub fn check(
     panic!("{} of {count} cases fail\n{}", failures.len(), shown.join("\n"));
 }
 
-/// Checks a `property` that panics where it fails, for the seeds `0..count`. A case that cannot be
-/// drawn is skipped.
+/// Checks a `property` that panics if it fails, for the seeds `0..count`. Cases that cannot be
+/// drawn are skipped.
 ///
 /// # Panics
 ///
-/// If the property panics, or half of the cases cannot be drawn.
+/// If the property panics, or at least half of the cases cannot be drawn.
 pub fn each(
     count: u64,
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<()>,

@@ -194,7 +194,7 @@ impl Scalar for Double {
     }
 }
 
-/// So that blends can be asked for their fill.
+/// Needed to evaluate the fill of blends.
 impl Float for Double {
     const LINE: usize = 1;
 

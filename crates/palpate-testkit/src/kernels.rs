@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! From a name in the catalogue to the type of its kernel.
+//! Finds the type of a kernel by its name in the catalogue.
 
 use palpate_field::kernel::{self, Argument, Entry, NamedKernel};
 use palpate_field::{Shape, ShapeError};
 
-/// What to do with a kernel whose type is only known by name.
+/// A function of a kernel whose type is only known by name.
 pub trait Visit<const D: usize> {
-    /// What comes of it.
+    /// The result.
     type Output;
 
     /// Called with the kernel.
     fn visit<K: NamedKernel<D>>(self, kernel: K) -> Self::Output;
 }
 
-/// What differs between the plane and space.
+/// The catalogue of the plane or of space.
 pub trait Dimension<const D: usize> {
     /// The catalogue.
     const CATALOGUE: &'static [Entry<D>];
@@ -87,7 +87,7 @@ dimension! { 3:
     kernel::PowerBall, kernel::PowerCuboid<3>, kernel::PowerTorus,
 }
 
-/// A kernel as a shape.
+/// A [`Visit`] that makes a shape of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct IntoShape;
 

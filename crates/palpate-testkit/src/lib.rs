@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the tests of palpate share.
+//! Helpers that the tests of palpate share.
 //!
 //! - [`arbitrary`]: trees and points, biased towards what breaks formulas;
 //! - [`tree`]: shapes as plain data, and their formulas written a second time;
 //! - [`double`]: numbers of twice the precision, to measure rounding with;
-//! - [`laws`]: what every field must obey;
+//! - [`laws`]: laws that every field must obey;
 //! - [`oracle`]: distances from definitions, without any formula of the library;
-//! - [`separation`]: how far bodies are apart, by a plain search; [`recall`]: the poses at
-//!   which that is kept;
+//! - [`separation`]: separations by a plain search; [`recall`]: poses with proven separations,
+//!   as files;
+//! - [`kernels`]: kernels by their names in the catalogue;
 //! - [`cases`]: runs a property a fixed number of times.
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 

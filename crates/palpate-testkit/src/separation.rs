@@ -1,43 +1,42 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Separations from their definition, by a search that has nothing in common with the
-//! library's.
+//! Separations from their definition, by a search that shares no code with the library's.
 //!
 //! ```text
 //! g = max(f/L, distance to the box),    separation = 2·min over p of max(g_a(p), g_b(p)).
 //! ```
 //!
-//! `f` is a body's field, `L` its steepness, at least one, and the box the one that it
-//! promises. So `g` is never steeper than one, and neither is the larger of two: over a
-//! cell it is at least the value at its centre, less the cell's radius. Nothing else is
-//! used here: no models, no points beside the cells, no blocks. Values are asked one by
-//! one, and cells halved best first. That takes many of them, and each step can be read.
+//! `f` is a body's field, `L` its Lipschitz constant, at least one, and the box that of its
+//! promise. So `g` has a Lipschitz constant of 1, and so has the larger of two: over a cell it
+//! is at least the value at the centre minus the cell's radius. The search uses nothing else:
+//! no models, no points beside the cells, no blocks. It evaluates points one by one and halves
+//! cells best first. That takes many cells, but each step is easy to check.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use palpate_field::{Aabb, Point, Pose, Shape, Vector};
 
-/// Roundings of places, of distances to boxes and of radii, relative to the largest
+/// The rounding of points, of distances to boxes and of radii, relative to the largest
 /// coordinate.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 
-/// A better value is polished if it is better by this share.
+/// A new least value is polished if it is lower by this share.
 const NOTABLE: f64 = 0.02;
 
-/// Where polishing ends: steps as a share of the value.
+/// The step at which polishing ends, as a share of the value.
 const FINEST: f64 = 1e-3;
 
-/// Steps of a polish at most.
+/// The most steps of polishing.
 const STEPS: usize = 80;
 
-/// What a separation lies between [m].
+/// Bounds of a separation [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Nothing is less, rounding included.
+    /// The lower bound, rounding included.
     pub lower: f64,
-    /// Something is no more, rounding included.
+    /// The upper bound, rounding included.
     pub upper: f64,
 }
 
@@ -56,12 +55,12 @@ impl Interval {
     }
 }
 
-/// Bounds the separation of two shapes, each where its pose `world_from_body` puts it,
-/// until `is_enough`, or `cells` were looked at.
+/// Bounds the separation of two shapes, each where its pose `world_from_body` puts it, until
+/// `is_enough` accepts the bounds, or `cells` are spent.
 ///
 /// # Panics
 ///
-/// If neither body is bounded, or a field's steepness is known in a region alone.
+/// If neither body is bounded, or the promise of a field holds only in a region.
 pub fn separation<const D: usize>(
     bodies: [(&Shape<D>, Pose<D>); 2],
     cells: usize,
@@ -71,7 +70,7 @@ pub fn separation<const D: usize>(
     let start = common(&bodies, 0.0).centre();
     let mut search = Search { bodies, best: f64::INFINITY, slack: 0.0 };
     search.polish(start, search.value(start).abs());
-    // Farther from one of the boxes than the best value, that body's g is more than it.
+    // Points farther from one of the boxes than the best value have a larger g of that body.
     let margin = search.best.max(0.0) * (1.0 + ROUNDINGS);
     let root = common(&search.bodies, margin + ROUNDINGS * search.reach(start.norm() + margin));
     let reach = search.reach(root.centre().norm());
@@ -79,13 +78,13 @@ pub fn separation<const D: usize>(
     search.halve(root, cells, is_enough)
 }
 
-/// A field, and what makes `g` of it.
+/// A field with the numbers that make `g` of it.
 struct Body<'a, const D: usize> {
     shape: &'a Shape<D>,
     world_from_body: Pose<D>,
     body_from_world: Pose<D>,
     lipschitz: f64,
-    /// In the shape's coordinates.
+    /// The box, in the shape's coordinates.
     aabb: Option<Aabb<D>>,
 }
 
@@ -102,7 +101,7 @@ impl<'a, const D: usize> Body<'a, D> {
         }
     }
 
-    /// From the nearest point of the box to a point in the shape's coordinates; zero
+    /// The vector from the nearest point of the box to a point in the shape's coordinates; zero
     /// inside.
     fn away_from_box(&self, local: Point<D>) -> Vector<f64, D> {
         self.aabb.map_or(Vector::ZERO, |aabb| {
@@ -131,20 +130,20 @@ impl<'a, const D: usize> Body<'a, D> {
         (value, self.world_from_body.transform_vector(slope))
     }
 
-    /// The farthest from the world's or the shape's origin that the shape is [m].
+    /// The largest distance of the shape from the world's or its own origin [m].
     fn reach(&self) -> f64 {
         let radius = self.shape.promise().bounds.map_or(0.0, |b| b.radius_about_origin());
         radius + self.world_from_body.translation.norm()
     }
 
-    /// What `g` may be off by within `reach` of the world's origin [m].
+    /// The error of `g` within `reach` of the world's origin [m].
     fn rounding(&self, reach: f64) -> f64 {
         let reach = reach + self.world_from_body.translation.norm();
         self.shape.promise().rounding.within(reach) + ROUNDINGS * reach
     }
 }
 
-/// What both boxes have in common, grown by `margin`; between them, if nothing.
+/// The intersection of both boxes, grown by `margin`; the room between them if it is empty.
 fn common<const D: usize>(bodies: &[Body<'_, D>; 2], margin: f64) -> Aabb<D> {
     let grown = |body: &Body<'_, D>| {
         body.aabb.map(|aabb| aabb.placed(&body.world_from_body).grown(margin))
@@ -190,9 +189,9 @@ impl<const D: usize> Eq for Cell<D> {}
 
 struct Search<'a, const D: usize> {
     bodies: [Body<'a, D>; 2],
-    /// The least value that was found.
+    /// The least value found so far.
     best: f64,
-    /// What values and places may be off by [m].
+    /// The error of values and points [m].
     slack: f64,
 }
 
@@ -202,7 +201,7 @@ impl<const D: usize> Search<'_, D> {
         a.value(p).max(b.value(p))
     }
 
-    /// The largest distance from the origin that matters about there [m].
+    /// The largest distance from the origin that matters near a point at `distance` [m].
     fn reach(&self, distance: f64) -> f64 {
         let [a, b] = &self.bodies;
         distance + self.best.abs() + a.reach() + b.reach()
@@ -215,7 +214,7 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Best first, halved along the longest side.
+    /// Halves cells along the longest side, best first.
     fn halve(
         &mut self,
         root: Aabb<D>,
@@ -252,8 +251,8 @@ impl<const D: usize> Search<'_, D> {
         self.interval(self.best)
     }
 
-    /// Walks downhill from `start` in steps of at most `radius`: along either slope, or to
-    /// where both are equal and on along that.
+    /// Descends from `start` in steps of at most `radius`: along either gradient, or to the
+    /// surface where both fields are equal and on along it.
     fn polish(&mut self, start: Point<D>, mut radius: f64) {
         let slopes = |search: &Self, p| [search.bodies[0].slope(p), search.bodies[1].slope(p)];
         let (mut p, mut here) = (start, slopes(self, start));
@@ -282,7 +281,7 @@ impl<const D: usize> Search<'_, D> {
     }
 }
 
-/// Three steps of at most `radius` that make the larger of two tangent planes less.
+/// Three steps of at most `radius` that lower the maximum of two tangent planes.
 fn steps<const D: usize>(
     [(a, slope_a), (b, slope_b)]: &[(f64, Vector<f64, D>); 2],
     radius: f64,

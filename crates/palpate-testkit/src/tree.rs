@@ -3,9 +3,8 @@
 
 //! Shapes as plain data, and their formulas written a second time.
 //!
-//! [`Tree::shape`] builds a shape as a user would. [`Tree::distance`] evaluates
-//! the operators' definitions directly, in any number: what the nodes of
-//! `palpate-field` must agree with.
+//! [`Tree::shape`] builds a shape as a user would. [`Tree::distance`] evaluates the definitions
+//! of the operators directly, in any number; the fields of `palpate-field` must agree with it.
 
 use palpate_field::kernel::{Argument, NamedKernel};
 use palpate_field::operator::{Copies, Profile};
@@ -34,7 +33,7 @@ pub enum Tree<const D: usize> {
     Intersection(Vec<Self>),
     /// The first without the others.
     Difference(Box<Self>, Vec<Self>),
-    /// What is in an odd number.
+    /// Points in an odd number of shapes.
     SymmetricDifference(Vec<Self>),
     /// A boolean with its creases filled or cut off by a width [m].
     Smooth(Boolean, Vec<Self>, Profile, f64),
@@ -54,7 +53,7 @@ pub enum Tree<const D: usize> {
     Twisted(Box<Self>, f64),
     /// Displaced by another field, by at most a height [m].
     Displaced(Box<Self>, Box<Self>, f64),
-    /// Part of the way to another shape.
+    /// A morph: part of the way to another shape.
     Morphed(Box<Self>, Box<Self>, f64),
     /// Moved.
     Placed(Box<Self>, Pose<D>),
@@ -69,9 +68,9 @@ pub enum Tree<const D: usize> {
 /// Which smooth boolean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boolean {
-    /// What is in any.
+    /// Points in at least one.
     Union,
-    /// What is in all.
+    /// Points in all.
     Intersection,
     /// The first without the others.
     Difference,
@@ -213,7 +212,7 @@ where
         }
     }
 
-    /// How many operators are nested, with the leaf.
+    /// The number of nested operators, with the leaf.
     #[must_use]
     pub fn depth(&self) -> usize {
         let deepest = |trees: &[Self]| trees.iter().map(Self::depth).max().unwrap_or(0);
@@ -241,8 +240,8 @@ where
 
     /// The formula at `p`, by the definitions of the operators.
     ///
-    /// Guards (the distance to a child's box under operators that grow) are not
-    /// part of the definitions: the box comes from the child's promise.
+    /// Operators that grow a child use the distance to the child's box as a guard. The
+    /// definitions have no such guard, so the box comes from the child's promise.
     ///
     /// # Panics
     ///
@@ -307,8 +306,8 @@ where
         }
     }
 
-    /// As [`distance`](Self::distance), raised to the distance to the box where
-    /// the promise says that it may be below it.
+    /// As [`distance`](Self::distance), but at least the distance to the box where the promise
+    /// says that the value may be less.
     fn guarded<S: Scalar>(&self, p: Vector<S, D>) -> S {
         let child = self.distance(p);
         let shape = self.shape().unwrap_or_else(|error| panic!("{self:?}: {error}"));
@@ -342,7 +341,7 @@ fn smooth_min<S: Scalar>(profile: Profile, a: S, b: S, width: f64) -> S {
     }
 }
 
-/// The radius of a fillet over how far it fills the corner of a right angle.
+/// The radius of a fillet in a right angle, over the depth of its fill in the corner.
 const CIRCLE: f64 = 2.0 + std::f64::consts::SQRT_2;
 
 fn fold<S: Scalar, const D: usize>(
@@ -357,9 +356,9 @@ where
     values.reduce(operation).unwrap_or_else(|| panic!("an operator over nothing"))
 }
 
-/// The nearest of copies: of the point's tile, and of those beside it along axes in which
-/// the child is not symmetric or wider than its tile. Then the distance to the boxes of
-/// the others is an upper limit.
+/// The nearest copy: that of the point's tile, and of the tiles beside it along axes in which
+/// the child is not symmetric or wider than its tile. The distance to the boxes of all other
+/// copies is an upper limit.
 fn repeated<S: Scalar, const D: usize>(
     tree: &Tree<D>,
     copies: &[Copies; D],
@@ -427,8 +426,8 @@ where
     result
 }
 
-/// The field turned in a plane by a rate along an axis: asked in the box that it
-/// sweeps, with the distance to the box added.
+/// The field turned in a plane by a rate along an axis. It is evaluated in the box that the
+/// turned shape sweeps; outside, the distance to this box is added.
 fn turned<S: Scalar, const D: usize>(
     tree: &Tree<D>,
     rate: f64,

@@ -20,10 +20,10 @@ use question::{Pair, Question};
 
 pub(crate) use overlay::Touched;
 
-/// Scenes of so many bodies have so few pairs that all are told of.
+/// Reports list every pair of scenes of at most so many bodies, and only near pairs of others.
 const FEW: usize = 12;
 
-/// Finds what touches; the answer is no if nothing does.
+/// Finds the pairs that touch; the answer is no if none do.
 pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
@@ -51,7 +51,7 @@ fn answer<const D: usize>(
         report.print()?;
     }
     if interrupt.is_asked() {
-        output::remark("interrupted: of some pairs that are apart no separation is told");
+        output::remark("interrupted: some pairs that are apart are not listed");
         return Ok(Outcome::Interrupted);
     }
     let touch = pairs.iter().any(|pair| pair.verdict == Verdict::Touching);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Contacts, and what proves them, over isolines.
+//! Contacts and their proof, drawn over isolines.
 
 use palpate::field::{Aabb, Vector};
 use palpate::plot::{Arrow, Arrows, Color, Dash, Isolines, Markers, Polyline, Slice};
@@ -15,11 +15,11 @@ use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 use crate::picture::in_space;
 
-/// What is drawn of a scene's contacts.
+/// The contacts of a scene, to be drawn.
 pub(crate) struct Touched<const D: usize> {
     pairs: Vec<Pair<D>>,
     proofs: Vec<Proof<D>>,
-    /// Contacts that are farther from a slice are not shown at it [m].
+    /// A slice shows only contacts at most this far from it [m].
     near: f64,
 }
 
@@ -33,7 +33,7 @@ impl<const D: usize> Touched<D> {
         let question = Question::of(asked, scene)?;
         let mut pairs = question.near(scene)?;
         if scene.bodies.len() <= FEW {
-            // A picture of some pairs would be taken for one of all: it is whole or none.
+            // Not interruptible: a picture of some pairs would be taken for one of all pairs.
             pairs.extend(question.apart(scene, &pairs, &Interrupt::new())?);
         }
         let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
@@ -42,20 +42,20 @@ impl<const D: usize> Touched<D> {
         Ok(Self { pairs, proofs, near: question.settings.manifold.spacing })
     }
 
-    /// The middle of the deepest contact, or of the shortest way between bodies.
+    /// The middle of the deepest contact, or of the shortest segment between bodies.
     pub(crate) fn deepest(&self) -> Option<Vector<f64, D>> {
         let contacts = self.pairs.iter().flat_map(|pair| &pair.contacts);
         let deepest = contacts.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
         Some((deepest.point_a + deepest.point_b) * 0.5)
     }
 
-    /// How many pairs touch, and how many boxes prove what is drawn.
+    /// How many pairs touch, and how many boxes the drawn proofs have.
     pub(crate) fn counts(&self) -> (usize, usize) {
         let touching = self.pairs.iter().filter(|pair| pair.verdict == Verdict::Touching);
         (touching.count(), self.proofs.iter().map(|proof| proof.boxes.len()).sum())
     }
 
-    /// Draws all this over isolines.
+    /// Draws contacts and proofs over `isolines`.
     pub(crate) fn draw(&self, isolines: Isolines, plane: &Slice) -> Result<Isolines, Failure> {
         let mut isolines = isolines;
         if !self.proofs.is_empty() {
@@ -93,7 +93,7 @@ impl<const D: usize> Touched<D> {
     }
 }
 
-/// Where the plane cuts the boxes of a proof: closed lines.
+/// The closed lines in which the plane cuts the boxes of a proof.
 fn cuts<const D: usize>(
     proof: &Proof<D>,
     plane: &Slice,

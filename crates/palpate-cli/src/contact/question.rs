@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What counts as touching in a scene, and the answers of the library.
+//! The settings of a contact search in a scene, and the library's answers.
 
 use std::collections::BTreeSet;
 
@@ -16,30 +16,30 @@ use crate::arguments::ContactQuestion;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 
-/// The settings of a question about a scene.
+/// The settings of a contact search in a scene.
 pub(crate) struct Question {
     pub(crate) settings: WorldSettings,
 }
 
-/// What is known of two bodies, by their places in the scene.
+/// The answer for two bodies, by their indices in the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair<const D: usize> {
     pub(crate) bodies: [usize; 2],
     pub(crate) verdict: Verdict,
-    /// `None` of two bodies that both have no bounds.
+    /// `None` if neither body has bounds.
     pub(crate) separation: Option<Certified<Nearest<D>>>,
-    /// Where they touch; of bodies that are apart, the ends of a way between them.
+    /// Where the bodies touch; for bodies that are apart, the witness points.
     pub(crate) contacts: Vec<Contact<D>>,
-    /// How many contacts there are of each patch.
+    /// The number of contacts of each patch.
     pub(crate) groups: Vec<usize>,
-    /// How many contacts were left out.
+    /// The number of dropped contacts.
     pub(crate) dropped: usize,
-    /// `false` if the budget was spent before the whole region was looked at.
+    /// `false` if the budget was spent before the whole region was searched.
     pub(crate) is_whole: bool,
 }
 
 impl Question {
-    /// Lengths that are not given are shares of the smallest body.
+    /// Lengths that the command line leaves out are shares of the smallest body.
     pub(crate) fn of<const D: usize>(
         asked: &ContactQuestion,
         scene: &BuiltScene<D>,
@@ -54,7 +54,7 @@ impl Question {
         Ok(Self { settings: WorldSettings::new(manifold, limits) })
     }
 
-    /// All pairs that touch, or of which it is not known.
+    /// All pairs that touch or are undecided.
     pub(crate) fn near<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
@@ -76,7 +76,7 @@ impl Question {
         Ok(pairs.collect())
     }
 
-    /// All pairs but those in `near`, with the separation that proves each apart; fewer if
+    /// All pairs but those in `near`, each with the separation that proves it apart; fewer if
     /// interrupted.
     pub(crate) fn apart<const D: usize>(
         &self,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What is told of contacts.
+//! The report of `palpate contact`, as text and as JSON.
 
 use std::io::Write;
 
@@ -12,10 +12,10 @@ use super::question::{Pair, Question};
 use crate::outcome::Failure;
 use crate::output::{self, shown};
 
-/// The pairs of a scene, to be told of.
+/// The pairs of a scene, to be reported.
 pub(super) struct Report<'a, const D: usize> {
     pub(super) question: &'a Question,
-    /// Of the bodies.
+    /// The names of the bodies.
     pub(super) names: &'a [&'a str],
     pub(super) pairs: &'a [Pair<D>],
 }
@@ -35,7 +35,7 @@ impl<const D: usize> Report<'_, D> {
                     found.stop,
                     found.evaluations
                 )?,
-                None => writeln!(out, ": neither is bounded, nothing is known")?,
+                None => writeln!(out, ": undecided, neither has bounds")?,
             }
             if pair.verdict == Verdict::Apart {
                 continue;
@@ -51,12 +51,12 @@ impl<const D: usize> Report<'_, D> {
                 )?;
             }
             if pair.dropped > 0 {
-                writeln!(out, "       and {} more that these span", pair.dropped)?;
+                writeln!(out, "       and {} more within these", pair.dropped)?;
             }
             if !pair.is_whole {
                 writeln!(
                     out,
-                    "       and maybe others: the budget of {} evaluations is spent (--budget, --spacing)",
+                    "       and maybe others: the budget of {} evaluations is spent; raise --budget or --spacing",
                     self.question.settings.limits.budget
                 )?;
             }
@@ -73,7 +73,7 @@ impl<const D: usize> Report<'_, D> {
         Ok(())
     }
 
-    /// Infinite bounds are null.
+    /// Writes infinite bounds as null.
     pub(super) fn print_json(&self) -> Result<(), Failure> {
         let settings = &self.question.settings;
         let pairs: Vec<Value> = self.pairs.iter().map(|pair| self.described(pair)).collect();
@@ -125,6 +125,6 @@ fn millimetres(length: f64) -> String {
 }
 
 fn joined<const D: usize>(numbers: [f64; D], digits: usize) -> String {
-    // Adding zero makes −0 a 0.
+    // Adding zero turns −0 into 0.
     numbers.map(|x| format!("{:.digits$}", x + 0.0)).join(", ")
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate descend`: a local search over an element or between two bodies, beside what is
-//! proven.
+//! `palpate descend`: a local search over an element or between two bodies, compared with the
+//! proven minimum.
 
 mod pair;
 
@@ -24,10 +24,10 @@ use crate::output::{self, Files};
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 use crate::plot::title;
 
-/// How far apart the bounds of the minimum are, as a part of the longest edge.
+/// How far apart the bounds of the minimum may be, as a share of the longest edge.
 const TOLERANCE: f64 = 1e-4;
 
-/// Room around an element in a picture, as a part of its longer side.
+/// Room around an element in a picture, as a share of its longer side.
 const MARGIN: f64 = 0.35;
 
 pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
@@ -67,7 +67,7 @@ fn element<const N: usize, const D: usize>(
     Element::new(vertices).map_err(Failure::input)
 }
 
-/// What was found over an element, and what there is.
+/// The result of a local search over an element, and the proven minimum.
 struct Answer<const D: usize> {
     method: ElementMethod,
     found: Descent<D>,
@@ -102,7 +102,7 @@ where
     Ok(Outcome::Yes)
 }
 
-/// The method that is asked for, or `first`.
+/// The requested method, or `first`.
 fn method<T: FromStr<Err = UnknownMethod>>(
     options: &DescendOptions,
     first: T,
@@ -112,10 +112,10 @@ fn method<T: FromStr<Err = UnknownMethod>>(
         .map_err(|error| Failure::input(format!("--method: {error}")))
 }
 
-/// Those of the search with a proof, about something of this size [m].
+/// The limits of the search with a proof, over something of this size [m].
 fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
     let tolerance = tolerance.unwrap_or(TOLERANCE * size);
-    // Written so that what is no number is refused.
+    // Written so that NaN is refused.
     if tolerance >= 0.0 && tolerance.is_finite() {
         Ok(Limits::new(tolerance))
     } else {
@@ -124,7 +124,7 @@ fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
     }
 }
 
-/// What a local search found, for JSON.
+/// The result of a local search, as JSON.
 fn described<const D: usize>(found: &Descent<D>) -> Value {
     let path: Vec<_> = found.path.iter().map(|p| p.0.to_vec()).collect();
     json!({
@@ -136,17 +136,18 @@ fn described<const D: usize>(found: &Descent<D>) -> Value {
     })
 }
 
-/// A length as figures have it.
+/// A length as figures write it.
 fn written(length: f64) -> String {
-    /// Of a metre.
+    /// Parts of a metre.
     const ROUND: f64 = 1e5;
-    // Zero has no sign.
+    // Adding zero turns −0 into 0.
     let rounded = (length * ROUND).round() / ROUND + 0.0;
     format!("{rounded:.5} m").replace('-', "−")
 }
 
 impl<const D: usize> Answer<D> {
-    /// How much lower some point is at least [m]; zero if none is known to be.
+    /// How much lower than the found value some point is at least [m]; zero if no lower point
+    /// is proven.
     fn missed_by(&self) -> f64 {
         (self.found.value - self.certified.upper).max(0.0)
     }
@@ -218,8 +219,8 @@ where
     Ok(Figure::new(title(scene)).with_caption(caption).with_isolines(isolines))
 }
 
-/// The plane of the element, its first edge to the right; one of many through it where it
-/// is on a line.
+/// The plane of the element, with its first edge to the right. If the element lies on a line,
+/// one of the planes through the line.
 fn plane<const N: usize, const D: usize>(element: &Element<N, D>) -> Result<Slice, PlotError> {
     if D < 3 {
         return Ok(Slice::planar());
@@ -228,7 +229,7 @@ fn plane<const N: usize, const D: usize>(element: &Element<N, D>) -> Result<Slic
     let [origin, .., last] = vertices.as_slice() else { return Slice::xy(0.0) };
     let way = |to: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| to[k] - origin[k]) };
     let [first, second] = [way(&vertices[1]), way(last)];
-    // What two points leave open: upright, and else whatever is across.
+    // On a line, up is y, or z if the line is along y; an edge of no length is passed over.
     let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let ways = [(first, second), (first, y), (first, z), (second, y), (second, z)];
     let slices = ways.map(|(right, up)| Slice::free(*origin, right, up));

@@ -21,7 +21,7 @@ use crate::output;
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 use crate::plot::title;
 
-/// What was found from each start, and what there is.
+/// The result of the search from each start, and the proven separation.
 struct Answer<'a, const D: usize> {
     method: PairMethod,
     bodies: [&'a str; 2],
@@ -41,7 +41,7 @@ where
     let [a, b, ..] = scene.bodies.as_slice() else {
         let count = scene.bodies.len();
         let problem =
-            format!("--start is for scenes with two bodies or more, this has {count}");
+            format!("--start needs a scene with two bodies or more, this has {count}");
         return Err(Failure::input(problem));
     };
     let bounds = input::bounds(scene)?;
@@ -102,7 +102,8 @@ impl<const D: usize> Answer<'_, D> {
         Ok(())
     }
 
-    /// The paths over the isolines, in space on the level plane of what is proven.
+    /// The paths over the isolines; in space, on the level plane through the proven witness
+    /// points.
     fn figure(
         &self,
         scene: &BuiltScene<D>,

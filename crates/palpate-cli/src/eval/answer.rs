@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How the answer for one point is written.
+//! The answer for one point, as JSON and as a row.
 
 use palpate::query::AtPoint;
 use serde_json::{Value, json};
@@ -30,7 +30,7 @@ pub(crate) fn header<const D: usize>() -> Vec<String> {
     header
 }
 
-/// The row; the surface point is empty where none was found.
+/// The row of an answer; the surface point is empty where none was found.
 pub(crate) fn row<const D: usize>(answer: &AtPoint<D>) -> Vec<String> {
     let mut row: Vec<String> = answer.point.0.iter().map(f64::to_string).collect();
     row.push(answer.distance.to_string());

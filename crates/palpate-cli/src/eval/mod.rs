@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate eval`: what a scene says at points.
+//! `palpate eval`: evaluates a scene at points.
 
 mod answer;
 mod stream;
@@ -52,7 +52,7 @@ fn evaluate<const D: usize>(
         writeln!(out, "gradient       {}", input::joined(&answer.gradient.0))?;
         match answer.surface {
             Some(surface) => writeln!(out, "surface point  {} m", input::joined(&surface.0))?,
-            None => writeln!(out, "surface point  none found from here")?,
+            None => writeln!(out, "surface point  none found")?,
         }
         writeln!(out, "inside         {}", if answer.is_inside { "yes" } else { "no" })?;
         writeln!(out, "safe radius    {} m", answer.safe_radius)?;

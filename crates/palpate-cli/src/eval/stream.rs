@@ -39,8 +39,8 @@ pub(crate) fn run<const D: usize>(
     destination.write(|out| stream.evaluate(out))
 }
 
-/// As many threads as are asked for, but no more than the machine runs at once: others would
-/// wait, each with a batch in memory. Zero stands for all.
+/// The requested number of threads, but no more than the machine runs at once: further ones
+/// would wait, each with a batch in memory. Zero means as many as the machine runs.
 fn threads(asked: Option<usize>) -> usize {
     let asked = asked.unwrap_or(0);
     let most = std::thread::available_parallelism().map_or(1, NonZero::get);
@@ -50,7 +50,7 @@ fn threads(asked: Option<usize>) -> usize {
     asked.min(most)
 }
 
-/// Points of a file, and how they are evaluated.
+/// A file of points, and how they are evaluated.
 struct Stream<'a, const D: usize> {
     shape: &'a Shape<D>,
     points: &'a Path,
@@ -59,16 +59,16 @@ struct Stream<'a, const D: usize> {
     interrupt: &'a Interrupt,
 }
 
-/// Points as they are read.
+/// The rows of a file that are still to be read.
 struct Rows<const D: usize> {
     reader: csv::Reader<File>,
-    /// Where the coordinates are in a row.
+    /// The columns of the coordinates.
     columns: [usize; D],
     record: StringRecord,
 }
 
 impl<const D: usize> Stream<'_, D> {
-    /// Writes the answers, batch by batch. One that is interrupted ends after a whole row.
+    /// Writes the answers, batch by batch. An interrupted run ends after a whole row.
     fn evaluate(&self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let file = File::open(self.points).map_err(|error| self.wrong(error))?;
         let bar = bar(file.metadata().map(|metadata| metadata.len()).unwrap_or(0));
@@ -80,7 +80,7 @@ impl<const D: usize> Stream<'_, D> {
         let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
         let mut done = 0;
         loop {
-            // Whoever reads a pipe sees what is done.
+            // Flushed, so that a reader of a pipe sees every finished batch.
             out.flush()?;
             self.read(&mut rows, &mut batch)?;
             if self.interrupt.is_asked() {
@@ -110,7 +110,7 @@ impl<const D: usize> Stream<'_, D> {
         Ok(Rows { reader, columns, record: StringRecord::new() })
     }
 
-    /// Reads the next batch; fewer points at the end, and if interrupted.
+    /// Reads the next batch, which is shorter at the end of the file and if interrupted.
     fn read(&self, rows: &mut Rows<D>, batch: &mut Vec<Point<D>>) -> Result<(), Failure> {
         let Rows { reader, columns, record } = rows;
         batch.clear();
@@ -124,7 +124,7 @@ impl<const D: usize> Stream<'_, D> {
                 None => batch.push(Vector(point.map(Option::unwrap_or_default))),
                 Some(axis) => {
                     let field = record.get(columns[axis]).unwrap_or_default();
-                    let rule = "a finite number is needed";
+                    let rule = "a coordinate must be a finite number";
                     return Err(self.wrong(format!("line {line}: {rule}, got {field:?}")));
                 }
             }
@@ -137,7 +137,7 @@ impl<const D: usize> Stream<'_, D> {
     }
 }
 
-/// Shown on a terminal alone; hidden where standard error is a file.
+/// The progress bar, which is hidden unless standard error is a terminal.
 fn bar(size: u64) -> ProgressBar {
     ProgressBar::new(size).with_style(
         ProgressStyle::with_template("{bar:40} {percent} % of {total_bytes}, {eta} left")
@@ -151,8 +151,8 @@ fn number(record: &StringRecord, column: usize) -> Option<f64> {
     (number.abs() <= palpate::field::LARGEST_LENGTH).then_some(number)
 }
 
-/// The lines for up to a block of points. What a point's line says depends on the
-/// point alone, so any number of threads writes the same bytes.
+/// The lines for up to a block of points. A point's line depends only on the point, so any
+/// number of threads writes the same bytes.
 fn answers<const D: usize>(shape: &Shape<D>, points: &[Point<D>], as_json: bool) -> String {
     let mut block = Block::<f64, D, BLOCK>::zero();
     let mut found = Gradients::<f64, D, BLOCK>::zero();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The picture of a run: the path, the proxy and the force over isolines on the slices
-//! where most was felt, and the force over time.
+//! The picture of a run: the path, the proxy and the force over isolines on the slices with
+//! most contacts, and the force over time.
 
 use palpate::field::{Aabb, Point, Vector};
 use palpate::haptics::{Energy, HeldTool};
@@ -19,17 +19,18 @@ use crate::input::{self, promise_in_words};
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
 
-/// Points of a line at most: more than a picture has columns.
+/// The most points of a line: more than a picture has columns.
 const MOST_POINTS: usize = 2000;
 
-/// Arrows of force are this part of the picture's sides apart, so that each is seen.
+/// The distance between arrows of force, as a share of the picture's sides; closer ones
+/// overlap.
 const ARROW_SPACING: f64 = 0.025;
 
-/// How much shorter arrows are drawn where there are two views: each is half as large.
+/// How much shorter arrows are in figures of two views, which are half as large.
 const ARROWS_OF_VIEWS: f64 = 1.6;
 
-/// Contact points drawn one by one at most: of more, all proxies are one line, and the chart
-/// shows their largest force.
+/// Up to so many contact points are drawn one by one. The proxies of more are drawn alike, and
+/// the chart shows their largest force.
 const MOST_CONTACTS: u32 = 3;
 
 pub(crate) fn draw<const D: usize>(
@@ -53,7 +54,7 @@ fn figure<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    // A scene that was felt has bounds.
+    // The unit box stands for a scene without bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
     let bounds = with_tools(bounds, rows);
@@ -104,15 +105,15 @@ where
     })
 }
 
-/// Bounds that hold the origins of tools that touch, too: they may be far from what is touched.
+/// Bounds that also hold the origins of tools in contact, which may be far from the bodies.
 fn with_tools<const D: usize>(bounds: Aabb<D>, rows: &[TraceRow<D>]) -> Aabb<D> {
     let touching = rows.iter().filter(|row| row.contact && row.tool.is_some());
     let origins = Aabb::around(touching.map(|row| row.proxy));
     origins.map_or(bounds, |origins| bounds.union(&origins))
 }
 
-/// The torque of a tool over time, and what a device that turns gave of it; none of contact
-/// points.
+/// The torque of a tool over time, and the torque written to a device with rotation. `None` for
+/// contact points.
 fn torques<const D: usize>(rows: &[TraceRow<D>]) -> Result<Option<Chart>, PlotError> {
     let every = rows.len().div_ceil(MOST_POINTS).max(1);
     let of = |torque: fn(&HeldTool<D>) -> Option<Vector<f64, 3>>| {
@@ -152,7 +153,7 @@ fn energies<const D: usize>(rows: &[TraceRow<D>], contacts: usize) -> Result<Cha
     Ok(chart)
 }
 
-/// The rows of contact points that are drawn alike, and what their number adds to a name.
+/// The rows of contact points that are drawn alike, and the suffix of their name.
 struct Contacts<'a, const D: usize> {
     suffix: String,
     points: Vec<Vec<&'a TraceRow<D>>>,
@@ -163,7 +164,7 @@ impl<'a, const D: usize> Contacts<'a, D> {
         format!("{what}{}", self.suffix)
     }
 
-    /// The pieces of the lines of all points, by where they lie.
+    /// The lines of all points, cut into pieces near, in front of and behind the slice.
     fn parted(&self, slice: &FeltSlice, place: fn(&TraceRow<D>) -> Point<D>) -> Vec<Seen> {
         let line = |rows: &Vec<&'a TraceRow<D>>| {
             let line: Vec<_> = thinned(rows).map(place).collect();
@@ -185,8 +186,8 @@ impl<'a, const D: usize> Contacts<'a, D> {
     }
 }
 
-/// The isolines with the lines of the contact points: what is far from the slice faint, below
-/// what is near it.
+/// The isolines with the lines of the contact points. Pieces far from the slice are faint, and
+/// lie below those near it.
 fn overlaid<const D: usize>(
     mut isolines: Isolines,
     slice: &FeltSlice,
@@ -236,7 +237,7 @@ fn overlaid<const D: usize>(
     Ok(isolines)
 }
 
-/// The forces near the slice, as far as they lie in it, at places `spacing` apart [m].
+/// The parts in the slice of forces near it, at places `spacing` apart [m].
 fn arrows<const D: usize>(
     slice: &FeltSlice,
     contact: &Contacts<'_, D>,
@@ -253,7 +254,7 @@ fn arrows<const D: usize>(
             touch.iter().map(|row| slice.plane.project(in_space(row.proxy))).collect();
         for i in evenly(&tails, spacing) {
             let vector = slice.plane.project_vector(in_space(touch[i].force));
-            // The hand may come to a place again.
+            // The hand may return to a place, which has its arrow already.
             if arrows.iter().all(|arrow| apart(arrow.tail, tails[i]) >= 0.6 * spacing) {
                 arrows.push(Arrow { tail: tails[i], vector });
             }
@@ -262,8 +263,8 @@ fn arrows<const D: usize>(
     arrows
 }
 
-/// The points in the middles of equal parts of a line, each about `spacing` long [m]: one at
-/// least.
+/// Divides a line into equal parts about `spacing` long [m], and returns the index of the point
+/// in the middle of each; at least one.
 fn evenly(line: &[[f64; 2]], spacing: f64) -> Vec<usize> {
     let ways = line.windows(2).map(|pair| apart(pair[0], pair[1]));
     let sums = ways.scan(0.0, |sum, way| {
@@ -294,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arrows_stand_in_the_middle_of_what_they_are_for() {
+    fn an_arrow_stands_in_the_middle_of_its_part_of_the_line() {
         let line: Vec<_> = (0..=100).map(|i| [0.01 * f64::from(i), 2.0]).collect();
         assert_eq!(evenly(&line, 0.4), [25, 75]);
         assert_eq!(evenly(&line, 5.0), [50]);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the hand holds, and where its workspace lies.
+//! The device that the hand holds, and its workspace.
 
 use palpate::devices::HandPath;
 use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
@@ -12,8 +12,8 @@ use super::tool::Held;
 use crate::arguments::DeviceChoice;
 use crate::outcome::Failure;
 
-/// Where the workspace of the device lies: where the scene says, or else, that of a simulated
-/// device, so that it holds the scene, or what holds the places of a tool.
+/// The workspace map: that of the scene; else, for a simulated device, one whose workspace
+/// holds `bounds`, of the scene or of the places of a tool.
 pub(super) fn map<const D: usize>(
     scene: &BuiltScene<D>,
     tool: Option<&Held<D>>,
@@ -28,7 +28,8 @@ pub(super) fn map<const D: usize>(
     }
 }
 
-/// The device, with a hand on each path of the world, which turns one that turns by `turns`.
+/// The device, with a hand for each path in world coordinates. `turns` is the rotation of the
+/// hand over time, for a device with rotation.
 pub(super) fn device<const D: usize>(
     choice: &DeviceChoice,
     (paths, turns): (Vec<HandPath<D>>, Option<HandPath<3>>),

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate feel`: a servo, a device in a hand, and a report.
+//! `palpate feel`: runs a servo with a device in a hand, and reports.
 
 mod figure;
 mod held;
@@ -31,20 +31,20 @@ use crate::output;
 use crate::picture::{Dimensions, Drawable};
 use outputs::Outputs;
 
-/// How long a scene is felt if no path and no duration say otherwise [s].
+/// The duration of a run without a path and without `--duration` [s].
 const DURATION: f64 = 10.0;
 
-/// How far behind each other the contact points of the built-in hand go [s].
+/// How far each contact point of the built-in hand lags behind the one before [s].
 const LAG: f64 = 0.5;
 
-/// The longest run of which every tick is kept: an hour at 1 kHz. Each takes about
-/// 150 bytes.
+/// The most rows that a run keeps: an hour of one contact point at 1 kHz. Each takes about 150
+/// bytes.
 const MOST_ROWS: f64 = 3.6e6;
 
 /// The most ticks of a run: eleven days at 1 kHz.
 const MOST_TICKS: f64 = 1e9;
 
-/// The most contact points: more than all hands in a room have fingers.
+/// The most contact points: more than any device has.
 const MOST_CONTACTS: usize = 1000;
 
 /// The contact points of the built-in hand on the built-in gallery: two hands.
@@ -84,7 +84,7 @@ where
         }
     };
     let scene = &asked(scene, options);
-    // Before a path of that length is made.
+    // Checked before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let tool = tool::of_scene(scene, options)?;
     let paths = match &tool {
@@ -111,8 +111,10 @@ where
     let keeps_rows = outputs.keep_ticks();
     let rows = ticks * contacts as f64;
     if keeps_rows && rows > MOST_ROWS {
-        let problem =
-            format!("--trace, --plot and --wav keep {MOST_ROWS} rows at most, not {rows}");
+        let problem = format!(
+            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {rows}; shorten --duration, \
+             lower --rate, or use fewer --points"
+        );
         return Err(Failure::input(problem));
     }
     let mut recorder =
@@ -158,7 +160,7 @@ where
     } else {
         write!(out, "{}", report::text(name, &outcome, (&servo, device.profile(), &accepted)))?;
     }
-    // Said after the report, which is whole whatever becomes of the files.
+    // After the report, which is whole even if a file cannot be written.
     written?;
     Ok(match outcome.ending {
         Ending::Finished => Outcome::Yes,
@@ -167,7 +169,7 @@ where
     })
 }
 
-/// What became of the stiffness and damping of each body.
+/// The accepted stiffness and damping of each body.
 fn accepted_as_json<const D: usize>(
     scene: &BuiltScene<D>,
     accepted: &[Accepted],
@@ -185,13 +187,13 @@ fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
     let ticks = duration * rate;
     if ticks > MOST_TICKS {
         return Err(Failure::input(format!(
-            "a run has {MOST_TICKS:e} ticks at most; {duration} s at {rate} Hz are {ticks:e}"
+            "a run has at most {MOST_TICKS:e} ticks; {duration} s at {rate} Hz are {ticks:e}"
         )));
     }
     Ok(ticks)
 }
 
-/// The scene with what the command line says in place of it: materials and what touches.
+/// The scene, with materials and tool replaced by those of the command line.
 fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltScene<D> {
     let mut scene = scene.clone();
     for body in &mut scene.bodies {
@@ -214,8 +216,8 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
     scene
 }
 
-/// The paths of the contact points: from the file, or tours of the scene, those of the tool's
-/// points beside each other, others one behind the other.
+/// The paths of the contact points, from the file or tours of the scene. On a tour the points
+/// of a tool go side by side, others one behind the other.
 fn paths<const D: usize>(
     scene: &BuiltScene<D>,
     options: &FeelOptions,
@@ -227,7 +229,7 @@ fn paths<const D: usize>(
     let default = if options.scene.is_none() { FINGERS } else { 1 };
     let points = if beside.is_empty() { options.points.unwrap_or(default) } else { 1 };
     if points > MOST_CONTACTS {
-        let problem = format!("at most {MOST_CONTACTS} points, got {points}");
+        let problem = format!("--points must be at most {MOST_CONTACTS}, got {points}");
         return Err(Failure::input(problem));
     }
     let duration = options.duration.unwrap_or(DURATION);
@@ -249,7 +251,7 @@ fn paths<const D: usize>(
     }
 }
 
-/// Where the contact points of a tool are, from where the hand is; none if it has none.
+/// The contact points of the scene's tool, relative to the hand; empty if it has none.
 fn beside<const D: usize>(scene: &BuiltScene<D>) -> Vec<Vector<f64, D>> {
     let rotation = scene.device_rotation();
     let points = scene.tool.as_ref().map_or(&[][..], |tool| tool.points.as_slice());

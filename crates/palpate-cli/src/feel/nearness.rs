@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A path in space as it is seen on a slice: at it, in front of it, behind it.
+//! Cuts a path in space by a slice: near it, in front of it, behind it.
 
 use palpate::field::Vector;
 use palpate::plot::Slice;
@@ -11,7 +11,7 @@ use crate::picture::in_space;
 /// Pieces of a line, in plane coordinates [m].
 pub(super) type Pieces = Vec<Vec<[f64; 2]>>;
 
-/// A line, taken apart by where it lies.
+/// The pieces of a line, by the side of the slice on which they lie.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Seen {
     pub(super) near: Pieces,
@@ -19,7 +19,7 @@ pub(super) struct Seen {
     pub(super) behind: Pieces,
 }
 
-/// Where a point lies, seen from the viewer of a slice.
+/// Where a point lies for the viewer of a slice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Near,
@@ -27,7 +27,8 @@ pub(super) enum Side {
     Behind,
 }
 
-/// Where `point` lies to `plane`; near it within `near` [m].
+/// The side of `plane` on which `point` lies; `near` [m] is the largest distance that counts as
+/// near.
 pub(super) fn side<const D: usize>(plane: &Slice, near: f64, point: Vector<f64, D>) -> Side {
     let elevation = plane.elevation(in_space(point));
     if elevation.abs() <= near {
@@ -39,7 +40,7 @@ pub(super) fn side<const D: usize>(plane: &Slice, near: f64, point: Vector<f64, 
     }
 }
 
-/// The line through `points`, taken apart. Pieces begin where the last one ends, so that there
+/// Takes the line through `points` apart. Each piece begins where the one before ends, so there
 /// are no gaps.
 pub(super) fn taken_apart<const D: usize>(
     plane: &Slice,

@@ -13,7 +13,7 @@ use crate::output::{Destination, Files};
 use crate::picture::{Dimensions, Drawable, Picture};
 use crate::trace;
 
-/// The files that are asked for.
+/// The requested files.
 pub(super) struct Outputs {
     trace: Option<Destination>,
     wav: Option<Destination>,
@@ -36,12 +36,13 @@ impl Outputs {
         })
     }
 
-    /// `true` if any file shows ticks.
+    /// `true` if any file needs the recorded ticks.
     pub(super) fn keep_ticks(&self) -> bool {
         self.trace.is_some() || self.wav.is_some() || self.plot.is_some()
     }
 
-    /// Writes all of them, whatever becomes of one, from the ticks at `rate` [Hz].
+    /// Writes all files from the ticks at `rate` [Hz]; if one fails, the others are still
+    /// written.
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,

@@ -14,7 +14,7 @@ use palpate::servo_loop::{Ending, RunReport, ToolReport};
 use crate::output::shown;
 use crate::times::{quantiles, write_histogram};
 
-/// What is shown while the servo runs.
+/// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
     format!(
         "{:7.2} s  {:2} in contact  {:5.2} N  {:5.2} mm deep  {:3} evaluations  {:6.2} µs",
@@ -104,14 +104,11 @@ fn write_report<const D: usize>(
     match &report.ending {
         Ending::Finished => {}
         Ending::Interrupted => {
-            writeln!(out, "  interrupted: this is what was felt until then")?
+            writeln!(out, "  interrupted: this report covers the run until then")?
         }
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
         Ending::Panicked { message } => {
-            writeln!(
-                out,
-                "  the servo stopped on a defect, forces were set to zero: {message}"
-            )?;
+            writeln!(out, "  the servo panicked, forces were set to zero: {message}")?;
         }
     }
     let share = 100.0 * report.contact_time / report.duration.max(f64::MIN_POSITIVE);
@@ -161,7 +158,7 @@ fn write_report<const D: usize>(
     Ok(())
 }
 
-/// What was made softer as the device cannot render it, and why.
+/// What was made softer because the device cannot render it, and which limit is exceeded.
 fn write_accepted(out: &mut String, accepted: &[Accepted], what: &str) -> std::fmt::Result {
     let scaled = accepted.iter().filter(|accepted| accepted.factor < 1.0);
     let Some(softest) = scaled.min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
@@ -176,7 +173,7 @@ fn write_accepted(out: &mut String, accepted: &[Accepted], what: &str) -> std::f
     Ok(())
 }
 
-/// What a tool felt beside force and depth.
+/// The lines of a tool's report that contact points do not have.
 fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
     write!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
     match tool.largest_torque_written {
@@ -201,7 +198,7 @@ fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
     Ok(())
 }
 
-/// What the safety chains of all points did together.
+/// The actions of the safety chains of all points together.
 fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
     if safety.is_empty() {
         return Ok(());
@@ -242,7 +239,7 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
     writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
 }
 
-/// The numbers of all bodies: one, or from the least to the largest.
+/// The numbers of all bodies: one number if they are equal, else their range.
 fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
     let least = numbers.clone().fold(f64::INFINITY, f64::min);
     let largest = numbers.fold(f64::NEG_INFINITY, f64::max);
@@ -253,7 +250,7 @@ fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
     }
 }
 
-/// A number with four digits that count.
+/// A number with four significant digits.
 fn rounded(number: f64) -> String {
     let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
     let unit = 10.0_f64.powi(-digits);

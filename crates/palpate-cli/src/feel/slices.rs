@@ -1,41 +1,43 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The slices of a scene in which most was felt.
+//! The slices of a scene with most contacts.
 
 use palpate::field::{Aabb, Vector};
 use palpate::plot::{PlotError, Slice};
 use palpate::servo_loop::TraceRow;
 
-/// What is near a slice, as a part of the scene's shortest edge: a slice shows what a body is
-/// like so far from it.
+/// The distance that counts as near a slice, as a share of the scene's shortest edge: within it
+/// a body's cross-section changes little.
 const NEAR: f64 = 0.1;
 
-/// The least of it, as a part of the longest edge: a line's width or two in a picture.
+/// The least such distance, as a share of the longest edge: one or two widths of a line in a
+/// picture.
 const LEAST_NEAR: f64 = 0.02;
 
-/// What a contact counts for at the border of a scene, as a part of what it does in the middle.
+/// The weight of a contact at the border of a scene, over its weight in the middle.
 const BORDER: f64 = 0.4;
 
-/// Contacts that choose a slice, at most: every few ticks one tells as much as all.
+/// The most contacts that are weighed to choose a slice; a sample of the ticks gives the same
+/// choice.
 const MOST_CONTACTS: usize = 2000;
 
-/// A slice to be drawn, and how far from it something is still at it.
+/// A slice to be drawn, and the distance that counts as near it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FeltSlice {
     pub(super) plane: Slice,
-    /// How it is seen and where it lies; empty in the plane.
+    /// The view's direction and the slice's position; empty in the plane.
     pub(super) heading: String,
-    /// [m]; infinite in the plane.
+    /// The largest distance that counts as near [m]; infinite in the plane.
     pub(super) near: f64,
 }
 
-/// The slices to draw of what was felt: the one there is in the plane; in space an upright one,
-/// from the front or the side, and a level one, each where most contacts lie.
+/// The slices to draw: the plane itself in 2D; in space an upright one, seen from the front or
+/// the side, and a level one, each where most contacts lie.
 ///
 /// # Errors
 ///
-/// [`PlotError::NotFinite`] for bounds that are not.
+/// [`PlotError::NotFinite`] for bounds that are not finite.
 pub(super) fn felt_slices<const D: usize>(
     bounds: &Aabb<D>,
     rows: &[TraceRow<D>],
@@ -64,7 +66,7 @@ pub(super) fn felt_slices<const D: usize>(
     Ok(vec![upright, level])
 }
 
-/// What is near a slice of a scene [m]: a round number.
+/// The distance that counts as near a slice of a scene [m]: a round number.
 fn nearness<const D: usize>(bounds: &Aabb<D>) -> f64 {
     let edges = bounds.half_extents().0.map(|half| 2.0 * half);
     let shortest = edges.into_iter().fold(f64::INFINITY, f64::min);
@@ -75,7 +77,7 @@ fn nearness<const D: usize>(bounds: &Aabb<D>) -> f64 {
     power * round.unwrap_or(1.0)
 }
 
-/// A place [m] with the decimals that tell a tenth of `near` apart, where they are needed.
+/// A place [m] with enough decimals for a tenth of `near`, without trailing zeros.
 fn written(place: f64, near: f64) -> String {
     let decimals = (1.0 - near.log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{place:.decimals$}");
@@ -84,19 +86,19 @@ fn written(place: f64, near: f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.replace('-', "−") }
 }
 
-/// A place along an axis [m], and how much was felt there.
+/// A place along an axis [m], and the weight of the contacts near it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     place: f64,
     felt: f64,
 }
 
-/// Where a slice across `axis` has most contacts near it.
+/// The place at which a slice across `axis` has the largest weight of contacts near it.
 ///
-/// A contact counts by the square of the sine between its normal and the axis: one that is
-/// pressed straight through the slice lies on a face, which the slice would but graze, and its
-/// force is not seen. Of equal places, the one nearest the middle; it shows most of the bodies,
-/// so that at the border of the scene a contact counts for less, by [`BORDER`].
+/// A contact's weight is the squared sine of the angle between its normal and the axis: a slice
+/// across the normal would only graze the face and not show the force. The weight falls to
+/// [`BORDER`] at the border of the scene, because slices near the middle show most of the
+/// bodies. Of equal places the one nearest the middle is chosen.
 fn best_place<const D: usize>(
     bounds: &Aabb<D>,
     contacts: &[(Vector<f64, D>, Vector<f64, D>)],
@@ -104,7 +106,7 @@ fn best_place<const D: usize>(
     near: f64,
 ) -> Place {
     let (middle, half) = (bounds.centre()[axis], bounds.half_extents()[axis]);
-    // Rounded as the heading says it.
+    // Rounded, so that the heading gives the place exactly.
     let unit = 0.1 * near;
     let steps = (half / (0.5 * near)) as i32;
     let places = (0..=steps)

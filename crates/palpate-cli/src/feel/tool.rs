@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The tool of a scene, if it has a shape, and where the built-in hand takes it.
+//! The tool of a scene, if it has a shape, and the built-in hand's tour with it.
 
 use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::{Aabb, Shape, Vector};
@@ -12,24 +12,25 @@ use crate::arguments::FeelOptions;
 use crate::input;
 use crate::outcome::Failure;
 
-/// Points of the tool that the built-in hand thinks of: those of the coarsest shell.
+/// The points of the tool that a tour is planned for: those of the coarsest shell.
 const POINTS: usize = 16;
 
-/// How far the built-in hand turns the tool about an axis, to and fro [rad]: enough to be felt,
-/// and not so much that the tour leads it elsewhere.
+/// How far the built-in hand swings the tool about each axis [rad]: enough to be felt, too
+/// little to leave the tour.
 const SWING: f64 = 0.15;
 
-/// In what times it does, about each axis [s]: none a multiple of another.
+/// The periods of the swings about the axes [s]: none is a multiple of another.
 const SWINGS: [f64; 3] = [3.1, 4.3, 5.7];
 
-/// Points of that path a second.
+/// Points of the swinging path per second.
 const SWING_POINTS: f64 = 20.0;
 
-/// A tool with a shape, and where its origin cannot be.
+/// A tool with a shape, and the places that its origin cannot take.
 pub(super) struct Held<const D: usize> {
     pub(super) tool: Tool<D>,
     obstacle: Shape<D>,
-    /// What holds both the bodies and the places from which the tool touches them.
+    /// A box that holds the bodies, and the places of the origin from which the tool touches
+    /// them.
     pub(super) bounds: Aabb<D>,
 }
 
@@ -41,10 +42,10 @@ pub(super) fn of_scene<const D: usize>(
     let tool = scene.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand);
     let Some(tool) = tool.map_err(Failure::input)? else { return Ok(None) };
     if options.points.is_some() {
-        let problem = "--points is for contact points: the tool of the scene has a shape";
+        let problem = "--points is not for this scene: the tool of the scene has a shape";
         return Err(Failure::input(problem));
     }
-    // As the device holds it.
+    // The workspace map turns the tool as the device holds it.
     let rotation = scene.device_rotation();
     let obstacle =
         tool.shell().obstacle(&rotation, &scene.whole, POINTS).map_err(Failure::input)?;
@@ -54,7 +55,7 @@ pub(super) fn of_scene<const D: usize>(
 }
 
 impl<const D: usize> Held<D> {
-    /// A tour of `duration` [s] that presses the tool as deep as it would a probe.
+    /// A tour of `duration` [s] that presses the tool as deep as a tour presses a probe.
     pub(super) fn path(&self, duration: f64) -> Result<HandPath<D>, Failure> {
         let radius = self.tool.shell().points().first().map_or(0.0, |point| point.radius);
         Tour::new(self.bounds, duration)
@@ -64,7 +65,7 @@ impl<const D: usize> Held<D> {
     }
 }
 
-/// How the built-in hand turns a device that turns, for `duration` [s].
+/// The rotation of the built-in hand over `duration` [s], for a device with rotation.
 pub(super) fn turns(duration: f64) -> Result<HandPath<3>, Failure> {
     let steps = (SWING_POINTS * duration).ceil().max(1.0) as usize;
     let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();

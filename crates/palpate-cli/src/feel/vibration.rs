@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a run vibrates like, as a WAV file: what fingers without force feedback are given.
+//! The vibration of a run as a WAV file, for fingers without force feedback.
 
 use std::io::Cursor;
 
@@ -14,7 +14,7 @@ use palpate::vibration::{
 use crate::outcome::Failure;
 use crate::output::Destination;
 
-/// [Hz]; the skin feels nothing above 1 kHz.
+/// The sample rate [Hz]; the skin feels nothing above 1 kHz.
 const SAMPLE_RATE: u32 = 8000;
 
 /// Writes the vibration of all contact points of a run at `rate` [Hz] together.
@@ -37,20 +37,20 @@ pub(super) fn write<const D: usize>(
             let cue = cue(scene, row, last.and_then(|last| last.get(i)), rate);
             sensations[i] = mapping.feel(&cue);
         }
-        // As many samples as there are until the tick ends, whatever the rate.
+        // All samples until the end of the tick, for rates that do not divide the sample rate.
         let end = ((tick[0].time_s + 1.0 / rate) * f64::from(SAMPLE_RATE)).round() as usize;
         let start = samples.len();
         samples.resize(end.max(start), 0.0);
         synthesiser.render(&sensations, &mut samples[start..]);
         last = Some(tick);
     }
-    // Its length goes into its header, before samples: a pipe cannot go back.
+    // The header holds the length and comes first, so the WAV is complete before it is written.
     let mut wav = Cursor::new(Vec::new());
     write_wav(&mut wav, SAMPLE_RATE, samples).map_err(Failure::input)?;
     destination.write(|out| Ok(out.write_all(wav.get_ref())?))
 }
 
-/// What a contact point meets in a tick.
+/// The cue of a contact point in a tick.
 fn cue<const D: usize>(
     scene: &BuiltScene<D>,
     row: &TraceRow<D>,

@@ -1,44 +1,45 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What the lateness of loops suggests.
+//! Advice from the measured lateness of loops.
 
 use palpate::servo_loop::{Distribution, Priority};
 
 use super::{Measured, Waiting};
 use crate::times::microseconds;
 
-/// A loop is steady if 99 % of its ticks are late by at most this part of a period: a force is
-/// then applied for about as long as the passivity of a wall assumes.
+/// A loop is steady if 99 % of its ticks are late by at most this share of a period. Then
+/// forces are held for about the period that the passivity of a wall assumes.
 const STEADY: f64 = 0.1;
 
-/// One loop is better than another if its lateness is at most this part of the other's.
+/// One loop is better than another if its lateness is at most this share of the other's.
 const BETTER: f64 = 0.5;
 
-/// A loop that was away for as long was held back by the system [ns]: Linux does so for 50 ms.
+/// The system throttled a loop that was late by this much [ns]: Linux throttles real-time
+/// threads for 50 ms.
 const HELD_BACK_NS: u64 = 45_000_000;
 
-/// Fewer ticks say nothing of one in a thousand.
+/// Fewer ticks do not give a quantile of 99.9 %.
 const ENOUGH: u64 = 1000;
 
-/// What to do, in sentences; there is one at least.
+/// Advice in sentences, at least one.
 pub(super) fn advice(measured: &[Measured], priority: &Priority, rate: f64) -> Vec<String> {
     let period_ns = 1e9 / rate;
     let [Some(normal), raised] = [false, true].map(|is_raised| Ways::of(measured, is_raised))
     else {
-        return vec!["measure for longer: there was no tick".to_owned()];
+        return vec!["measure for longer: the loops had no tick".to_owned()];
     };
     let is_worth_it = |raised: &Ways<'_>| is_better(raised.mixed.p999_ns, normal.mixed.p999_ns);
     let mut advice = vec![about_priority(&normal, raised.as_ref(), priority)];
-    // What holds with the priority that is advised.
+    // Further advice is for the priority advised here.
     let best = raised.as_ref().filter(|raised| is_worth_it(raised)).unwrap_or(&normal);
     advice.push(way_to_wait(best, period_ns));
-    // Nobody is late who does not sleep, unless the processor is taken away.
+    // A loop that does not sleep is late only if the system takes its processor away.
     let taken_ns = best.spin.max_ns.min(best.mixed.max_ns);
     if taken_ns as f64 > period_ns {
         advice.push(format!(
-            "the processor was taken away for {} from loops that were awake: end other load; \
-             in a virtual machine, give it processors of its own, or use a real one",
+            "the processor was taken away for {} from loops that did not sleep: stop other \
+             programs; give a virtual machine its own processors, or use a physical one",
             microseconds(taken_ns),
         ));
     }
@@ -46,14 +47,14 @@ pub(super) fn advice(measured: &[Measured], priority: &Priority, rate: f64) -> V
         && held_back_ns >= HELD_BACK_NS
     {
         advice.push(format!(
-            "never spin alone with a raised priority: the system held the loop back for {}, as \
-             Linux does with one that does not sleep (sched_rt_runtime_us)",
+            "never spin alone with a raised priority: the system stopped the loop for {}, as \
+             Linux does to real-time threads that do not sleep (sched_rt_runtime_us)",
             microseconds(held_back_ns),
         ));
     }
     if normal.sleep.count < ENOUGH {
         advice.push(format!(
-            "measure for longer: {} ticks a loop say little of rare delays",
+            "measure for longer: {} ticks per loop are too few to show rare delays",
             normal.sleep.count,
         ));
     }
@@ -87,7 +88,7 @@ fn is_better(a_ns: u64, b_ns: u64) -> bool {
     a_ns as f64 <= BETTER * b_ns as f64
 }
 
-/// By their 99 %: the least that is steady costs the least power.
+/// Chooses by the 99 % quantiles the steady way to wait that costs the least power.
 fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
     let Ways { sleep, mixed, spin, is_raised } = ways;
     let is_steady = |times: &Distribution| times.p99_ns as f64 <= STEADY * period_ns;
@@ -96,20 +97,24 @@ fn way_to_wait(ways: &Ways<'_>, period_ns: f64) -> String {
     if is_steady(sleep) {
         let (sleep, mixed) = (p99(sleep), p99(mixed));
         format!(
-            "{with}sleep alone will do: 99 % of the ticks are at most {sleep} late; {mixed} if \
-             it spins after that, as the servo does"
+            "{with}sleep alone suffices: 99 % of the ticks are at most {sleep} late, or {mixed} \
+             if the loop spins after sleeping, as the servo does"
         )
     } else if is_steady(mixed) {
         let (from, to) = (p99(sleep), p99(mixed));
-        format!("{with}sleep, then spin, as the servo does: the 99 % go from {from} to {to}")
+        format!(
+            "{with}sleep, then spin, as the servo does: lateness (99 %) falls from {from} to {to}"
+        )
     } else if is_steady(spin) || is_better(spin.p99_ns, mixed.p99_ns) {
         let (from, to) = (p99(mixed), p99(spin));
-        format!("{with}spin alone: the 99 % go from {from} to {to}, and a processor is taken")
+        format!(
+            "{with}spin alone: lateness (99 %) falls from {from} to {to}; it occupies a processor"
+        )
     } else {
         let least = sleep.p99_ns.min(mixed.p99_ns).min(spin.p99_ns);
         format!(
-            "{with}no way to wait is steady here: 1 % of the ticks are more than {} late, of a \
-             period of {}; a lower rate asks for less",
+            "{with}no way to wait is steady here: 1 % of the ticks are more than {} late, for a \
+             period of {}; lower the rate",
             microseconds(least),
             microseconds(period_ns as u64),
         )
@@ -122,15 +127,15 @@ fn about_priority(normal: &Ways<'_>, raised: Option<&Ways<'_>>, priority: &Prior
             let [from_ns, to_ns] = [normal, raised].map(|ways| ways.mixed.p999_ns);
             let (from, to) = (microseconds(from_ns), microseconds(to_ns));
             if is_better(to_ns, from_ns) {
-                format!("raise the priority: it brings the 99.9 % from {from} to {to}")
+                format!("raise the priority: lateness (99.9 %) falls from {from} to {to}")
             } else {
                 format!(
-                    "a raised priority changes little: the 99.9 % are {from}, and {to} with it"
+                    "a raised priority changes little: lateness (99.9 %) is {from}, and {to} with it"
                 )
             }
         }
         (None, Priority::Refused { .. }) => {
-            "allow a raised priority and measure again; on Linux, CAP_SYS_NICE or a limit \
+            "allow a raised priority and measure again: on Linux by CAP_SYS_NICE, or by a limit \
              rtprio in /etc/security/limits.conf"
                 .to_owned()
         }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate jitter`: how late a loop wakes on this machine.
+//! `palpate jitter`: measures how late a loop wakes on this machine.
 
 mod advice;
 
@@ -18,7 +18,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::times::{quantiles, write_histogram};
 
-/// The fastest loop [Hz]: no servo is faster.
+/// The highest rate [Hz], which is that of the fastest servo.
 const MOST_RATE: f64 = 10_000.0;
 
 /// The longest measurement [s]: a working day.
@@ -43,7 +43,8 @@ impl Waiting {
         }
     }
 
-    /// A loop that sleeps, then spins, does so as a servo of that priority.
+    /// The clock of a loop; one that sleeps, then spins, waits as a servo of that priority
+    /// does.
     fn clock(self, priority: &Priority) -> WallClock {
         match self {
             Self::Sleep => WallClock::spinning_for(Duration::ZERO),
@@ -74,13 +75,15 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
     let duration = NumberError::check_positive("duration", options.duration, "s")
         .map_err(Failure::input)?;
     if rate > MOST_RATE {
-        return Err(Failure::input(format!("the rate is at most {MOST_RATE} Hz, got {rate}")));
+        return Err(Failure::input(format!(
+            "--rate must be at most {MOST_RATE} Hz, got {rate} Hz"
+        )));
     }
     if duration > MOST_DURATION {
-        let problem = format!("the duration is at most {MOST_DURATION} s, got {duration}");
+        let problem = format!("--duration must be at most {MOST_DURATION} s, got {duration} s");
         return Err(Failure::input(problem));
     }
-    // Asked in a thread of its own, which is over then.
+    // Asked for in a thread that ends at once, so the priority ends with it.
     let priority = in_thread(raise_priority);
     let priorities: &[bool] =
         if priority == Priority::Raised { &[false, true] } else { &[false] };
@@ -122,7 +125,7 @@ fn measure(
     })
 }
 
-/// A priority that is raised is so until its thread ends.
+/// Runs `work` in a thread of its own, because a raised priority lasts until its thread ends.
 fn in_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let joined = std::thread::scope(|scope| scope.spawn(work).join());
     joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
@@ -155,7 +158,7 @@ fn write_text(
         let Lateness { times, missed } = &loop_measured.lateness;
         writeln!(out, "{}", loop_measured.title())?;
         let Some(times) = times else {
-            writeln!(out, "  no tick: the duration is too short")?;
+            writeln!(out, "  no tick: raise --duration")?;
             continue;
         };
         writeln!(out, "  lateness       {}", quantiles(times))?;

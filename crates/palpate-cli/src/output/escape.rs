@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Text from files as a terminal may see it.
+//! Escapes text from files for a terminal.
 //!
 //! A control character in a scene's name could move the cursor, and a bidirectional override
-//! could show a word in another order than it is written: both are shown by their numbers.
+//! could reorder what a reader sees. Both are written as their numbers.
 
 use std::borrow::Cow;
 
@@ -23,18 +23,18 @@ fn is_hidden(c: char) -> bool {
         )
 }
 
-/// `text` on one line, each hidden character as `\u{1b}`.
+/// `text` on one line, each hidden character as its number, such as `\u{1b}`.
 pub(crate) fn shown(text: &str) -> Cow<'_, str> {
     replaced(text, is_hidden, |c| c.escape_unicode().to_string())
 }
 
-/// As [`shown`], but with its lines.
+/// As [`shown`], but line breaks stay.
 pub(super) fn shown_lines(text: &str) -> Cow<'_, str> {
     replaced(text, is_hidden_in_lines, |c| c.escape_unicode().to_string())
 }
 
-/// JSON that says the same, each hidden character as `\u001b`. JSON that serde writes has such
-/// characters in strings alone.
+/// Equivalent JSON, each hidden character as its escape, such as `\u001b`. JSON that serde
+/// writes has hidden characters only in strings.
 pub(super) fn shown_json(json: &str) -> Cow<'_, str> {
     replaced(json, is_hidden_in_lines, |c| format!("\\u{:04x}", u32::from(c)))
 }
@@ -66,7 +66,8 @@ fn replaced(
 mod tests {
     use super::*;
 
-    /// Red, a new line, a right-to-left override, the one-byte escape of C1, and what stays.
+    /// An escape for red, a line break, a right-to-left override, the one-byte escape of C1,
+    /// and characters that stay.
     const HOSTILE: &str = "a\u{1b}[31mb\nc\u{202e}d\u{9b}e – é";
 
     #[test]

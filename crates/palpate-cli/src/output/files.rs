@@ -13,28 +13,28 @@ use same_file::Handle;
 use super::{Destination, Target, beside, folder, shown};
 use crate::outcome::Failure;
 
-/// The files that a run reads and writes. No two are the same, by whatever name.
+/// The files that a run reads and writes, all different by whatever name.
 #[derive(Debug, Default)]
 pub(crate) struct Files {
     inputs: Vec<(PathBuf, Identity)>,
     outputs: Vec<(PathBuf, Identity)>,
 }
 
-/// What tells files apart.
+/// The identity of a file, whatever its name.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// A file that there is, found through links of either kind, and through names in another
-    /// case where the file system takes them for the same.
+    /// An existing file, found through links of either kind, and through names in another case
+    /// where the file system ignores case.
     Existing(Handle),
-    /// A file that is to be made: its folder, and its name in lower case. Names that differ by
-    /// their case alone are one file on some systems, and are refused on all.
+    /// A new file: its folder, and its name in lower case. Names that differ only in case are
+    /// one file on some systems, and are refused on all.
     Absent(Handle, OsString),
 }
 
 impl Files {
     /// A run that reads `inputs`.
     pub(crate) fn reading<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
-        // An input that is not there is named where it is read; a pipe cannot be replaced.
+        // A missing input is an error where it is read; a pipe cannot be overwritten.
         let known = |path: &'a Path| {
             let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
             let handle = is_file.then(|| Handle::from_path(path).ok())??;
@@ -43,12 +43,12 @@ impl Files {
         Self { inputs: inputs.into_iter().filter_map(known).collect(), outputs: Vec::new() }
     }
 
-    /// Checks that an output can go to `path`, and that nothing of this run is lost by it.
+    /// Checks that the run can write `path` without losing an input or another output.
     ///
     /// # Errors
     ///
     /// If `path` is an input or another output of the run, a folder, or write-protected, or if
-    /// its folder is not there or cannot be written to.
+    /// its folder is missing or cannot be written to.
     pub(crate) fn output(&mut self, path: &Path) -> Result<Destination, Failure> {
         let wrong = |problem: String| Failure::file(path, problem);
         let unable = |error: io::Error| Failure::file(path, error);
@@ -62,7 +62,7 @@ impl Files {
             Some(found) if !found.is_file() => return Ok(direct(path)),
             Some(found) => existing(path, &found).map_err(unable)?,
             None if path.is_symlink() => {
-                return Err(wrong("is a link to a file that is not there".to_owned()));
+                return Err(wrong("is a link to a missing file".to_owned()));
             }
             None => absent(path)?,
         };
@@ -78,7 +78,7 @@ impl Files {
         if is_special(path) {
             return Ok(direct(path));
         }
-        // Made and removed: the folder can be written to.
+        // Creating and removing a file shows that the folder can be written to.
         beside(&target).map_err(|error| {
             let folder = folder(&target).display().to_string();
             wrong(format!("its folder {} cannot be written to: {error}", shown(&folder)))
@@ -96,17 +96,17 @@ fn is_special(path: &Path) -> bool {
     path.starts_with("/dev") || path.starts_with("/proc")
 }
 
-/// A file that is replaced, and its real place.
+/// An existing file, to be replaced, and its real path.
 fn existing(path: &Path, found: &Metadata) -> io::Result<(Identity, PathBuf)> {
     if found.permissions().readonly() {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "is write-protected"));
     }
-    // A file that may not be written to is not replaced either.
+    // Renaming could replace a file that may not be written to; this open fails instead.
     OpenOptions::new().append(true).open(path)?;
     Ok((Identity::Existing(Handle::from_path(path)?), fs::canonicalize(path)?))
 }
 
-/// A file that is to be made, and its place.
+/// A new file, and its path.
 fn absent(path: &Path) -> Result<(Identity, PathBuf), Failure> {
     let wrong = |problem: String| Failure::file(path, problem);
     let name = path.file_name().ok_or_else(|| wrong("names no file".to_owned()))?;
@@ -116,7 +116,7 @@ fn absent(path: &Path) -> Result<(Identity, PathBuf), Failure> {
         return Err(wrong(format!("there is no folder {}", shown(&folder))));
     }
     let handle = Handle::from_path(folder).map_err(|error| Failure::file(path, error))?;
-    // What is not Unicode is compared as it is.
+    // A name that is not Unicode is compared as it is.
     let lower =
         name.to_str().map_or_else(|| name.to_owned(), |name| name.to_lowercase().into());
     Ok((Identity::Absent(handle, lower), path.to_owned()))
@@ -208,7 +208,7 @@ mod tests {
     fn a_link_to_nothing_is_refused_and_devices_are_not() {
         let folder = Folder::with(&[]);
         std::os::unix::fs::symlink("nowhere", folder.path("link")).unwrap();
-        assert!(refusal(&mut Files::default(), &folder.path("link")).contains("not there"));
+        assert!(refusal(&mut Files::default(), &folder.path("link")).contains("missing"));
         let mut files = Files::default();
         for _ in 0..2 {
             files.output(Path::new("/dev/null")).unwrap();

@@ -3,9 +3,10 @@
 
 //! All output of the program: files, standard output, messages.
 //!
-//! A run names the files that it reads and writes to [`Files`] before it begins. What would
-//! overwrite an input, or another output, is refused there. A [`Destination`] is written beside
-//! its place and renamed when it is whole, so that a run that fails leaves the old file.
+//! Before it begins, a run names the files that it reads and writes to [`Files`], which refuses
+//! an output that would overwrite an input or another output. A [`Destination`] is written to a
+//! temporary file in the same folder and renamed when complete, so a failed run leaves the old
+//! file.
 
 mod escape;
 mod files;
@@ -26,19 +27,19 @@ pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
 /// Where an output goes.
 #[derive(Debug)]
 pub(crate) struct Destination {
-    /// As the command line names it; empty for standard output.
+    /// The path on the command line; empty for standard output.
     name: PathBuf,
     target: Target,
 }
 
-/// How an output gets to its place.
+/// How an output is written.
 #[derive(Debug)]
 enum Target {
     /// Written to standard output.
     Standard,
-    /// Written straight away: a device or a pipe cannot be replaced.
+    /// Written directly: a device or a pipe cannot be replaced.
     Direct,
-    /// Written beside this place, then renamed to it. Links are resolved.
+    /// Written to a file beside this path, then renamed to it. Links are resolved.
     Replaced(PathBuf),
 }
 
@@ -53,7 +54,7 @@ impl Destination {
         &self.name
     }
 
-    /// Writes what `fill` writes. If that fails, a file that was there before stays as it was.
+    /// Writes what `fill` writes. If that fails, an existing file stays as it was.
     pub(crate) fn write<T>(
         &self,
         fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
@@ -61,7 +62,8 @@ impl Destination {
         match &self.target {
             Target::Standard => filled(io::stdout().lock(), fill),
             Target::Direct => {
-                // Appended: behind a path such as /dev/stdout may be a file that others write.
+                // Append: a path such as /dev/stdout may lead to a file that other programs
+                // write.
                 let file = OpenOptions::new().append(true).open(&self.name);
                 file.map_err(Failure::from).and_then(|file| filled(file, fill))
             }
@@ -76,7 +78,7 @@ impl Destination {
     }
 }
 
-/// Has `fill` write to `out`, to the last byte.
+/// Calls `fill` with a buffer to `out`, and flushes it.
 fn filled<T>(
     out: impl Write,
     fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
@@ -87,7 +89,7 @@ fn filled<T>(
     Ok(answer)
 }
 
-/// Has `fill` write a file beside `place`, which then takes that place.
+/// Calls `fill` with a new file beside `place`, and renames it to `place`.
 fn replaced<T>(
     place: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
@@ -96,14 +98,14 @@ fn replaced<T>(
     let answer = filled(file.as_file(), fill)?;
     if let Ok(old) = fs::metadata(place) {
         file.as_file().set_permissions(old.permissions())?;
-        // The old file goes once the new one is on the disk.
+        // Synchronised first, so the old file goes only once the new one is on the disk.
         file.as_file().sync_data()?;
     }
     file.persist(place).map_err(|refused| refused.error)?;
     Ok(answer)
 }
 
-/// Makes a folder for outputs, and those above it, if need be.
+/// Creates a folder for outputs, and missing ones above it.
 pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| Failure::file(path, error))
 }
@@ -115,7 +117,7 @@ fn beside(place: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: the user's mask takes away from it.
+        // The permissions of any new file, from which the user's mask takes away.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder(place))

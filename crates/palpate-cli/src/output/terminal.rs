@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What is said on standard output and standard error.
+//! Writes to standard output and standard error.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -11,14 +11,14 @@ use serde_json::Value;
 use super::escape::{shown, shown_json, shown_lines};
 use crate::outcome::{Failure, Outcome};
 
-/// Standard output for an answer in words or JSON. Characters that would steer a terminal are
-/// escaped, wherever they come from.
+/// Standard output for an answer in words or JSON. It escapes characters that a terminal would
+/// obey.
 #[derive(Debug)]
 pub(crate) struct Answer {
     out: io::StdoutLock<'static>,
 }
 
-/// Where the answer of a command goes.
+/// The standard output, for the answer of a command.
 pub(crate) fn answer() -> Answer {
     Answer { out: io::stdout().lock() }
 }
@@ -31,8 +31,8 @@ impl Answer {
 }
 
 impl Write for Answer {
-    /// Takes the whole of `text`. Formatting hands on whole strings, so that no character is
-    /// cut in two.
+    /// Writes the whole of `text`. Formatting passes whole strings, so no character is cut in
+    /// two.
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         self.out.write_all(shown_lines(&String::from_utf8_lossy(text)).as_bytes())?;
         Ok(text.len())
@@ -43,34 +43,33 @@ impl Write for Answer {
     }
 }
 
-/// Ends the answer of a command: what standard output still holds is written, or the command
-/// failed.
+/// Flushes standard output at the end of a command; the command fails if that fails.
 pub(crate) fn ended(outcome: Outcome) -> Result<Outcome, Failure> {
     io::stdout().flush()?;
     Ok(outcome)
 }
 
-/// Prints help on standard output, or what is wrong with a command line on standard error;
-/// returns the exit status.
+/// Prints help on standard output, or an error of the command line on standard error; returns
+/// the exit status.
 pub(crate) fn usage(refused: &clap::Error) -> u8 {
-    // What cannot be shown is not missed.
+    // Ignored: without standard error there is nowhere to report the failure.
     let _ = refused.print();
     u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS)
 }
 
-/// Says on standard error why a command ends.
+/// Prints on standard error why a command fails.
 pub(crate) fn complain(problem: impl fmt::Display) {
     remark(format_args!("palpate: {problem}"));
 }
 
-/// Says something beside the answer, on standard error.
+/// Prints a remark beside the answer, on standard error.
 pub(crate) fn remark(text: impl fmt::Display) {
-    // A remark that cannot be shown is not missed.
+    // Ignored: a remark does not change the answer.
     let _ = writeln!(io::stderr(), "{}", shown(&text.to_string()));
 }
 
 /// Writes over the last live line on standard error.
 pub(crate) fn live(line: impl fmt::Display) {
-    // A line that cannot be shown is not missed.
+    // Ignored: the line does not change the answer.
     let _ = write!(io::stderr(), "\r{}\x1b[K", shown(&line.to_string()));
 }

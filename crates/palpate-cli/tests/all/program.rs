@@ -81,7 +81,9 @@ fn a_bad_row_is_named_by_its_line() {
     let points = folder.write("points.csv", "x_m,y_m,z_m\n0,0,0\n0,oops,0\n");
     let output = palpate(&["eval", "scenes/s1.json", "--points", &points]);
     assert_eq!(status(&output), 2);
-    assert!(errors(&output).contains("line 3: a finite number is needed, got \"oops\""));
+    assert!(
+        errors(&output).contains("line 3: a coordinate must be a finite number, got \"oops\"")
+    );
     let flat = folder.write("flat.csv", "x_m,y_m\n0,0\n");
     let output = palpate(&["eval", "scenes/s1.json", "--points", &flat]);
     assert!(errors(&output).contains("there is no column z_m for a 3D scene"));
@@ -135,7 +137,7 @@ fn a_mesh_is_good_if_it_is_watertight() {
     assert!((volume - 3.217_132_223_698_598e-5).abs() < 1e-15, "{volume}");
     let airplane = palpate(&["mesh", "testdata/meshes/airplane.ply"]);
     assert_eq!(status(&airplane), 1);
-    assert!(text(&airplane).contains("223      edges of one triangle alone"));
+    assert!(text(&airplane).contains("223      edges of one triangle only"));
     let folder = Folder::new();
     // Two halves of a square with vertices of their own.
     let halves = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nv 0 0 0\nv 1 1 0\nv 0 1 0\nf 4 5 6\n";

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The frame of what stands between two points.
+//! The frame of shapes that stand between two points.
 
 use crate::error::{ShapeError, Unit, finite, positive};
 use crate::pose::{Placement, Pose, Rotation};
@@ -39,11 +39,10 @@ impl<const D: usize> Between<D> {
         Ok(Self { placement, from, to, half_length: 0.5 * (to - from).norm() })
     }
 
-    /// As [`new`](Self::new), for what has a direction.
+    /// As [`new`](Self::new), for shapes that need a direction.
     ///
     /// # Errors
-    ///
-    /// If a coordinate is not finite, or the points are not apart.
+    /// If a coordinate is not finite, or the points are the same.
     pub(super) fn apart(from: Point<D>, to: Point<D>) -> Result<Self, ShapeError> {
         let between = Self::new(from, to)?;
         let apart = 2.0 * between.half_length;
@@ -67,7 +66,7 @@ impl<const D: usize> Between<D> {
         self.half_length
     }
 
-    /// Where the frame is.
+    /// The pose of the frame.
     pub(super) fn pose(&self) -> &Pose<D> {
         &self.placement.world_from_body
     }
@@ -86,8 +85,8 @@ impl<const D: usize> Between<D> {
 
 /// A rotation that takes the y axis to the unit vector `direction`.
 ///
-/// A reflection and a flip of one axis. Reflecting along `y + d` takes −y to
-/// `d`, along `y − d` it takes y to `d`; the longer of the two is taken, so that
+/// The rotation is a reflection and a flip of one axis. A reflection along `y + d` takes −y to
+/// `d`, one along `y − d` takes y to `d`; the longer of the two vectors is used, so that
 /// nothing cancels.
 fn turn_y_towards<const D: usize>(
     direction: Vector<f64, D>,

@@ -89,7 +89,7 @@ primitive! {
 
 /// All points within `radius` of the segment between two points. Exact.
 ///
-/// A [`Capsule`] in a frame of its own. With a radius of zero it has no inside.
+/// A [`Capsule`] along the line between the points. With a radius of zero it has no inside.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Segment};

@@ -10,8 +10,8 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::{Vector, array, unrolled};
 
-/// Halvings of the range of the unknown, in its exponent: seven leave a factor of
-/// less than 4 of the 2²⁰⁰ that doubles and aspect ratios up to a million span.
+/// Halvings of the range of the unknown's exponent. Doubles and aspect ratios up to a million
+/// span a factor of 2²⁰⁰, of which seven halvings leave less than 4.
 const HALVINGS: usize = 7;
 
 /// Newton steps after that: each doubles the digits, and the first is within a
@@ -108,7 +108,7 @@ impl<const D: usize> Ellipsoid<D> {
         let one = S::constant(1.0);
         let mut high = S::norm(scaled).max(s);
         for _ in 0..HALVINGS {
-            // The product of the roots: that of the numbers may leave the range.
+            // The product of the square roots: that of the numbers may overflow or underflow.
             let middle = s.sqrt() * high.sqrt();
             let (value, _) = sums(middle);
             s = S::select_less(value, one, s, middle);
@@ -118,14 +118,14 @@ impl<const D: usize> Ellipsoid<D> {
             let (value, slope) = sums(s);
             s = s + (value.sqrt() - one) * value / slope;
         }
-        // The shares xᵢ/rᵢ have length one, which their rounding is made to obey.
+        // The vector of the xᵢ/rᵢ has length one; normalising it removes its rounding.
         let shares: [S; D] = array!(i < D => scaled[i] / (s + excess(i)));
         let inverse = S::constant(1.0) / S::norm(shares);
         let shares = array!(i < D => shares[i] * inverse);
         let across: [S; D] = array!(i < D => shares[i].scale(1.0 / self.radii[i]));
         let inverse = S::constant(1.0) / S::norm(across);
         let normal = Vector(array!(i < D => across[i] * inverse));
-        // Along the normal: an error of the nearest point is of second order.
+        // Measured along the normal, where an error of the nearest point is of second order.
         let nearest = Vector(array!(i < D => shares[i].scale(self.radii[i])));
         ((y - nearest).dot(normal), normal)
     }
@@ -137,7 +137,7 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
         self.solve(p.abs()).0
     }
 
-    /// The gradient is the normal at the nearest point, on both sides.
+    /// The gradient is the normal at the nearest point, inside and outside.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, D>) -> (T, Vector<T, D>) {
         let (distance, normal) = self.solve(p.abs());

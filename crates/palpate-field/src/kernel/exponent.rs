@@ -33,7 +33,7 @@ impl Exponent {
         }
     }
 
-    /// The number that names it.
+    /// The exponent as a number.
     pub(crate) fn number(self) -> u32 {
         match self {
             Self::Four => 4,

@@ -41,8 +41,8 @@ use crate::vector::{Point, Vector, array};
 
 /// A closed formula for a signed distance.
 ///
-/// One branch-free function; everything else follows from it. Mark its methods
-/// `#[inline(always)]`, so that blocks of it vectorise.
+/// A kernel is one branch-free function, [`distance`](Self::distance), with its promise; all
+/// else follows. Mark the methods `#[inline(always)]`, so that the compiler vectorises blocks.
 ///
 /// ```
 /// use palpate_field::scalar::Scalar;
@@ -73,8 +73,8 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     /// The signed distance at `p` [m]: negative inside.
     fn distance<S: Scalar>(&self, p: Vector<S, D>) -> S;
 
-    /// The signed distance and its gradient: by duals, unless the formula has
-    /// something cheaper or must treat a singular point.
+    /// The signed distance and its gradient. The default evaluates the formula in duals;
+    /// override it where a gradient is cheaper by hand or a point is singular.
     ///
     /// The distance must have the same bits as [`distance`](Self::distance).
     #[inline(always)]
@@ -83,8 +83,9 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
         (result.value, Vector(result.gradient))
     }
 
-    /// Bounds over the cell whose coordinates are `cell`: by the formula, unless
-    /// it is not closed in the operations of [`AffineModel`] or a bound is tighter.
+    /// Bounds over the cell whose coordinates are `cell`. The default evaluates the formula in
+    /// models; override it where [`AffineModel`] lacks an operation or another bound is
+    /// tighter.
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, D>) -> AffineModel<N> {
         self.distance(cell)
@@ -94,7 +95,7 @@ pub trait Kernel<const D: usize>: Clone + Debug + Send + Sync + 'static {
     fn promise(&self) -> Promise<D>;
 }
 
-/// Makes a type the kernel in its field: the two differ in their parameters alone.
+/// Implements [`Kernel`] for a type by the kernel in its field; only their parameters differ.
 macro_rules! answered_by_inner {
     ($kernel:ident.$field:tt, $dimension:literal) => {
         impl Kernel<$dimension> for $kernel {
@@ -119,20 +120,20 @@ macro_rules! answered_by_inner {
 }
 pub(crate) use answered_by_inner;
 
-/// `outside`, or on the surface of a convex shape the distance of its nearest
-/// face's plane.
+/// `outside`, but on the surface of a convex shape `face`, the distance to the nearest face's
+/// plane.
 ///
-/// On an edge or corner, the direction from the nearest point is rounding and may
-/// be no normal of the shape. That of a face is one, and a face's plane is a bound
-/// from below everywhere. `size` is the shape's: on the surface is within a few
-/// roundings of it.
+/// On an edge or corner, the direction from the nearest point is only rounding, and may be no
+/// normal of the shape. The gradient of `face` is a normal, and a face's plane is a lower bound
+/// everywhere. A point counts as on the surface within a few roundings of `size`, that of the
+/// shape.
 #[inline(always)]
 pub(crate) fn face_if_on_it<S: Scalar>(outside: S, face: S, size: f64) -> S {
     S::select_less(outside, S::constant(4.0 * S::EPSILON * size), face, outside)
 }
 
-/// The distance, in a function of its own: eight copies of a formula in a loop over
-/// lanes, for each instruction set, would take minutes to compile.
+/// The distance, not inlined: eight copies of a formula in a loop over lanes, for each
+/// instruction set, would take minutes to compile.
 #[inline(never)]
 fn distance_apart<K: Kernel<D>, const D: usize>(kernel: &K, p: Point<D>) -> f64 {
     kernel.distance(p)
@@ -147,25 +148,25 @@ fn gradient_apart<K: Kernel<D>, const D: usize>(
     kernel.distance_gradient(p)
 }
 
-/// Directions that differ by less are taken as one: over a length `t`, the distance along
-/// them differs by `t·NEARLY²/2`, which is less than a rounding.
+/// Directions that differ by less count as equal: over a length `t`, distances along them
+/// differ by `t·NEARLY²/2`, which is less than a rounding.
 const NEARLY: f64 = 1e-8;
 
 /// A normal of a convex exact kernel next to `centre`, and by how much its plane through
 /// the `centre` may be too high [m].
 ///
-/// Next to an edge, at the distance d, the direction from the nearest point is off by as
-/// much as the rounding is of d, and then may be no normal of the shape: over a large cell
-/// its plane is too high by far more than a rounding.
+/// At a distance d from an edge, the direction from the nearest point is off by the rounding
+/// over d, so it may be no normal of the shape. Over a large cell its plane is then too high by
+/// far more than a rounding.
 ///
-/// Out along a normal of the nearest point, the gradient stays the same. So it is asked
-/// again where a rounding matters little, a step t out along the `direction`. If this
-/// was none of the normals, but off by τ from one, the nearest point moves along the face
-/// it comes over, and what is found is a normal there. Its plane is a bound everywhere,
-/// and at the centre too low by no more than `t·τ²/2`. Far out at once, that is less than
-/// a rounding if `direction` is confirmed. If not, the steps grow from t to `t²/ρ`, with ρ
-/// the `unit` of rounding: at the last, τ was `ρ/t`, so that each loses about `ρ/2` and
-/// that few are needed. How much is lost in all, the distances at the steps tell.
+/// Along a normal, outwards from the nearest point, the gradient is constant. So the gradient
+/// is evaluated again a step t out along `direction`, where a rounding matters little. If
+/// `direction` is off by τ from a normal, the nearest point moves along a face, and the
+/// gradient is the normal of this face. Its plane is a bound everywhere, and at the centre too
+/// low by at most `t·τ²/2`. The first step goes far out; if it confirms `direction`, this loss
+/// is less than a rounding. If not, steps grow from t to `t²/ρ`, with ρ the `unit` of rounding:
+/// after a step t the error τ is `ρ/t`, so each step loses about `ρ/2`, and few are needed. The
+/// distances at the steps give the whole loss.
 #[inline(never)]
 fn sure_normal<K: Kernel<D>, const D: usize>(
     kernel: &K,
@@ -207,14 +208,15 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
     let (distance, mut normal) = gradient_apart(kernel, centre);
     let mut rounding = operations * f64::EPSILON * (size + centre.norm());
     let radius = AffineModel::radius(&cell.0);
-    // Else what is nearest is far enough for its direction to be known over the cell.
+    // Otherwise the nearest point is so far away that its direction is precise over the cell.
     if distance < radius {
         let far = 4.0 * (size + centre.norm() + radius);
         let unit = rounding.max(f64::EPSILON * far);
         let lost;
         (normal, lost) = sure_normal(kernel, centre, (distance, normal), unit, far);
-        // Where the normal was found, at least four sizes out, the roundings of the nearest
-        // point turn it by a quarter of them, and its own by two; the cell's ends move so.
+        // The normal is evaluated at least four sizes out. There the `operations` of the
+        // nearest point turn it by a quarter of their roundings, and its own by two more; the
+        // plane moves accordingly at the ends of the cell.
         rounding += lost + (0.25 * operations + 2.0) * f64::EPSILON * radius;
     }
     let distance_at = |corner: [f64; D]| distance_apart(kernel, Vector(corner));
@@ -234,7 +236,7 @@ pub(crate) fn lipschitz_model<K: Kernel<D>, const D: usize, const N: usize>(
     by_steepness(kernel.distance(centre), &cell, operations, size)
 }
 
-/// A cell's bound by its `value` at the centre alone.
+/// A cell's bound by its `value` at the centre and the Lipschitz constant.
 #[inline(always)]
 fn by_steepness<const D: usize, const N: usize>(
     value: f64,
@@ -247,10 +249,10 @@ fn by_steepness<const D: usize, const N: usize>(
     AffineModel::lipschitz(value, 1.0, &cell.0, operations * f64::EPSILON * far)
 }
 
-/// Bounds an exact kernel that is not convex over a cell by its formula or, where that
-/// says less, as [`lipschitz_model`] does: over cells that are large or hold parts of the
-/// medial axis, a choice between far values has wide remainders; `operations` and `size`
-/// as for [`tangent_model`].
+/// Bounds an exact kernel that is not convex over a cell by its formula or, where that bound is
+/// wider, as [`lipschitz_model`] does: over cells that are large or hold parts of the medial
+/// axis, a choice between distant values has wide remainders. `operations` and `size` as for
+/// [`tangent_model`].
 #[inline(always)]
 pub(crate) fn formula_model<K: Kernel<D>, const D: usize, const N: usize>(
     kernel: &K,

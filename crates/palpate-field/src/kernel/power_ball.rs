@@ -14,15 +14,15 @@ use crate::vector::Vector;
 /// All points with `‖p‖_P ≤ radius`, where `‖p‖_P = (Σ|pᵢ|^P)^(1/P)`: between a ball and
 /// the cube around it. A bound on both sides.
 ///
-/// The shape is Lamé's, of 1818; as a change of metric of distance functions it is
-/// Quilez'. `f = ‖p‖_P − r`.
+/// `f = ‖p‖_P − r`. The shape is due to Lamé (1818), its use as a change of metric in distance
+/// functions to Quilez.
 ///
 /// # Derivation
 ///
 /// A norm is convex, and by the triangle inequality changes from `p` to `q` by at most
-/// `‖p − q‖_P ≤ ‖p − q‖`. So `f` has the Lipschitz constant 1, and its zero is at least
-/// as far as its value. On the axes it is the distance outside; along the diagonals it
-/// has the slope `D^(1/P − 1/2)`, in space 0.66 for `P` = 8.
+/// `‖p − q‖_P ≤ ‖p − q‖`. So `f` has the Lipschitz constant 1, and the surface is at least as
+/// far away as the value. On the axes it is the distance outside; along the diagonals it has
+/// the slope `D^(1/P − 1/2)`, in space 0.66 for `P` = 8.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::PowerBall};

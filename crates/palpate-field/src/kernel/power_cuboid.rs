@@ -20,11 +20,11 @@ use crate::vector::Vector;
 ///
 /// # Derivation
 ///
-/// `f + r` is the largest `w·q` for all `w ≥ 0` with `Σwᵢ^(P/(P−1)) = 1`: outside by
-/// Hölder's inequality, and where no `qᵢ` is positive the best `w` is a unit vector. So
-/// it is convex in `q`, grows with each `qᵢ`, and is convex in `p`. No such `w` is longer
-/// than one, so the Lipschitz constant is 1, and values are bounds. The curvature of
-/// these edges is zero where they meet a face.
+/// `f + r` is the maximum of `w·q` over all `w ≥ 0` with `Σwᵢ^(P/(P−1)) = 1`: by Hölder's
+/// inequality where some `qᵢ` is positive; elsewhere the best `w` is a unit vector along an
+/// axis. So `f` is convex in `q` and grows with each `qᵢ`, hence it is convex in `p`. No such
+/// `w` is longer than one, so the Lipschitz constant is 1, and values are bounds. The curvature
+/// of these edges is zero where they meet a face.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::PowerCuboid};

@@ -16,7 +16,7 @@ pub enum ParameterKind {
     LengthOrZero,
     /// A coordinate or signed offset [m].
     Coordinate,
-    /// An angle [rad]; scene files give degrees and say so in the key.
+    /// An angle [rad]; scene files may give degrees, with a key that ends in `_degrees`.
     Angle,
     /// A whole number.
     Count,
@@ -71,11 +71,11 @@ pub enum Argument {
 /// The rule by which a primitive bounds its values over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelRule {
-    /// Its formula, evaluated with models.
+    /// Its formula, evaluated in models.
     ClosedForm,
     /// The tangent plane of a convex exact field.
     Tangent,
-    /// Its Lipschitz constant alone.
+    /// Its value at the centre and its Lipschitz constant.
     Lipschitz,
 }
 
@@ -92,19 +92,18 @@ pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     /// The rule that bounds its values over a cell.
     const MODEL: ModelRule;
 
-    /// Makes it from one argument for each parameter, in their order.
+    /// Makes the primitive from one argument for each parameter, in their order.
     ///
     /// # Errors
     ///
     /// If an argument is of the wrong kind or breaks the parameter's rule.
     fn from_arguments(arguments: &[Argument]) -> Result<Self, ShapeError>;
 
-    /// The arguments that it was made from, in the order of the parameters: those given to
-    /// [`from_arguments`](Self::from_arguments) to the bit.
+    /// The arguments of the primitive, in the order of the parameters, with the bits given to
+    /// [`from_arguments`](Self::from_arguments).
     fn arguments(&self) -> Vec<Argument>;
 
-    /// One of about 1 m, without symmetry where it can be helped, for tests and
-    /// pictures.
+    /// An example of about 1 m, asymmetric where possible, for tests and pictures.
     ///
     /// # Errors
     ///
@@ -250,8 +249,7 @@ macro_rules! shape_type {
     ($dimension:tt) => { $crate::shape::Shape<$dimension> };
 }
 
-/// The type of a parameter, as its accessor gives it: of its kind, in `$dimension`
-/// dimensions.
+/// The type that a parameter's accessor returns, by its kind, in `$dimension` dimensions.
 macro_rules! parameter_type {
     (Count, $dimension:tt) => { u32 };
     (Vector, $dimension:tt) => { $crate::kernel::primitive::vector_type!($dimension) };
@@ -261,7 +259,7 @@ macro_rules! parameter_type {
     ($number:ident, $dimension:tt) => { f64 };
 }
 
-/// The unit of a parameter, as its documentation ends.
+/// The unit at the end of a parameter's documentation.
 macro_rules! parameter_unit {
     (Angle) => {
         " [rad]"
@@ -277,7 +275,7 @@ macro_rules! parameter_unit {
     };
 }
 
-/// The value of a parameter, of the field that has its name or as the declaration says.
+/// The value of a parameter: the field of its name, or the expression of the declaration.
 macro_rules! parameter_value {
     ($kernel:ident, $parameter:ident, Points) => {
         &$kernel.$parameter
@@ -310,7 +308,7 @@ macro_rules! accepted_type {
     ($number:ident, $dimension:tt) => { f64 };
 }
 
-/// The argument for what a constructor of shapes took.
+/// The [`Argument`] of a value that a constructor of shapes took.
 macro_rules! accepted {
     (Count, $dimension:tt, $value:ident) => {
         $crate::kernel::Argument::Count($value)
@@ -354,9 +352,9 @@ pub(crate) fn positions<const D: usize>(
 /// Declares a kernel as a primitive: its name, what it is, its parameters in the
 /// order of `new`, how it bounds cells, and an example.
 ///
-/// A parameter is kept in the field of its name; where there is none, `=> |kernel| …`
-/// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor
-/// of the primitive's name.
+/// A parameter's value is the field of its name; where there is no such field, `=> |kernel| …`
+/// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor of
+/// the primitive's name.
 macro_rules! primitive {
     (
         $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
@@ -376,7 +374,8 @@ macro_rules! primitive {
         primitive!(@methods [const D: usize], D, $kernel, $parameters);
     };
     (@accessors [] any, $kernel:ty, $parameters:tt) => {
-        // Numbers alone: a kernel that is the same in any dimension has no vector.
+        // A kernel for any dimension has no vector parameters, so the dimension does not
+        // matter.
         primitive!(@methods [], 0, $kernel, $parameters);
     };
     (@accessors [$($argument:tt)?] $dimension:tt, $kernel:ty, $parameters:tt) => {

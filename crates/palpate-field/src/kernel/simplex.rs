@@ -20,13 +20,13 @@ const OPERATIONS: f64 = 18.0;
 ///
 /// # Derivation
 ///
-/// Inside, the nearest facet is the one with the largest signed distance to its
-/// plane. Outside, the nearest point lies in the relative interior of exactly
-/// one face (facet, edge or corner): the one whose span's nearest point to `p` lies
-/// in the face and has all other corners behind it. The distance is that from its plane
-/// for a facet, the norm of what remains for lower faces. The least of all distances
-/// would not do: next to the end of a face those of both differ by less than their
-/// rounding, but not their directions.
+/// Inside, the nearest facet is the one with the largest signed distance to its plane. Outside,
+/// the nearest point lies in the relative interior of exactly one face (facet, edge or corner).
+/// It is the face that holds the point of its span nearest to `p`, and that has all other
+/// corners behind it, as seen from `p`. For a facet the distance is that from its plane, for
+/// lower faces the norm of the offset from the span. The least of the distances to all faces
+/// would give wrong gradients: next to the end of a face two distances differ by less than
+/// their rounding, but their directions do not.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Simplex};
@@ -71,7 +71,7 @@ struct Face<const D: usize> {
 }
 
 impl<const D: usize> Face<D> {
-    /// The hull of those `points` of which `is_corner` says so.
+    /// The hull of the `points` whose index `is_corner` accepts.
     fn new(points: &[Point<D>], is_corner: impl Fn(usize) -> bool) -> Self {
         let (mut corners, mut others) = (Vec::new(), Vec::new());
         for (i, point) in points.iter().enumerate() {
@@ -96,8 +96,8 @@ impl<const D: usize> Face<D> {
         Self { origin: origin.0, edges, duals, others }
     }
 
-    /// What remains of `p` beside the face's span, and the least barycentric
-    /// coordinate: negative if the nearest point of the span is not in the face.
+    /// The offset of `p` from the face's span, and the least barycentric coordinate of the
+    /// span's nearest point, which is negative if this point is not in the face.
     #[inline(always)]
     fn rest<S: Scalar>(&self, p: Vector<S, D>) -> (Vector<S, D>, S) {
         let mut rest = p - Vector::of(&self.origin);
@@ -113,8 +113,8 @@ impl<const D: usize> Face<D> {
         (rest, least.min(first))
     }
 
-    /// Not negative if no other corner is before the face, seen from the point beside
-    /// whose nearest point of the span `rest` remains.
+    /// Not negative if all other corners lie behind the face, seen from a point at the offset
+    /// `rest` from the face's span.
     #[inline(always)]
     fn before_others<S: Scalar>(&self, rest: Vector<S, D>) -> S {
         let mut least = S::constant(1.0);
@@ -154,7 +154,7 @@ impl<const D: usize> Simplex<D> {
             for corner in &corners[1..] {
                 basis.extend(without(*corner - corners[0], &basis).normalized());
             }
-            // Twice, so that a thin simplex has square normals too.
+            // Orthogonalised twice, so that normals of a thin simplex are perpendicular too.
             let height = without(without(corners[0] - *opposite, &basis), &basis);
             let flat = height.norm() <= 1e-9 * longest || basis.len() < D - 1;
             let (Some(normal), false) = (height.normalized(), flat) else {
@@ -200,7 +200,7 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
             let is_nearest = face.before_others(rest);
             nearest = nearest.min(S::select_less(is_nearest, zero, none, here));
         }
-        // Between two faces rounding may let neither be the nearest.
+        // Where two faces meet, rounding may let neither be the nearest.
         let outside = S::select_less(nearest, none, nearest, least_of_all);
         let outside = face_if_on_it(outside, inside, self.size);
         S::select_less(inside, zero, inside, outside)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a surface feels like.
+//! Materials: stiffness, friction, layers and texture of a surface.
 
 mod presets;
 
@@ -9,8 +9,7 @@ pub use presets::UnknownMaterial;
 
 /// What a surface feels like.
 ///
-/// A device that is not stiff enough scales stiffness and damping down; these
-/// are what is wished for.
+/// Stiffness and damping are requested; a device that cannot render them stably accepts less.
 ///
 /// ```
 /// use palpate_haptics::Material;
@@ -24,22 +23,22 @@ pub use presets::UnknownMaterial;
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, default, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Material {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
-    /// Force for each metre of depth [N/m]; 500 if left out, which the common
-    /// desktop devices render.
+    /// Force for each metre of depth [N/m]; 500, which common desktop devices render, if left
+    /// out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub stiffness: f64,
     /// Force for each metre per second towards the surface [N·s/m]; 1 if left
     /// out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub damping: f64,
-    /// Greatest tangential over normal force while sticking; 0.4 if left out.
+    /// The largest ratio of tangential to normal force while sticking; 0.4 if left out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub static_friction: f64,
-    /// Tangential over normal force while slipping, at most the static one; 0.3
-    /// if left out.
+    /// The ratio of tangential to normal force while slipping, at most the static one; 0.3 if
+    /// left out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub dynamic_friction: f64,
     /// Force for each metre per second inside the body, as in a liquid [N·s/m];
@@ -50,16 +49,16 @@ pub struct Material {
     /// A pull towards the surface from outside.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub magnet: Option<Magnet>,
-    /// When the surface gives way.
+    /// The force at which the surface gives way.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub pop_through: Option<PopThrough>,
-    /// What is felt deeper in the body, each layer deeper than the one before.
+    /// Layers below the surface, each deeper than the one before.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub layers: Vec<Layer>,
     /// A wave on the surface.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub texture: Option<Texture>,
-    /// What a tap on the surface rings like.
+    /// The vibration of a tap on the surface.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub impact: Option<Impact>,
 }
@@ -88,13 +87,13 @@ impl Default for Material {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Magnet {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
-    /// The greatest pull [N].
+    /// The largest pull [N].
     #[cfg_attr(feature = "schema", schemars(extend("exclusiveMinimum" = 0)))]
     pub force: f64,
-    /// How far from the surface it reaches [m].
+    /// The distance from the surface at which the pull ends [m].
     #[cfg_attr(feature = "schema", schemars(extend("exclusiveMinimum" = 0)))]
     pub distance: f64,
 }
@@ -105,14 +104,14 @@ pub struct Magnet {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PopThrough {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
-    /// The normal force from which the surface no longer holds [N].
+    /// The normal force above which the surface gives way [N].
     #[cfg_attr(feature = "schema", schemars(extend("exclusiveMinimum" = 0)))]
     pub force: f64,
-    /// How far away a tool that went through must be before the surface holds
-    /// again [m]; 0.001 if left out.
+    /// How far outside a tool that went through must be before the surface holds again [m];
+    /// 0.001 if left out.
     #[cfg_attr(feature = "serde", serde(default = "one_millimetre"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub distance: f64,
@@ -123,13 +122,13 @@ fn one_millimetre() -> f64 {
     1e-3
 }
 
-/// What is felt from a depth on: what is left out is as in the layer above.
+/// A layer below a depth. Numbers that are left out are those of the layer above.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Layer {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
     /// How deep below the surface the layer begins [m].
@@ -143,11 +142,11 @@ pub struct Layer {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub damping: Option<f64>,
-    /// Greatest tangential over normal force while sticking.
+    /// The largest ratio of tangential to normal force while sticking.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub static_friction: Option<f64>,
-    /// Tangential over normal force while slipping.
+    /// The ratio of tangential to normal force while slipping.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub dynamic_friction: Option<f64>,
@@ -155,7 +154,7 @@ pub struct Layer {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub viscosity: Option<f64>,
-    /// When the top of this layer gives way.
+    /// The force at which the top of this layer gives way.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub pop_through: Option<PopThrough>,
 }
@@ -166,10 +165,10 @@ pub struct Layer {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Texture {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
-    /// What the wave changes.
+    /// Whether the wave changes the surface or the force.
     pub kind: TextureKind,
     /// How far the wave rises above the mean surface [m].
     #[cfg_attr(feature = "schema", schemars(extend("exclusiveMinimum" = 0)))]
@@ -177,14 +176,14 @@ pub struct Texture {
     /// From crest to crest [m].
     #[cfg_attr(feature = "schema", schemars(extend("exclusiveMinimum" = 0)))]
     pub wavelength: f64,
-    /// The direction from crest to crest in the body's coordinates; the product
-    /// of waves along all axes if left out.
+    /// The direction from crest to crest in the body's coordinates; if left out, the texture is
+    /// the product of waves along all axes.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(with = "Option<VectorSchema>"))]
     pub direction: Option<Vec<f64>>,
 }
 
-/// What a texture changes.
+/// Whether a texture changes the surface or the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -193,7 +192,7 @@ pub struct Texture {
 pub enum TextureKind {
     /// The surface itself: a tool rides over the crests.
     Displacement,
-    /// The force alone, by the height of the wave under the tool.
+    /// Only the force, by the height of the wave under the tool.
     Height,
 }
 
@@ -204,7 +203,7 @@ pub enum TextureKind {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, expecting = "an object"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Impact {
-    /// What it is meant to be.
+    /// A note for readers, without effect.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub description: Option<String>,
     /// Its amplitude a, for each metre per second of the tap [N·s/m].
@@ -218,7 +217,7 @@ pub struct Impact {
     pub decay: f64,
 }
 
-/// `true` if a number is what a missing key means, so that it need not be written.
+/// `true` if a number is the default of a missing key, so that it need not be written.
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
 fn is_zero(number: &f64) -> bool {

@@ -19,7 +19,8 @@ struct Preset {
 
 /// Declares presets: the source of the numbers, the name, the material.
 ///
-/// A number without a source is called chosen: plausible and distinguishable, but not measured.
+/// A number without a source is called chosen: it is plausible and sets the material apart, but
+/// is not measured.
 macro_rules! presets {
     ($(#[doc = $source:literal] $name:ident => $material:expr,)*) => {
         const PRESETS: &[Preset] = &[
@@ -94,7 +95,7 @@ presets! {
 
 /// No preset has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown material `{name}`; there are {}", quoted_names())]
+#[error("unknown material `{name}`; known are {}", quoted_names())]
 pub struct UnknownMaterial {
     /// The name that was asked for.
     pub name: String,
@@ -117,8 +118,8 @@ impl Material {
         PRESETS.iter().map(|preset| preset.name)
     }
 
-    /// The preset called `name`; its description names the sources of its numbers, and says
-    /// which are chosen.
+    /// The preset called `name`; its description gives the source of each number, or says that
+    /// it is chosen.
     ///
     /// # Errors
     ///
@@ -160,7 +161,7 @@ fn pop_through(force: f64) -> PopThrough {
     PopThrough { description: None, force, distance: 1e-3 }
 }
 
-/// A layer from a depth [m] on, of a stiffness [N/m].
+/// A layer below a depth [m], with a stiffness [N/m].
 fn layer(depth: f64, stiffness: f64) -> Layer {
     Layer { depth, stiffness: Some(stiffness), ..Layer::default() }
 }
@@ -197,7 +198,7 @@ mod tests {
     #[test]
     fn a_name_that_is_none_is_answered_with_those_there_are() {
         let error = Material::preset("plasma").unwrap_err().to_string();
-        assert!(error.starts_with("unknown material `plasma`; there are `rubber`, `wood`"));
+        assert!(error.starts_with("unknown material `plasma`; known are `rubber`, `wood`"));
         assert!(error.ends_with("`layered_tissue`"), "{error}");
     }
 }

@@ -5,9 +5,9 @@
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, SHORT, Shape, Vector};
 
-/// Every way to evaluate `points` gives the bits of the scalar call: blocks of
-/// [`BLOCK`] and [`SHORT`], values alone and with gradients, both precisions.
-/// Takes the first [`BLOCK`] points.
+/// Every way to evaluate `points` gives the bits of the scalar call: blocks of [`BLOCK`] and
+/// [`SHORT`], values alone and with gradients, in both precisions. Uses only the first
+/// [`BLOCK`] points.
 ///
 /// # Errors
 ///

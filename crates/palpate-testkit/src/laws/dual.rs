@@ -16,12 +16,11 @@ const GRADIENT: f64 = 1e-9;
 /// Distances from the surface, in sizes, within which it is singular.
 const SINGULAR: f64 = 1e-6;
 
-/// Visits a kernel: its gradient at points of `size` is that by dual numbers.
-///
-/// The output says what differs.
+/// A [`Visit`] that checks the kernel's gradient against the formula in dual numbers; the
+/// output says what differs.
 #[derive(Clone, Debug)]
 pub struct GradientIsTheDual<const D: usize> {
-    /// Where to look [m].
+    /// The points to check [m].
     pub points: Vec<Point<D>>,
     /// The size of the shape [m].
     pub size: f64,

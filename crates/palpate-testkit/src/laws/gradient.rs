@@ -37,7 +37,7 @@ pub fn gradient_is_bounded<const D: usize>(
             promise.lipschitz
         ));
     }
-    // Which side a point on the surface is on is rounding.
+    // On the surface, rounding decides the side.
     let sure = f.abs() > 2.0 * rounding(shape, p);
     let quality = if f < 0.0 { promise.inside } else { promise.outside };
     if sure && quality == Quality::Exact && (length - 1.0).abs() > tolerance {
@@ -49,16 +49,16 @@ pub fn gradient_is_bounded<const D: usize>(
     Ok(())
 }
 
-/// Slopes that differ by more show a kink between them.
+/// Slopes that differ by more have a kink between them.
 const KINK: f64 = 1e-3;
 
-/// How much shorter the second step is that looks for kinks.
+/// How much shorter the second step in the search for kinks is.
 const SHORTER: f64 = 16.0;
 
 /// Away from kinks, the gradient is the slope of the values around `p`.
 ///
-/// A kink shows in that forward and backward differences disagree, two kinks on either
-/// side in that differences over a shorter step do.
+/// At a kink, forward and backward differences disagree; between two kinks, differences over a
+/// shorter step disagree with the others.
 ///
 /// # Errors
 ///
@@ -83,13 +83,14 @@ pub fn gradient_is_the_slope<const D: usize>(
     });
     let is_smooth = plateau <= KINK + 2.0 * SHORTER * error;
     let slope = Vector(differences.map(|[ahead, behind]| 0.5 * (ahead + behind)));
-    // Several kinks can hide from the axes, where they cross.
+    // Several kinks that cross may not show along the axes.
     let diagonal = around(Vector::constant(1.0), step);
     let all = differences.iter().chain([&diagonal]);
     let bend = all.fold(0.0_f64, |m, [ahead, behind]| m.max((ahead - behind).abs()));
     let apart = (slope - g).norm();
     let tolerance = 4.0 * (bend + plateau) + 2.0 * error + 1e-5;
-    // Where the kinks of two children cancel, the gradient takes one side of each.
+    // Where the kinks of two children cancel in the value, the gradient may take different
+    // sides.
     let askew = Vector(std::array::from_fn(|i| shorter / (1.0 + i as f64)));
     let cancels = [p + askew, p - askew]
         .iter()

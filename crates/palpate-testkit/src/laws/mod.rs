@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What every field must obey, whatever its formula.
-//!
-//! Each law looks at one shape and one point, and says what is wrong.
+//! Laws that every field must obey, whatever its formula. Most check one shape at one point;
+//! each says what is wrong.
 
 mod bits;
 mod dual;
@@ -38,12 +37,12 @@ pub fn rounding<const D: usize>(shape: &Shape<D>, p: Point<D>) -> f64 {
 /// field is smooth there.
 const SMOOTH: f64 = 1e-5;
 
-/// Whether the gradient is nearly the same at all points `step` from `p` along the
-/// axes and diagonals [m]: no kink is near.
+/// `true` if the gradient is nearly the same at all points `step` [m] from `p` along the axes
+/// and diagonals, so that no kink is near.
 #[must_use]
 pub fn smooth_at<const D: usize>(shape: &Shape<D>, p: Point<D>, step: f64) -> bool {
     let (_, g) = shape.distance_gradient(p);
-    // In base 3, a direction a number: −1, 0 or 1 along each axis.
+    // Each number in base 3 is a direction: −1, 0 or 1 along each axis.
     (0..3_usize.pow(D as u32)).all(|number| {
         let offset: Vector<f64, D> = Vector(std::array::from_fn(|axis| {
             step * ((number / 3_usize.pow(axis as u32) % 3) as f64 - 1.0)

@@ -26,11 +26,11 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-/// The most that a lower remainder of a convex field may be, in ulp of the
-/// largest number met.
+/// The largest lower remainder of a convex field, in ulp of the largest number in the
+/// evaluation.
 const CONVEX_ULP: f64 = 32.0;
 
-/// Room for the roundings that a model allows for and the promise does not.
+/// Roundings that a model adds to those of the promise.
 const WIDTH_ROUNDINGS: f64 = 8.0;
 
 /// The models of up to [`BLOCK`] cells, perhaps all turned alike, enclose the field at the
@@ -78,8 +78,8 @@ pub fn model_encloses<const D: usize>(
     Ok(())
 }
 
-/// Models of up to [`BLOCK`] cells have, where the field is convex, no lower
-/// remainder but rounding.
+/// If the field is convex, the models of up to [`BLOCK`] cells have no lower remainder but
+/// rounding.
 ///
 /// # Errors
 ///
@@ -106,13 +106,13 @@ pub fn convex_models_are_tight<const D: usize>(
     Ok(())
 }
 
-/// The model of a cell says as much as the steepness of the field does, but for roundings:
-/// it is no wider than twice the steepness over the cell's half diagonal. A convex field,
-/// which keeps the slope of its plane, is bounded as well as that from below.
+/// The model of a cell is as good as the bound by the steepness of the field, but for
+/// roundings: it is no wider than twice the steepness times the cell's half diagonal. For a
+/// convex field, whose model keeps the slope of its plane, the lower bound is as good as that.
 ///
 /// # Errors
 ///
-/// Says what is wider, and by how much.
+/// Says which cell's model is wider, and by how much.
 pub fn model_says_as_much_as_the_steepness<const D: usize>(
     shape: &Shape<D>,
     cell: &Cell<D>,

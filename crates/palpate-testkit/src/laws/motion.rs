@@ -7,7 +7,7 @@ use palpate_field::{Point, Pose, Shape, ShapeError, Vector};
 
 use super::{rounding, smooth_at};
 
-/// How far gradients of the same place may differ where the field is smooth.
+/// The largest difference of corresponding gradients where the field is smooth.
 const GRADIENT: f64 = 1e-4;
 
 /// Moving the shape by `pose` moves its values and turns its gradients.
@@ -26,9 +26,8 @@ pub fn motion_keeps_distances<const D: usize>(
     corresponds("moved", shape, p, (&moved, q, 1.0), turn)
 }
 
-/// Scaling the shape by `factor` scales its values and keeps its gradients.
-///
-/// A shape that is too deeply nested already is not scaled.
+/// Scaling the shape by `factor` scales its values and keeps its gradients. Passes shapes that
+/// are nested too deeply to be scaled.
 ///
 /// # Errors
 ///
@@ -70,7 +69,7 @@ fn corresponds<const D: usize>(
         ));
     }
     let turned = turn(g);
-    // How far the nearest kink may seem to be away.
+    // The error of the distance to the nearest kink.
     let blur = slack / factor + 1e-9 * (p.norm() + f.abs());
     if (image_g - turned).norm() > GRADIENT && smooth_at(shape, p, blur) {
         return Err(format!("gradient {image_g:?} {what}, {turned:?} expected, at {p:?}"));

@@ -7,10 +7,10 @@ use palpate_field::{Aabb, Point, Quality, Shape, Vector};
 
 use super::rounding;
 
-/// Rounding of the point arithmetic of a law itself, relative to coordinates.
+/// The rounding of points in the laws themselves, relative to coordinates.
 const POINT: f64 = 8.0 * f64::EPSILON;
 
-/// Steps of the search for a surface inside a ball promised to be free.
+/// Steps of the search for a surface inside a ball that is promised to be free.
 const STEPS: usize = 12;
 
 /// No surface lies within the radius that a value promises, and where the value
@@ -71,7 +71,7 @@ fn surface_within<const D: usize>(
     let mut q = p + direction * (0.999 * radius);
     for _ in 0..STEPS {
         let (f, g) = shape.distance_gradient(q);
-        // Beyond rounding, not a wrong sign of something on the surface.
+        // More than rounding, which may flip the sign on the surface.
         if sign * f < -rounding(shape, q) && (q - p).norm() < radius {
             return Some(q);
         }
@@ -124,8 +124,8 @@ fn to_box<const D: usize>(aabb: &Aabb<D>, p: Point<D>) -> f64 {
     .norm()
 }
 
-/// Outside the bounds the value is positive, and where promised at least the
-/// distance to both of them; without an interior it is nowhere negative.
+/// Outside the bounds the value is positive and, where promised, at least the distance to box
+/// and ball; a field without interior is nowhere negative.
 ///
 /// # Errors
 ///

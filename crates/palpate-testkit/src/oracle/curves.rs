@@ -11,14 +11,14 @@ use palpate_field::{Point, Vector};
 use super::planar::{FAR, arc};
 use super::{Definition, Patch, number, vector};
 
-/// Points of a curve looked at for the nearest, before the search between them.
+/// Samples of a curve, before the search for the nearest point between them.
 const LOOKS: usize = 256;
 
-/// Steps of that search, each of which keeps two thirds.
+/// Steps of this search, each of which keeps two thirds of the interval.
 const THIRDS: usize = 80;
 
-/// The least distance of `p` from a curve over `[0, 1]`, by looking at many points and
-/// searching about each that is nearer than its neighbours.
+/// The least distance of `p` from a curve over `[0, 1]`: samples the curve, and searches around
+/// each sample that is nearer than its neighbours.
 fn from_curve(p: Point<2>, at: impl Fn(f64) -> Point<2>) -> f64 {
     let distance = |t: f64| (p - at(t)).norm();
     let place = |i: usize| i as f64 / LOOKS as f64;
@@ -43,8 +43,8 @@ fn from_curve(p: Point<2>, at: impl Fn(f64) -> Point<2>) -> f64 {
     least
 }
 
-/// Half a circle below, a smaller arc on top, and the arcs that join them: a corner of
-/// the equilateral triangle over the line between their centres is each one's centre.
+/// Half a circle below, a smaller arc on top, and two arcs that join them. The corners of an
+/// equilateral triangle are the centres of the top and of the joining arcs.
 fn egg(bottom: f64, top: f64) -> Definition<2> {
     let c = bottom - top;
     let high = c * 3.0_f64.sqrt();
@@ -113,11 +113,11 @@ fn rounded_cross(size: Point<2>, r: f64) -> Definition<2> {
     })
 }
 
-/// Four hollow arcs of parabolas between the tips, grown.
+/// Four concave arcs of parabolas between the tips, grown.
 fn bobbly_cross(width: f64, dip: f64, r: f64) -> Definition<2> {
     let tip = 0.5 * width - r;
     let half_chord = tip * FRAC_1_SQRT_2;
-    // In the frame of the diagonal (1, 1): beside it, along it.
+    // In the frame of the diagonal (1, 1): the offset beside it, the place along it.
     let turned = |s: f64, t: f64| Vector([t + s, t - s]) * FRAC_1_SQRT_2;
     let on_arc = move |u: f64| turned(half_chord * u, half_chord - dip + dip * u * u);
     let grown = move |u: f64| {
@@ -147,7 +147,7 @@ fn bobbly_cross(width: f64, dip: f64, r: f64) -> Definition<2> {
     Definition { overlaps_itself: r > curvature_radius, ..cross }
 }
 
-/// What is over the graph of an even function on `|x| ≤ reach` no steeper than at the
+/// The region above the graph of an even function on `|x| ≤ reach`, which is steepest at the
 /// ends.
 fn over(
     graph: impl Fn(f64) -> f64 + Copy + 'static,
@@ -192,10 +192,10 @@ fn bezier_tube(points: [Point<2>; 3], r: f64) -> Definition<2> {
     let fastest = (b - a).norm().max((c - b).norm()) * 2.0;
     let slowest = from_curve(Vector::ZERO, |t| bezier(points, t)[1]);
     let turning = (second[0] * (b - a)[1] - second[1] * (b - a)[0]).abs() * 2.0;
-    // What turns back at once is a hairpin with a round end.
+    // A curve that turns back on itself is a hairpin with a round end.
     let hairpin = turning * r > 1e3 * fastest * slowest * slowest;
     let turned = if hairpin || turning == 0.0 { 0.0 } else { turning / (slowest * slowest) };
-    // Where it is slowest, which is where a hairpin turns.
+    // The parameter of the least speed, at which a hairpin turns.
     let square = second.dot(second);
     let place = if square > 0.0 { -2.0 * (b - a).dot(second) / square } else { 0.5 };
     let place = place.clamp(0.0, 1.0);
@@ -217,12 +217,12 @@ fn bezier_tube(points: [Point<2>; 3], r: f64) -> Definition<2> {
     for (end, away) in [(a, tangent(a - b, a - c)), (c, tangent(c - b, c - a))] {
         let [x, y] = away.0;
         let away = y.atan2(x);
-        // All of the circle, if all three points are one.
+        // The whole circle if all three points are equal.
         let reach = if x == 0.0 && y == 0.0 { PI } else { 0.5 * PI };
         boundary.push(arc(end.0, r, [away - reach, away + reach]));
     }
     let tube = Definition::new(boundary, move |p| from_curve(p, |t| bezier(points, t)[0]) < r);
-    // With less than this the parallels have no cusps.
+    // With a smaller radius the parallels have no cusps.
     let curvature_radius = slowest.powi(3) / turning;
     Definition {
         overlaps_itself: turning == 0.0 || hairpin || r > 0.999 * curvature_radius,

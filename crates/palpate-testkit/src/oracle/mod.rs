@@ -3,9 +3,9 @@
 
 //! Distances from definitions, without any formula of the library.
 //!
-//! A shape is defined by what it contains and by a parametrised boundary. The
-//! distance to the boundary is found by sampling: coarsely where it is far,
-//! down to a spacing where it may be nearest.
+//! A shape is defined by a test whether it contains a point, and by a parametrised boundary.
+//! The distance to the boundary is found by sampling: coarse where the boundary is far, down to
+//! a spacing where it may be nearest.
 
 mod curves;
 mod outlines;
@@ -28,19 +28,18 @@ use crate::kernels::{Dimension, Space};
 pub struct Definition<const D: usize> {
     contains: Box<dyn Fn(Point<D>) -> bool>,
     boundary: Vec<Patch<D>>,
-    /// How well its field knows the distance.
+    /// What the library promises outside.
     pub outside: Outside,
-    /// `true` if parts of the sampled boundary lie inside: then a sample says
-    /// nothing about the distance from inside.
+    /// `true` if parts of the sampled boundary lie inside, where samples give no distance.
     pub overlaps_itself: bool,
 }
 
-/// What the library says about the distance outside.
+/// What the library promises about the value outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
-    /// It is the distance.
+    /// The value is the distance.
     Exact,
-    /// It is a lower bound.
+    /// The value is a lower bound of the distance.
     Bound,
 }
 
@@ -85,8 +84,8 @@ impl<const D: usize> Definition<D> {
         Self { contains, boundary, outside: Outside::Exact, overlaps_itself: false }
     }
 
-    /// The unsigned distance of `p` from the boundary, to `spacing` [m] unless
-    /// too much of the boundary is equally near, and the side of `p`.
+    /// The side of `p` and its unsigned distance from the boundary, to within `spacing` [m]
+    /// unless too much of the boundary is equally near.
     #[must_use]
     pub fn distance(&self, p: Point<D>, spacing: f64) -> Enclosure {
         let (lower, upper) = patch::distance(&self.boundary, p, spacing);
@@ -99,7 +98,7 @@ fn number(arguments: &[Argument], i: usize) -> f64 {
     match &arguments[i] {
         Argument::Number(x) => *x,
         Argument::Count(n) => f64::from(*n),
-        other => panic!("{other:?} is no number"),
+        other => panic!("argument {i} must be a number, got {other:?}"),
     }
 }
 
@@ -107,7 +106,7 @@ fn number(arguments: &[Argument], i: usize) -> f64 {
 fn vector<const D: usize>(arguments: &[Argument], i: usize) -> Point<D> {
     match &arguments[i] {
         Argument::Vector(x) => point(x),
-        other => panic!("{other:?} is no vector"),
+        other => panic!("argument {i} must be a vector, got {other:?}"),
     }
 }
 
@@ -115,7 +114,7 @@ fn vector<const D: usize>(arguments: &[Argument], i: usize) -> Point<D> {
 fn points<const D: usize>(arguments: &[Argument], i: usize) -> Vec<Point<D>> {
     match &arguments[i] {
         Argument::Points(points) => points.iter().map(|p| point(p)).collect(),
-        other => panic!("{other:?} are no points"),
+        other => panic!("argument {i} must be points, got {other:?}"),
     }
 }
 

@@ -32,8 +32,7 @@ fn corners_of(corners: &[[f64; 2]]) -> Definition<2> {
     polygon(vec![corners.iter().map(|c| Vector(*c)).collect()])
 }
 
-/// A rectangle without what is beyond an arc at each corner: top left, top right,
-/// bottom right, bottom left.
+/// A rectangle with its corners cut by arcs: top left, top right, bottom right, bottom left.
 fn rounded_rectangle(size: Point<2>, radii: [f64; 4]) -> Definition<2> {
     let half = size * 0.5;
     let signs = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
@@ -83,7 +82,7 @@ fn stairs(w: f64, h: f64, steps: usize) -> Definition<2> {
 fn rounded_x(size: f64, r: f64) -> Definition<2> {
     let end = 0.5 * size - r;
     let straight = end >= r * FRAC_1_SQRT_2;
-    // Beyond the quarter's diagonal half turn, to where an arc crosses the axes.
+    // A half turn about the diagonal, extended to where the arc crosses the axes.
     let reach = if straight { FRAC_PI_4 } else { (end / r).asin() };
     let from = if straight { -FRAC_PI_4 } else { -reach };
     let to = FRAC_PI_2 - from;
@@ -118,7 +117,7 @@ fn tunnel(width: f64, height: f64) -> Definition<2> {
     })
 }
 
-/// All discs between two on the y axis, centre and radius in proportion.
+/// All discs between two on the y axis, whose centre and radius are interpolated linearly.
 fn uneven_capsule(bottom: f64, top: f64, height: f64) -> Definition<2> {
     let half = 0.5 * height;
     // From the axis to where the tangent touches the discs.
@@ -134,7 +133,7 @@ fn uneven_capsule(bottom: f64, top: f64, height: f64) -> Definition<2> {
             let centre = Vector([0.0, -half + t * height]);
             (p - centre).norm() - (bottom + t * (top - bottom))
         };
-        // Convex in t: thirds close in on the least.
+        // Convex in t, so a ternary search finds the minimum.
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..200 {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
@@ -148,7 +147,7 @@ fn uneven_capsule(bottom: f64, top: f64, height: f64) -> Definition<2> {
     })
 }
 
-/// What of a ring is less than half the angle from +y.
+/// The part of a ring within half the angle from +y.
 fn sector(inner: f64, outer: f64, angle: f64) -> Definition<2> {
     let half = 0.5 * angle;
     let angles = [FRAC_PI_2 - half, FRAC_PI_2];
@@ -201,12 +200,13 @@ fn moon(r: f64, cut: f64, distance: f64) -> Definition<2> {
     both_sides(right, move |p| p.norm() < r && (p - centre).norm() > cut)
 }
 
-/// What two discs share whose circles meet at `from` and `to`, `width` across.
+/// The intersection of two discs whose circles meet at `from` and `to`, `width` across.
 fn lens(from: Point<2>, to: Point<2>, width: f64) -> Option<Definition<2>> {
     let along = (to - from).normalized()?;
     let across = Vector([along[1], -along[0]]);
     let half = 0.5 * (to - from).norm();
-    // Half of what the arcs span: the angle of the tip, as tangent and chord have it.
+    // Half the angle that the arcs span, which is the angle between tangent and chord at the
+    // tip.
     let span = 2.0 * (width / (2.0 * half)).atan();
     let r = half / span.sin();
     let middle = (from + to) * 0.5;

@@ -16,7 +16,7 @@ const MOST_SAMPLES: usize = 40_000;
 /// where the second speed is zero.
 pub struct Patch<const D: usize> {
     at: Box<dyn Fn(f64, f64) -> Point<D>>,
-    /// The most that a point moves for each unit of either parameter [m].
+    /// The largest speed of a point along each parameter [m].
     speed: [f64; 2],
 }
 
@@ -138,9 +138,9 @@ impl Ord for Part {
     }
 }
 
-/// A lower and an upper bound of the distance of `p` from the patches: the upper
-/// is that of a sample, the lower at most `spacing` less, unless that takes more
-/// than [`MOST_SAMPLES`].
+/// A lower and an upper bound of the distance of `p` from the patches. The upper bound is that
+/// of a sample; the lower one is at most `spacing` less, unless that takes more than
+/// [`MOST_SAMPLES`].
 pub(super) fn distance<const D: usize>(
     patches: &[Patch<D>],
     p: Point<D>,

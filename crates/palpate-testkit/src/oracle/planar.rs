@@ -26,8 +26,8 @@ pub(super) fn edges(corners: &[Point<2>]) -> Vec<Patch<2>> {
     corners.iter().zip(next).map(|(a, b)| Patch::segment(*a, *b)).collect()
 }
 
-/// `true` if `p` is inside by the even-odd rule, counted along a ray in a
-/// direction that no edge of a test has.
+/// `true` if `p` is inside by the even-odd rule, along a ray in a direction that no edge in the
+/// tests has.
 pub(super) fn even_odd(rings: &[Vec<Point<2>>], p: Point<2>) -> bool {
     let ray = Vector([0.817_263_9, 0.576_258_1]);
     let side = |q: Point<2>| ray[0] * (q[1] - p[1]) - ray[1] * (q[0] - p[0]);
@@ -117,8 +117,8 @@ pub(super) fn in_rounded_box<const D: usize>(
     }
 }
 
-/// The fourteen strokes of the Cool S, two units high, from paper: three lines
-/// above, three below, joined each to the next, with roofs.
+/// The fourteen strokes of the Cool S, two units high, as drawn on paper: three lines above,
+/// three below, each joined to the next, and roofs.
 fn cool_s(height: f64) -> Definition<2> {
     let at = |x: f64, y: f64| Vector([x, y]) * (0.5 * height);
     let columns = [-0.4, 0.0, 0.4];
@@ -134,7 +134,7 @@ fn cool_s(height: f64) -> Definition<2> {
     }
     strokes.push((at(-0.4, 0.2), at(0.0, -0.2)));
     strokes.push((at(0.0, 0.2), at(0.4, -0.2)));
-    // The two that pass behind, as far as they are seen.
+    // The visible parts of the two strokes that pass behind.
     strokes.push((at(0.4, 0.2), at(0.2, 0.0)));
     strokes.push((at(-0.4, -0.2), at(-0.2, 0.0)));
     let outline = [
@@ -156,8 +156,8 @@ fn cool_s(height: f64) -> Definition<2> {
     Definition::new(boundary, move |p| even_odd(&outline, p))
 }
 
-/// All points within `r` of an arc. Where the tube meets itself, parts of these
-/// pieces are not boundary.
+/// All points within `r` of an arc. Where the tube meets itself, parts of these pieces lie
+/// inside.
 fn tube(ring: f64, angle: f64, r: f64) -> Definition<2> {
     let half = 0.5 * angle;
     // Angles here are from +x, those of the arc from +y.

@@ -12,7 +12,7 @@ use super::planar::{in_rounded_box, rounded_rectangle};
 use super::spatial::rounded_box;
 use super::{Definition, Outside, Patch, number, vector};
 
-/// `(Σ|xᵢ|^e)^(1/e)`, as it is written.
+/// `(Σ|xᵢ|^e)^(1/e)`, computed as written.
 pub(super) fn norm<const D: usize>(x: Point<D>, exponent: f64) -> f64 {
     x.0.iter().map(|x| x.abs().powf(exponent)).sum::<f64>().powf(1.0 / exponent)
 }
@@ -22,11 +22,12 @@ pub(super) fn on_ball<const D: usize>(direction: Point<D>, exponent: f64) -> Poi
     direction * (1.0 / norm(direction, exponent))
 }
 
-/// How many times as far as the direction, at most, the point on the ball moves.
+/// The largest ratio of the motion of the point on the ball to that of its direction.
 ///
-/// With the norm `n` of the direction: `1/n` across, and as the gradient along the
-/// direction is `n` and it is at most one long, `√(1 − n²)/n²` along. Together `1/n²`,
-/// the most where all components are equal.
+/// With the norm `n` of the direction, the point moves `1/n` times as far across the direction.
+/// Along it the ratio is `√(1 − n²)/n²`, because the gradient of the norm is at most one long
+/// and its part along the direction is `n`. Together this is `1/n²`, which is largest where all
+/// components are equal.
 pub(super) fn speed<const D: usize>(exponent: f64) -> f64 {
     (D as f64).powf(1.0 - 2.0 / exponent)
 }
@@ -53,7 +54,7 @@ fn ball(radius: f64, exponent: f64) -> Definition<3> {
 }
 
 fn torus(ring: f64, r: f64, [about, across]: [f64; 2]) -> Definition<3> {
-    // Across the ring, its points move farther than the tube's along its diagonals.
+    // Along the diagonals of the ring, its points move farther than those of the tube.
     let wider = speed::<2>(about).sqrt();
     let along = TAU * (ring + r) * speed::<2>(about);
     let around = TAU * r * speed::<2>(across) * wider;
@@ -72,7 +73,7 @@ fn torus(ring: f64, r: f64, [about, across]: [f64; 2]) -> Definition<3> {
     if about.max(across) > 2.0 { bound(definition) } else { definition }
 }
 
-/// Those of the plane.
+/// Definitions of the plane.
 pub(super) fn planar(name: &str, a: &[Argument]) -> Option<Definition<2>> {
     let n = |i: usize| number(a, i);
     Some(match name {
@@ -87,7 +88,7 @@ pub(super) fn planar(name: &str, a: &[Argument]) -> Option<Definition<2>> {
     })
 }
 
-/// Those of space.
+/// Definitions of space.
 pub(super) fn spatial(name: &str, a: &[Argument]) -> Option<Definition<3>> {
     let n = |i: usize| number(a, i);
     Some(match name {

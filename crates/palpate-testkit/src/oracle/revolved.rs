@@ -14,10 +14,10 @@ use super::{Definition, Patch, number, vector};
 
 const AXES: [Point<2>; 2] = [Vector([1.0, 0.0]), Vector([0.0, 1.0])];
 
-/// How often the surface of a cone without a base is halved towards its tip.
+/// Pieces of the surface of a cone without a base, each half as long towards the tip.
 const PIECES: i32 = 12;
 
-/// Halvings of the range in which a convex function has its least value.
+/// Halvings of the range that holds the minimum of a convex function.
 const STEPS: usize = 200;
 
 /// Part of a circle about a centre on the y axis or beside it, in (ρ, y), between two
@@ -40,8 +40,8 @@ fn turned(
     Definition::new(boundary, move |p| contains(p[0].hypot(p[2]), p[1]))
 }
 
-/// In pieces, each twice as far out as the one before, so that samples near the tip are
-/// dense.
+/// In pieces, each reaching twice as far out as the one before, so that samples near the tip
+/// are dense.
 fn infinite_cone(angle: f64) -> Definition<3> {
     let half = 0.5 * angle;
     let at = |along: f64| [along * half.sin(), -along * half.cos()];
@@ -100,7 +100,7 @@ fn death_star(radius: f64, cut_radius: f64, distance: f64) -> Definition<3> {
     })
 }
 
-/// All balls whose centre and radius go evenly from the lower to the upper one.
+/// All balls between two, whose centre and radius are interpolated linearly.
 fn round_cone(bottom: f64, top: f64, height: f64) -> Definition<3> {
     let low = -0.5 * height;
     let lean = ((bottom - top) / height).asin();
@@ -135,8 +135,8 @@ fn spindle(length: f64, width: f64) -> Definition<3> {
     })
 }
 
-/// A solid about the y axis, with the axis turned into the line between two points and
-/// its origin half-way.
+/// A solid about the y axis, moved so that its axis is the line between two points and its
+/// origin is half-way.
 fn between(from: Point<3>, to: Point<3>, solid: Definition<3>) -> Definition<3> {
     let along = (to - from).normalized().unwrap_or(Vector::unit(1));
     let least = (0..3).min_by(|i, j| along[*i].abs().total_cmp(&along[*j].abs())).unwrap_or(0);

@@ -79,7 +79,7 @@ fn sheet(corners: &[Point<3>], r: f64) -> Option<Definition<3>> {
     Some(Definition::new(boundary, move |p| contains(p - origin)))
 }
 
-/// The rhombus whose faces are at their distance from the centre less `r`, grown.
+/// The rhombus with its faces moved inwards by `r`, then grown by `r`.
 fn rhombus_prism(size: Point<3>, r: f64) -> Definition<3> {
     let [a, half, b] = (size * 0.5).0;
     let slope = b.atan2(a);

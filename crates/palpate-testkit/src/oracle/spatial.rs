@@ -90,8 +90,8 @@ pub(super) fn rounded_box(half: Point<3>, r: f64, exponent: f64) -> Definition<3
     Definition::new(boundary, move |p| in_rounded_box(half, r, exponent, p))
 }
 
-/// The bars along the edges of a box: of each octant the four rectangles at which
-/// something ends across each axis.
+/// The bars along the edges of a box: in each octant, the four rectangles across each axis that
+/// bound them.
 fn frame(half: Point<3>, thickness: f64) -> Definition<3> {
     let hole = half - Vector([thickness; 3]);
     let mut boundary = Vec::new();
@@ -113,7 +113,7 @@ fn frame(half: Point<3>, thickness: f64) -> Definition<3> {
             // The face of the box, without its window.
             rectangle(half[axis], [[hole[i], half[i]], [0.0, half[j]]]);
             rectangle(half[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
-            // Behind it, the faces of the bars that are seen through another window.
+            // Behind it, the faces of the bars that are visible through another window.
             rectangle(hole[axis], [[hole[i], half[i]], [0.0, hole[j]]]);
             rectangle(hole[axis], [[0.0, hole[i]], [hole[j], half[j]]]);
         }
@@ -124,7 +124,7 @@ fn frame(half: Point<3>, thickness: f64) -> Definition<3> {
     })
 }
 
-/// A convex body from its triangles: inside is behind all their planes.
+/// A convex body from its triangles: points inside are behind all their planes.
 fn hull(triangles: Vec<[Point<3>; 3]>, centre: Point<3>) -> Definition<3> {
     let planes: Vec<_> = triangles
         .iter()

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Poses at which separations are known, as `testdata/recall` keeps them.
+//! Poses with proven separations, as `testdata/recall` keeps them.
 //!
 //! A [`Row`] is a pose of the second body of a [`Pair`], and an interval that
 //! [`separation`](crate::separation) proved. [`draw`] makes one from a seed.
@@ -25,25 +25,25 @@ pub use pairs::{in_space, in_the_plane};
 /// The least and the largest gap or overlap [m]; bodies are about 1 m large.
 pub const GAPS: [f64; 2] = [1e-4, 1e-1];
 
-/// How exact truths are, as a share of the gap.
+/// The width of a proven interval, as a share of the gap.
 const SHARE: f64 = 0.05;
 
-/// Cells that a truth may take.
+/// The budget of a proof, in cells.
 const CELLS: usize = 1_000_000;
 
-/// Cells that a step of a bisection may take.
+/// The budget of a step of a bisection, in cells.
 const HASTE: usize = 1500;
 
-/// Farther apart than any two bodies here touch [m].
+/// A distance at which no two bodies here touch [m].
 const FAR: f64 = 4.0;
 
-/// Where bisecting ends, as a share of the gap.
+/// Where bisection ends, as a share of the gap.
 const PLACED: f64 = 0.02;
 
-/// Poses are kept as multiples of this, so that a row is short [m].
+/// Translations are kept as multiples of this, so that rows are short [m].
 const GRID: f64 = 1e-7;
 
-/// Rotations are.
+/// Rotations are kept as multiples of this.
 const TURN_GRID: f64 = 1e-3;
 
 /// Attempts at a row.
@@ -52,20 +52,20 @@ const ATTEMPTS: u64 = 100;
 /// Two bodies that are put together in many ways.
 #[derive(Clone, Debug)]
 pub struct Pair<const D: usize> {
-    /// What rows call it.
+    /// The name in rows.
     pub name: &'static str,
-    /// The bodies; the second is moved.
+    /// The bodies; the pose moves the second.
     pub bodies: [Shape<D>; 2],
-    /// How many rows there are of it.
+    /// The number of rows.
     pub rows: usize,
 }
 
-/// A pose, and the separation there.
+/// A pose with its separation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row<const D: usize> {
-    /// The pair.
+    /// The name of the pair.
     pub pair: String,
-    /// What the pose was drawn from.
+    /// The seed of the pose.
     pub seed: u64,
     /// The rotation of the second body: its angle [rad], or its quaternion
     /// `x, y, z, w` of any length.
@@ -78,20 +78,20 @@ pub struct Row<const D: usize> {
 
 /// Rotations as rows keep them.
 pub trait Turned<const D: usize> {
-    /// How many numbers they are.
+    /// How many numbers a rotation has.
     const NUMBERS: usize;
 
     /// The file in `testdata/recall`.
     const FILE: &'static str;
 
-    /// Its first line.
+    /// The first line of the file.
     const COLUMNS: &'static str;
 
     /// The rotation of these numbers.
     ///
     /// # Errors
     ///
-    /// If they are none.
+    /// If the numbers are not a rotation.
     fn rotation(turn: &[f64]) -> Result<Rotation<D>, ShapeError>;
 }
 
@@ -125,11 +125,11 @@ impl<const D: usize> Row<D>
 where
     Space: Turned<D>,
 {
-    /// Where the second body is, `world_from_body`.
+    /// The pose of the second body, `world_from_body`.
     ///
     /// # Errors
     ///
-    /// If the rotation is none.
+    /// If the numbers of the row are not a rotation.
     pub fn pose(&self) -> Result<Pose<D>, ShapeError> {
         Ok(Pose::new(<Space as Turned<D>>::rotation(&self.turn)?, self.offset))
     }
@@ -148,7 +148,7 @@ where
     ///
     /// # Errors
     ///
-    /// If the rotation is none.
+    /// If the numbers of the row are not a rotation.
     pub fn prove(&self, pair: &Pair<D>) -> Result<Interval, ShapeError> {
         self.separation(pair, CELLS, |interval| interval.is_within(SHARE))
     }
@@ -196,7 +196,7 @@ where
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or a line is no row.
+/// If the file cannot be read, or a line is not a row.
 pub fn rows<const D: usize>() -> Result<Vec<Row<D>>, String>
 where
     Space: Turned<D>,
@@ -207,7 +207,7 @@ where
     text.lines().skip(1).map(str::parse).collect()
 }
 
-/// The row of a pair that `slot` leads to: of its seeds the first that leads to one.
+/// The row of a pair for `slot`, from the first of the slot's seeds that gives one.
 #[must_use]
 pub fn draw<const D: usize>(pair: &Pair<D>, slot: u64) -> Option<Row<D>>
 where
@@ -219,7 +219,7 @@ where
     })
 }
 
-/// Turns the second body, moves it from afar towards a point about the first, and bisects
+/// Turns the second body, moves it from far away towards a point about the first, and bisects
 /// to a gap or an overlap.
 fn attempt<const D: usize>(
     pair: &Pair<D>,
@@ -236,7 +236,7 @@ where
         offset: Vector::ZERO,
         truth: Interval { lower: 0.0, upper: 0.0 },
     };
-    // At times along the axes, so that flat faces meet.
+    // Some directions are along the axes, so that flat faces meet.
     let plain = u.ratio(1_u8, 8_u8)?;
     for _ in 0..<Space as Turned<D>>::NUMBERS {
         let number =
@@ -251,7 +251,7 @@ where
     let sign = if u.arbitrary()? { 1.0 } else { -1.0 };
     let gap = sign * GAPS[0] * (GAPS[1] / GAPS[0]).powf(within(u, 0.02, 0.98)?);
     let way = direction::<D>(u)?;
-    // A body without an end has its surface about the origin.
+    // An unbounded body has its surface about the origin.
     let (centre, half) =
         pair.bodies[0].promise().bounds.map_or((Vector::ZERO, Vector::constant(0.2)), |b| {
             (b.aabb.centre(), b.aabb.half_extents())
@@ -280,13 +280,13 @@ where
     Ok(is_wanted.then_some(row))
 }
 
-/// The nearest multiple of a power of ten below one, as its shortest decimal reads.
+/// The multiple of `grid`, a power of ten below one, that is nearest to `x`, as a decimal.
 fn rounded(x: f64, grid: f64) -> f64 {
     let per_unit = (1.0 / grid).round();
     (x * per_unit).round() / per_unit
 }
 
-/// Five digits, up or down.
+/// `x` rounded to five digits, up or down.
 fn short(x: f64, up: bool) -> f64 {
     if x == 0.0 {
         return x;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The pairs: what is thin, long, hollow, pierced, smooth, bent, or only a bound.
+//! The pairs, with bodies that are thin, long, hollow, pierced, smooth, bent, or only bounds.
 
 use palpate_field::kernel::{
     Ball, CappedCone, Capsule, Cuboid, CuboidFrame, CutHollowSphere, Cylinder, Ellipsoid,
@@ -19,7 +19,7 @@ type Result<T> = std::result::Result<T, ShapeError>;
 ///
 /// # Errors
 ///
-/// If a shape here is none.
+/// If a shape of this module is refused.
 pub fn in_space() -> Result<Vec<Pair<3>>> {
     let needle = || Ok::<_, ShapeError>(Shape::from_kernel(Capsule::new(0.005, 1.0)?));
     let torus = || Ok::<_, ShapeError>(Shape::from_kernel(Torus::new(0.35, 0.15)?));
@@ -52,7 +52,7 @@ pub fn in_space() -> Result<Vec<Pair<3>>> {
 ///
 /// # Errors
 ///
-/// If a shape here is none.
+/// If a shape of this module is refused.
 pub fn in_the_plane() -> Result<Vec<Pair<2>>> {
     let pair = |name, a: Shape<2>, b: Shape<2>| Pair { name, bodies: [a, b], rows: 400 };
     let bar = Shape::from_kernel(Cuboid::new(Vector([1.0, 0.01]))?);
@@ -104,7 +104,7 @@ fn simplex() -> Result<Shape<3>> {
     Ok(Shape::from_kernel(Simplex::new(corners.map(Vector).to_vec())?))
 }
 
-/// A plate with endless holes.
+/// A plate with holes in an unbounded grid.
 fn perforated_plate() -> Result<Shape<3>> {
     let row = Copies::Endless { spacing: 0.12 };
     let holes = Shape::from_kernel(Ball::new(0.045)?).repeated([row, Copies::One, row])?;
@@ -189,7 +189,7 @@ fn round_cone() -> Result<Shape<3>> {
     Ok(Shape::from_kernel(RoundCone::new(0.2, 0.02, 0.5)?))
 }
 
-/// What is one of many, and in any place.
+/// A union of bodies at many places.
 fn pile() -> Result<Shape<3>> {
     Shape::union([
         cuboid([0.5, 0.1, 0.3])?.translated(Vector([0.1, -0.2, 0.0]))?,

@@ -20,7 +20,7 @@ const OPERATIONS: f64 = 8.0;
 /// Exact; inside a bound where the tube meets itself, at the centre or across
 /// the opening. With a radius of zero it has no inside.
 ///
-/// Folded to `x ≥ 0`, it is all within a distance of half an arc.
+/// Folded to `x ≥ 0`, the shape is all points within `radius` of half the arc.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Arc};

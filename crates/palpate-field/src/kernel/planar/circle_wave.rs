@@ -11,8 +11,8 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::Vector;
 
-/// Foldings of the x axis: as many as a double has digits, so that further out
-/// than they reach, the rounding of a coordinate is more than a wave long.
+/// Folds of the x axis: as many as a double has digits. Farther out than they reach, the
+/// rounding of a coordinate exceeds a wave.
 const FOLDS: i32 = 54;
 
 /// The largest opening of an arc: at more, neighbours would cross.
@@ -30,13 +30,12 @@ const OPERATIONS: f64 = 5.0;
 ///
 /// # Derivation
 ///
-/// With R the radius of the arcs and 2h their opening, an arc is `2w = 2R sin h` wide.
-/// The line is its own mirror image about x = 0, the middle of a crest, and x = 2w,
-/// that of a trough, so x folds to `[0, 2w]`: `|x|` first, then, from the largest
-/// power of two down, `min(x, 2m − x)` at each mirror m; no fold rounds, since what it
-/// subtracts is within a factor of two. In the strip are half a crest and half a
-/// trough. Of each the nearest point is on the arc or its end, as in
-/// [`Arc`](crate::kernel::Arc).
+/// With R the radius of the arcs and 2h their opening, an arc is `2w = 2R sin h` wide. The line
+/// is its own mirror image about x = 0, the middle of a crest, and x = 2w, that of a trough, so
+/// x folds to `[0, 2w]`: `|x|` first, then, from the largest power of two down,
+/// `min(x, 2m − x)` at each mirror m; no fold rounds, since it subtracts numbers within a
+/// factor of two of each other. The strip holds half a crest and half a trough. The nearest
+/// point of each is on its arc or at its end, as for [`Arc`](crate::kernel::Arc).
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CircleWave};
@@ -133,7 +132,7 @@ impl Kernel<2> for CircleWave {
     }
 
     fn promise(&self) -> Promise<2> {
-        // Between crests, if they are more than half circles.
+        // The gap between crests, which may close if arcs are more than half circles.
         let gap = 2.0 * (self.half_wave() - self.ring_radius);
         let meets_itself = self.radius > self.ring_radius
             || (self.half_angle > FRAC_PI_2 && gap < 2.0 * self.radius);

@@ -76,18 +76,18 @@ impl Kernel<2> for CoolS {
         let zero = S::constant(0.0);
         let folded = p.abs();
         let turned = S::select_less(p.0[1], zero, -p.0[0], p.0[0]);
-        // Of the outline, the nearest edge tells the side too.
+        // The nearest edge of the outline also decides the sign.
         let nearer = |a: S, b: S| S::select_less(b.abs(), a.abs(), b, a);
         let outline = nearer(
             nearer(self.side.signed_distance(folded), self.roof.signed_distance(folded)),
             self.waist.signed_distance(folded),
         );
-        // Near the waist the nearest crossing may be the one of the other half.
+        // Near the waist the crossing stroke of the other half may be nearer.
         let here = self.crossing.distance(Vector([turned, folded.0[1]]));
         let there = self.crossing.distance(Vector([-turned, -folded.0[1]]));
         let strokes = self.middle.distance(folded).min(here).min(there);
-        // The larger of two negative numbers is the nearer stroke; outside the
-        // outline no stroke is nearer than the outline.
+        // Inside, the larger of two negative distances is the nearer stroke; outside, no stroke
+        // is nearer than the outline.
         S::select_less(outline, zero, outline.max(-strokes), outline)
     }
 

@@ -25,11 +25,11 @@ fn fold<S: Scalar>(p: Vector<S, 2>) -> [S; 2] {
 ///
 /// # Derivation
 ///
-/// Fold to `x ≥ y ≥ 0`. The outline there is the end `x = l` below `y = w` and
-/// the side `y = w` from the inner corner (w, w) to the end. Past the inner corner
-/// the shape is like the quarter-plane of these two lines, and outside it is always
-/// past it. Before it, in the square where the bars cross, the nearest point is on
-/// the end or is the inner corner.
+/// Fold to `x ≥ y ≥ 0`. The outline there is the end `x = l` below `y = w` and the side `y = w`
+/// from the inner corner (w, w) to the end. Where x is past the inner corner, as it is for
+/// every point outside, the distance is that of the quarter-plane of these two lines. Before
+/// it, in the square where the bars cross, the nearest point is on the end or is the inner
+/// corner.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cross};
@@ -102,11 +102,11 @@ primitive! {
 ///
 /// # Derivation
 ///
-/// Fold to `x ≥ y ≥ 0`, and let `u` run along the stroke there and `v ≥ 0` across
-/// it. The outline is that of the stroke, a capsule along `u` as far as `l`, from
-/// the inner corner on, where it meets `y = 0`, that is `u = v`. On the straight
-/// side this is at `u = v = r`. If the strokes are so short that `l < r`, it is on
-/// the round end, where `(u − l)² + u² = r²`, so `2u = l + √(2r² − l²)`.
+/// Fold to `x ≥ y ≥ 0`, and let `u` run along the stroke there and `v ≥ 0` across it. The
+/// outline is that of the stroke, a capsule along `u` up to `l`, from the inner corner on. At
+/// the inner corner it meets `y = 0`, which is the line `u = v`: on the straight side at
+/// `u = v = r`. If the strokes are so short that `l < r`, it is on the round end, where
+/// `(u − l)² + u² = r²`, so `2u = l + √(2r² − l²)`.
 ///
 /// The distance is that of the capsule where its nearest point is on the outline.
 /// Else, before the outline's normal at the inner corner, which is a point inside,
@@ -156,7 +156,7 @@ impl RoundedX {
             let (corner, weights) = (radius, [1.0, 0.0]);
             return Ok(Self { size, radius, length, corner, weights, offset: corner });
         }
-        // As a product, so that nothing leaves the range.
+        // As a product, so that no square overflows.
         let root = (std::f64::consts::SQRT_2 * radius - length).sqrt()
             * (std::f64::consts::SQRT_2 * radius + length).sqrt();
         let corner = 0.5 * (length + root);
@@ -173,7 +173,7 @@ impl Kernel<2> for RoundedX {
         let stroke = Vector([(x + y).scale(HALF_ROOT), (x - y).scale(HALF_ROOT)]);
         let [u, v] = stroke.0;
         let length = S::constant(self.length);
-        // Along the stroke `v` itself, which has a gradient on its axis too.
+        // Beside the stroke `v` itself, which has a gradient on the stroke's axis too.
         let to_axis = S::select_less(u, length, v, S::norm([u - length, v]));
         let capsule = to_axis - S::constant(self.radius);
         let corner = S::constant(self.corner);

@@ -92,8 +92,8 @@ impl Kernel<2> for Egg {
     fn promise(&self) -> Promise<2> {
         let (low, high) = (-self.bottom_radius, self.top + self.top_radius);
         let aabb = Aabb { min: Vector([low, low]), max: Vector([self.bottom_radius, high]) };
-        // Touches the bottom and the top, whose circles it holds, and with them the
-        // ends of the sides.
+        // The ball touches the bottom and the top circle and holds both, and with them the ends
+        // of the sides.
         let ball = BoundingBall {
             centre: Vector([0.0, 0.5 * (low + high)]),
             radius: 0.5 * (high - low),

@@ -15,7 +15,7 @@ use crate::vector::Vector;
 /// The height of a heart whose square has edges of one.
 const HEIGHT: f64 = 0.75 * SQRT_2 + 0.5;
 
-/// Half its width.
+/// Half the width of that heart.
 const HALF_WIDTH: f64 = 0.25 * SQRT_2 + 0.5;
 
 /// The largest number of rounded operations of the distance.
@@ -26,12 +26,11 @@ const OPERATIONS: f64 = 5.0;
 ///
 /// # Derivation
 ///
-/// Fold to x ≥ 0 and take, from the tip, `t` along the right edge of the square and
-/// `s` across it, to the right. With e the length of the edge, the half circle about
-/// (−e/2, e) leads from the edge's end (0, e), without a corner there, to the cleft
-/// (−e, e). Where `t > e` it is the nearest, since its normals fill that half-plane.
-/// Elsewhere the nearest is the edge (from below, the tip) or, from inside, the
-/// cleft.
+/// Fold to x ≥ 0 and take, from the tip, `t` along the right edge of the square and `s` across
+/// it, to the right. With e the length of the edge, the half circle about (−e/2, e) leads from
+/// the edge's end (0, e), without a corner there, to the cleft (−e, e). Where `t > e` it is the
+/// nearest, since its normals fill that half-plane. Elsewhere the nearest point is on the edge
+/// (from below, it is the tip) or, from inside, the cleft.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Heart};

@@ -20,12 +20,12 @@ const OPERATIONS: f64 = 6.0;
 ///
 /// # Derivation
 ///
-/// Fold to `x ≥ 0`. With `along` the place along the leg's axis and `out` the offset
-/// from it, the leg is `|out| ≤ w`, `0 ≤ along ≤ l`. The line `along = 0` through the
-/// origin parts the leg from the arc's sector. Beyond it, arcs bend away from the
-/// point: the leg decides, an orthant. Before it, outside, the nearest point of the
-/// leg is on that line, where the ring has it too, so the ring decides. Inside, the
-/// flat end may be nearer than the ring.
+/// Fold to `x ≥ 0`. With `along` the place along the leg's axis and `out` the offset from it,
+/// the leg is `|out| ≤ w`, `0 ≤ along ≤ l`. The line `along = 0` through the origin separates
+/// the leg from the arc's sector. Beyond the line, the leg is nearer than the ring, which bends
+/// away, and its distance is that of an orthant. Before the line and outside, the leg's nearest
+/// point is on the line and belongs to the ring too, so the ring decides. Inside, the flat end
+/// may be nearer than the ring.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Horseshoe};
@@ -73,7 +73,7 @@ impl Horseshoe {
             return Err(ShapeError::number("width", rule, width, Unit::Metre));
         }
         let [sin, cos] = [libm::sin(half_angle), libm::cos(half_angle)];
-        // Legs that converge may be this long until their inner edges meet.
+        // The length at which the inner edges of converging legs meet.
         let longest = (ring_radius - half_width) * sin;
         if length * -cos > longest {
             let rule = format!("at most {} m, where the legs meet", longest / -cos);

@@ -9,8 +9,9 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
 use crate::vector::Vector;
 
-/// Halvings of the range of the unknown, in its exponent: six leave a factor of less
-/// than 6 of the 2¹⁵⁰ between an ulp of the thinnest and the largest that squares.
+/// Halvings of the range of the unknown's exponent. The range spans a factor of 2¹⁵⁰, from an
+/// ulp of the thinnest shape to the largest number with a finite square; six halvings leave
+/// less than 6.
 const HALVINGS: usize = 6;
 
 /// Newton steps after that: each doubles the digits, and the first is within a factor
@@ -34,13 +35,12 @@ const OPERATIONS: f64 = 6.0;
 /// h(s) = s − κ s/√(1 + s²) − ξ,    κ = yb/(a² + b²),    ξ = xa/(a² + b²)
 /// ```
 ///
-/// The nearest point is its zero s ≥ 0, of which there is one: h starts at −ξ and, with
-/// the sign of κ, it is convex or concave. As `s/√(1 + s²)` is less than s and
-/// than 1, the zero is between ξ and `ξ + κ`, on the side towards 1 of `ξ/(1 − κ)` where
-/// κ < 1, and more than `√(κ² − 1)` where κ > 1. The range is halved in its exponent;
-/// then Newton's method goes, without overshooting, from above if h is convex and from
-/// below if it is concave. An x of zero is moved by an ulp of a, so that points on the
-/// medial axis have a nearest point too.
+/// The nearest point is the zero s ≥ 0 of h. There is one, because h starts at −ξ and is convex
+/// or concave, by the sign of κ. As `s/√(1 + s²)` is less than s and than 1, the zero is
+/// between ξ and `ξ + κ`, on the side towards 1 of `ξ/(1 − κ)` where κ < 1, and more than
+/// `√(κ² − 1)` where κ > 1. The range is halved in its exponent; then Newton's method goes,
+/// without overshooting, from above if h is convex and from below if it is concave. An x of
+/// zero is moved by an ulp of a, so that points on the medial axis have a nearest point too.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Hyperbola};
@@ -108,7 +108,7 @@ impl Hyperbola {
         let mut low = convex(xi.max(beyond), steep.max(sum));
         let mut high = convex(sum.min(steep), xi).max(low);
         for _ in 0..HALVINGS {
-            // The product of the roots: that of the numbers may leave the range.
+            // The product of the square roots: that of the numbers may overflow or underflow.
             let middle = low.sqrt() * high.sqrt();
             let value = middle - kappa * (middle / norm(middle)) - xi;
             low = S::select_less(value, zero, middle, low);
@@ -137,7 +137,7 @@ impl Kernel<2> for Hyperbola {
         self.solve(p.0[0].abs(), p.0[1]).0
     }
 
-    /// The gradient is the normal at the nearest point, on both sides.
+    /// The gradient is the normal at the nearest point, inside and outside.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let (distance, [across, up]) = self.solve(p.0[0].abs(), p.0[1]);

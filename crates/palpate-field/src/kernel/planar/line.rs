@@ -49,8 +49,8 @@ impl Edge {
 
     /// The distance to the edge, negative to its left.
     ///
-    /// Beside the edge it is the offset from its line itself, which has a
-    /// gradient on the line too.
+    /// Beside the edge this is the signed offset from its line, which has a gradient on the
+    /// line too.
     #[inline(always)]
     pub(in crate::kernel) fn signed_distance<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         let zero = S::constant(0.0);

@@ -9,8 +9,8 @@ use crate::field::Placement;
 use crate::pose::{Pose, Rotation};
 use crate::vector::{Point, Vector};
 
-/// The box `aabb`, and of the ball of `radius` about (0, `height`) and the one
-/// around the box the smaller.
+/// The box `aabb`, and the smaller of two balls: that of `radius` about (0, `height`), and the
+/// one around the box.
 pub(super) fn bounds_about(aabb: Aabb<2>, height: f64, radius: f64) -> Bounds<2> {
     let centre = Vector([0.0, height]);
     let ball = BoundingBall { centre, radius: radius * (1.0 + 8.0 * f64::EPSILON) };

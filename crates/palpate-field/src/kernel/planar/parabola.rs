@@ -14,7 +14,7 @@ use crate::vector::Vector;
 /// The largest number of rounded operations of the distance from a parabola.
 const OPERATIONS: f64 = 5.0;
 
-/// The same of a segment.
+/// The same for a segment.
 const SEGMENT_OPERATIONS: f64 = 5.0;
 
 /// The region above a parabola, `y ≥ x²/4F` with F the focal length. Exact, without
@@ -63,7 +63,7 @@ impl Kernel<2> for Parabola {
         self.curve.nearest(p.0[0].abs(), p.0[1]).below
     }
 
-    /// The gradient is the normal at the nearest point, on both sides.
+    /// The gradient is the normal at the nearest point, inside and outside.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let nearest = self.curve.nearest(p.0[0].abs(), p.0[1]);
@@ -102,11 +102,11 @@ primitive! {
 ///
 /// # Derivation
 ///
-/// Fold to x ≥ 0. The nearest point is that of the arch's parabola, that of the chord,
-/// or their corner. If that of the parabola is on the arch, the distance is the larger
-/// of those from both sides: inside, this is the nearer, and outside, one of them is
-/// the inner side's. If not, the corner is the nearest right of it, else the chord:
-/// what is below the chord or inside is never right of the corner.
+/// Fold to x ≥ 0. The nearest point is that of the arch's parabola, that of the chord, or their
+/// corner. If the parabola's nearest point is on the arch, the distance is the larger of the
+/// signed distances to parabola and chord: inside, the larger is the nearer boundary's;
+/// outside, the smaller is negative. If not, the corner is the nearest right of it, else the
+/// chord: what is below the chord or inside is never right of the corner.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::ParabolaSegment};
@@ -158,7 +158,7 @@ impl ParabolaSegment {
         let past = x - S::constant(self.half_width);
         let corner = S::norm([past, chord]);
         let on_it = S::constant(4.0 * S::EPSILON * self.size());
-        // Where the corner's distance says nothing of its direction, the chord.
+        // At the corner the offset has no direction; there the chord's normal is the gradient.
         let right = S::select_less(zero, past, S::select_less(corner, on_it, zero, one), zero);
         let inverse = one / S::select_less(corner, on_it, one, corner);
         let beside = |i: usize, towards: S, down: S| {
@@ -190,7 +190,8 @@ impl Kernel<2> for ParabolaSegment {
 
     fn promise(&self) -> Promise<2> {
         let (w, h) = (self.half_width, self.height);
-        // Through the corners and the top, or about the chord, if that is no higher.
+        // The ball through the corners and the top, or the one about the chord if the arch is
+        // no higher.
         let (radius, middle) = if h < w {
             (w, -0.5 * h)
         } else {

@@ -16,11 +16,11 @@ use crate::vector::{Vector, array};
 /// The largest number of rounded operations of the distance of a quadratic circle.
 const CIRCLE_OPERATIONS: f64 = 5.0;
 
-/// The same of a cross.
+/// The same for a cross.
 const CROSS_OPERATIONS: f64 = 5.0;
 
-/// A point folded by the mirrors at the axes and between them, in the frame of the
-/// diagonal: how far it is beside it, and along it from the centre.
+/// A point folded by the axes and the diagonals, in the frame of the diagonal: its offset
+/// beside the diagonal, and its place along it from the centre.
 #[inline(always)]
 fn folded<S: Scalar>(p: Vector<S, 2>) -> [S; 2] {
     let [x, y] = p.abs().0;
@@ -71,7 +71,7 @@ pub struct QuadraticCircle {
 }
 
 impl QuadraticCircle {
-    /// One that meets the axes at `radius` from the centre [m].
+    /// The shape that meets the axes at `radius` from the centre [m].
     ///
     /// # Errors
     ///
@@ -101,7 +101,7 @@ impl Kernel<2> for QuadraticCircle {
         self.solve(p).0
     }
 
-    /// The gradient is the normal at the nearest point, on both sides.
+    /// The gradient is the normal at the nearest point, inside and outside.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let (distance, gradient) = self.solve(p);
@@ -185,7 +185,7 @@ impl BobblyCross {
             return Err(ShapeError::number("rounding", rule, rounding, Unit::Metre));
         }
         let deepest = tip / (2.0 * SQRT_2);
-        // A rounding more is meant to be no more.
+        // A dip that exceeds the limit by rounding only is accepted.
         if dip > deepest * (1.0 + 4.0 * f64::EPSILON) {
             let rule = format!("at most {deepest} m, where the arcs touch the axes");
             return Err(ShapeError::number("dip", rule, dip, Unit::Metre));
@@ -216,7 +216,7 @@ impl Kernel<2> for BobblyCross {
         self.solve(p).0
     }
 
-    /// The gradient is along the line from the nearest point before the growing.
+    /// The gradient is along the line from the nearest point of the shape before it is grown.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let (distance, gradient) = self.solve(p);
@@ -229,7 +229,7 @@ impl Kernel<2> for BobblyCross {
     }
 
     fn promise(&self) -> Promise<2> {
-        // Of (a/√2)τ and dip·τ²: the square of the first over twice the second.
+        // The least radius of curvature of ((a/√2)τ, dip·τ²): (a/√2)² over twice the dip.
         let curvature_radius = 0.25 * self.tip * (self.tip / self.dip);
         let radius = self.tip + self.rounding;
         let aabb = Aabb::centred(Vector::constant(radius));

@@ -6,8 +6,8 @@
 use crate::scalar::Scalar;
 use crate::vector::Vector;
 
-/// Fourth roots that find a third root: each takes three quarters of the logarithm
-/// of the error, four leave a factor of 1.2 of 10³⁴, the most that single precision
+/// Steps with fourth roots that approximate a cube root. Each takes away three quarters of the
+/// logarithm of the error; four leave a factor of 1.2 of 10³⁴, the most that single precision
 /// can hold.
 const ROOTS: usize = 4;
 
@@ -15,8 +15,8 @@ const ROOTS: usize = 4;
 /// of two of the root.
 const STEPS: usize = 7;
 
-/// In place of a divisor of zero: smaller than all that matters, and not too small
-/// for single precision.
+/// Replaces a divisor of zero: smaller than any divisor that matters, but a normal number in
+/// single precision.
 const TINY: f64 = 1e-37;
 
 /// The parabola of the points `(eτ, cτ²)`, with its vertex at the origin, open
@@ -32,12 +32,11 @@ const TINY: f64 = 1e-37;
 /// g(z) = z³ + kz − d,    k = e²/2 − cb,    d = eac/2 ≥ 0
 /// ```
 ///
-/// For z > 0, g is convex and starts with −d ≤ 0, so it has one zero there: the nearest
-/// point of the parabola, for mirroring a point with τ < 0 brings it nearer to (a, b).
-/// From above the zero, Newton's method falls to it without overshooting. It starts
-/// from the lesser of `∛d` and `d/k` if k ≥ 0, else from `√−k + ∛d`, where
-/// g is not negative; both are within a factor of two of the zero. The third root is
-/// the limit of `t ← ⁴√(d·t)`, which falls from above too.
+/// For z > 0, g is convex and starts with −d ≤ 0, so it has one zero there: the nearest point
+/// of the parabola, for mirroring a point with τ < 0 brings it nearer to (a, b). From above the
+/// zero, Newton's method falls to it without overshooting. It starts from the lesser of `∛d`
+/// and `d/k` if k ≥ 0, else from `√−k + ∛d`, where g is not negative; both are within a factor
+/// of two of the zero. The cube root is the limit of `t ← ⁴√(d·t)`, which falls from above too.
 ///
 /// With r this zero, the others are those of `z² + rz + r² + k`. If there are any, the
 /// lower of them is the nearest point with τ < 0.
@@ -49,7 +48,7 @@ pub(super) struct Quadratic {
     up: f64,
 }
 
-/// The zero of the cubic, in what it is scaled by, and its k.
+/// The zero of the scaled cubic, its k, and the scale from z to τ.
 struct Zero<S> {
     z: S,
     k: S,
@@ -62,7 +61,7 @@ pub(super) struct Nearest<S> {
     pub(super) tau: S,
     /// How far the point is below the parabola; negative above.
     pub(super) below: S,
-    /// The unit normal there, out of what is above.
+    /// The unit normal there, pointing out of the region above.
     pub(super) normal: [S; 2],
 }
 
@@ -81,7 +80,7 @@ impl Quadratic {
         let (e, c) = (inverse.scale(self.along), inverse.scale(self.up));
         let k = e.squared().scale(0.5) - c * b;
         let d = (e * a).scale(0.5) * c;
-        // No more than the third root of the largest d, a half.
+        // At least the cube root of any d, which is at most a half.
         let mut third_root = S::constant(0.8);
         for _ in 0..ROOTS {
             third_root = (d * third_root).sqrt().sqrt();

@@ -13,11 +13,11 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Dual, Float, Scalar};
 use crate::vector::{Point, Vector};
 
-/// The most edges of one polygon: a distance looks at each.
+/// The most edges of one polygon: a distance evaluates each.
 const MOST_EDGES: usize = 100_000;
 
-/// Closer to an edge than this many roundings of the polygon's size, whether a
-/// point is inside and on which side of the edge it lies may disagree.
+/// Closer to an edge than this many roundings of the polygon's size, the even-odd rule and the
+/// side of the edge may disagree.
 const ON_EDGE: f64 = 64.0;
 
 /// The largest number of rounded operations of the distance.

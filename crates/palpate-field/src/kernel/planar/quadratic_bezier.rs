@@ -14,14 +14,14 @@ use crate::vector::{Point, Vector, array};
 /// Newton steps in the curve's own parameter, each of which doubles the digits.
 const POLISH: usize = 2;
 
-/// How many roundings a zero may be off in the parabola's parameter, of as far as its
-/// vertex is from the curve's ends.
+/// The error of a zero in the parabola's parameter, in roundings of the distance of its vertex
+/// from the curve's ends.
 const OFF: f64 = 1024.0;
 
-/// The most that it is moved, of the curve.
+/// The most that polishing moves a zero, as a share of the curve.
 const MOST_OFF: f64 = 0.25;
 
-/// Less bent than this many roundings, a curve is a straight line.
+/// A curve bent by less than this many roundings counts as straight.
 const STRAIGHT: f64 = 8.0;
 
 /// The largest number of rounded operations of the distance.
@@ -43,9 +43,9 @@ const OPERATIONS: f64 = 6.0;
 /// of the curve: the square of the distance has one minimum on either side and falls
 /// towards it, so an end of [0, 1] is nearest only if a minimum is beyond it.
 ///
-/// A curve that is nearly straight is a small part of a large parabola, far from its
-/// vertex. So the zeros are polished in t itself, where nothing cancels, by no more
-/// than they can be off. One with equal steps, `c = 0`, is a line.
+/// A curve that is nearly straight is a small part of a large parabola, far from its vertex. So
+/// the zeros are polished in t itself, where nothing cancels, by no more than their error. A
+/// curve with equal steps, `c = 0`, is a line.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::QuadraticBezier};
@@ -72,7 +72,7 @@ pub struct QuadraticBezier {
     /// c.
     bend: [f64; 2],
     radius: f64,
-    /// The largest of the steps.
+    /// The longer of the two steps, `control − from` and `to − control`.
     length: f64,
     /// |d × c|.
     turning: f64,
@@ -114,7 +114,7 @@ impl QuadraticBezier {
         if straight {
             (step, bend) = (chord * 0.5, Vector::ZERO);
         }
-        // What is not bent is never asked for its parabola.
+        // A straight curve does not use its parabola; any values do.
         let up = bend.normalized().unwrap_or(Vector([0.0, 1.0]));
         let height = if straight { 1.0 } else { bend.norm() };
         let start = if straight { 0.0 } else { -step.dot(up) / height };
@@ -150,7 +150,7 @@ impl QuadraticBezier {
     }
 
     fn promised(&self, from: Point<2>, to: Point<2>) -> Promise<2> {
-        // An extreme along an axis is an end, or where the curve runs across it.
+        // An extreme along an axis is an end, or a point where the curve runs across the axis.
         let turns = array!(i < 2 => {
             let turn = -self.step[i] / self.bend[i];
             if turn > 0.0 && turn < 1.0 { turn } else { 0.0 }
@@ -189,7 +189,7 @@ impl QuadraticBezier {
         Vector(array!(i < 2 => t.scale(self.bend[i]) + S::constant(self.step[i])))
     }
 
-    /// The parameters that one of is the nearest point's, before they are clamped.
+    /// Candidates for the parameter of the nearest point, not clamped yet.
     #[inline(always)]
     fn candidates<S: Scalar>(&self, p: Vector<S, 2>, from: Vector<S, 2>) -> [S; 2] {
         let bend = self.bend[0].abs().max(self.bend[1].abs());
@@ -245,8 +245,8 @@ impl Kernel<2> for QuadraticBezier {
         self.solve(p).2 - S::constant(self.radius)
     }
 
-    /// The gradient is along the line from the nearest point; nearer to it than the
-    /// centre of curvature, it is the curve's normal there, which is the more precise.
+    /// The gradient is along the line from the nearest point. Nearer to the curve than the
+    /// centre of curvature, it is the curve's normal, which is more precise.
     #[inline(always)]
     fn distance_gradient<T: Float>(&self, p: Vector<T, 2>) -> (T, Vector<T, 2>) {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
@@ -261,8 +261,8 @@ impl Kernel<2> for QuadraticBezier {
         let normal = unit(Vector([speed.0[1], -speed.0[0]]));
         let side = T::select_less(offset.dot(normal), zero, -one, one);
         let away = unit(offset);
-        // As 2|B'/2|³ is the radius of curvature times the turning, which is known to
-        // a few roundings.
+        // Compares the length with the radius of curvature, both times the turning, which is
+        // known to a few roundings: the radius of curvature times the turning is 2|B'/2|³.
         let bend = self.bend[0].abs().max(self.bend[1].abs());
         let rounding = STRAIGHT * T::EPSILON * self.length * bend;
         let turning = self.turning.max(rounding);

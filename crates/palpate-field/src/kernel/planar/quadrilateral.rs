@@ -85,9 +85,9 @@ primitive! {
 ///
 /// # Derivation
 ///
-/// A half turn maps it to itself, so a point below the x axis is turned above it.
-/// There the bottom is never the nearest edge; the top and both sides decide, whole,
-/// since a skewed side may be nearest in its lower half.
+/// A half turn maps it to itself, so a point below the x axis is turned above it. There the
+/// bottom is never the nearest edge; the top and both whole sides decide, since the lower half
+/// of a skewed side may be nearest.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Parallelogram};

@@ -21,11 +21,11 @@ const CORNERS: [[f64; 2]; 4] = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.
 ///
 /// # Derivation
 ///
-/// A corner alone, its two faces prolonged without end, is an orthant grown by the
-/// corner's radius, of which the distance is known. The shape is what all four have
-/// in common, so none of their distances exceeds its own, and inside the largest is
-/// it. Outside, the nearest point lies on a face or an arc, and the corner that has
-/// this face or arc gives the distance to it: again the largest.
+/// One corner, with its two faces extended without end, is an orthant grown by the corner's
+/// radius, whose distance is known. The shape is the intersection of the four corners, so none
+/// of their distances exceeds the shape's, and inside the largest equals it. Outside, the
+/// nearest point lies on a face or an arc, and the corner that has this face or arc gives the
+/// distance, again the largest.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RoundedRectangle};
@@ -163,8 +163,8 @@ pub struct ChamferedRectangle {
 }
 
 impl ChamferedRectangle {
-    /// A rectangle with the given edge lengths, of which each corner takes
-    /// `chamfer` at either end [m].
+    /// A rectangle with the given edge lengths, cut off `chamfer` from each corner along both
+    /// edges [m].
     ///
     /// # Errors
     ///
@@ -231,7 +231,7 @@ primitive! {
 /// The rectangle around the line between two points, which are the middles of its
 /// ends. Exact.
 ///
-/// A [`Cuboid`] in a frame of its own.
+/// A [`Cuboid`] along the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::OrientedRectangle};

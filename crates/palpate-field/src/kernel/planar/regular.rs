@@ -14,15 +14,15 @@ use crate::vector::{Vector, array};
 /// The most corners or branches.
 const MOST_BRANCHES: u32 = 256;
 
-/// Reflections that fold [`MOST_BRANCHES`] branches into half of one, after the
-/// first, which folds left onto right.
+/// Reflections that fold [`MOST_BRANCHES`] branches into half of one, not counting the first,
+/// which folds left onto right.
 const FOLDS: usize = 8;
 
-/// The largest number of rounded operations of the distance of a polygon: few of the
-/// reflections move a point.
+/// The largest number of rounded operations of the distance of a polygon. Few of the
+/// reflections move a point, so few round.
 const POLYGON_OPERATIONS: f64 = 18.0;
 
-/// The same of a star, whose thin tips are far from their middle.
+/// The same for a star, whose thin tips are far from their middle.
 const STAR_OPERATIONS: f64 = 40.0;
 
 /// The symmetries of a regular polygon, as reflections that fold the plane onto
@@ -30,13 +30,13 @@ const STAR_OPERATIONS: f64 = 40.0;
 ///
 /// # Derivation
 ///
-/// Every line at a multiple of π/n from the y axis is a mirror. Fold left onto
-/// right: the wedge is n times π/n wide. A wedge of m mirrors' widths folds onto
-/// its first ⌈m/2⌉ by the mirror there, so ⌈log₂ n⌉ reflections are enough. They
-/// need no inverse function, hold for odd n, and have no singular centre.
+/// Every line at a multiple of π/n from the y axis is a mirror. Fold left onto right: the wedge
+/// is n times π/n wide. The mirror in the middle of a wedge that is m times π/n wide folds the
+/// wedge onto ⌈m/2⌉ times π/n, so ⌈log₂ n⌉ reflections suffice. They need no inverse function,
+/// hold for odd n, and have no singular centre.
 #[derive(Clone, Debug)]
 struct Fold {
-    /// Normals of the mirrors, out of the part that is kept; zero when done.
+    /// Normals of the mirrors, pointing out of the kept part; zero for unused mirrors.
     mirrors: [[f64; 2]; FOLDS],
     /// Sine and cosine of π/n.
     half_branch: [f64; 2],

@@ -13,17 +13,17 @@ use crate::vector::Vector;
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 5.0;
 
-/// A star with four tips on the axes, joined by arcs that are hollow. Exact.
+/// A star with four tips on the axes, joined by concave arcs. Exact.
 ///
 /// # Derivation
 ///
-/// Folded to x, y ≥ 0 there is one arc, from the tip (a, 0) to the tip (0, b), about
-/// a centre c on the far side of their chord: beyond its middle, along its normal, by
-/// √(r² − (a² + b²)/4). Between the two rays from c through the tips the arc is the
-/// nearest, at `r − ‖p − c‖`, positive outside; elsewhere the nearer tip is. All that
-/// is inside lies between the rays if the arc stays within its quadrant, so if c is
-/// at least as far right as a and as far up as b. At the least such r, that of a
-/// circle touching the axis of the farther tip, `a² + b² = 2r min(a, b)`.
+/// Folded to x, y ≥ 0 there is one arc, from the tip (a, 0) to the tip (0, b), about a centre c
+/// on the far side of their chord: beyond its middle, along its normal, by √(r² − (a² + b²)/4).
+/// Between the two rays from c through the tips the arc is the nearest, at `r − ‖p − c‖`,
+/// positive outside; elsewhere the nearer tip is. All points inside lie between the rays if the
+/// arc stays within its quadrant, that is, if c is at least as far right as a and as far up as
+/// b. At the least such r, the circle touches the axis of the farther tip, and
+/// `a² + b² = 2r min(a, b)`.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RoundedCross};
@@ -42,7 +42,7 @@ pub struct RoundedCross {
     half: [f64; 2],
     centre: [f64; 2],
     arc_radius: f64,
-    /// Out of the wedge of the arc's normals, across its two sides.
+    /// The outward normals of both sides of the wedge that the arc's normals fill.
     walls: [[f64; 2]; 2],
 }
 
@@ -60,7 +60,7 @@ impl RoundedCross {
         positive("arc_radius", arc_radius, Unit::Metre)?;
         let [a, b] = size.0.map(|length| 0.5 * length);
         let least = 0.5 * (a * (a / a.min(b)) + b * (b / a.min(b)));
-        // A rounding less is meant to be as much.
+        // A radius that falls short of the limit by rounding only is accepted.
         if arc_radius < least * (1.0 - 4.0 * f64::EPSILON) {
             let rule = format!("at least {least} m, where the arcs touch the axes");
             return Err(ShapeError::number("arc_radius", rule, arc_radius, Unit::Metre));

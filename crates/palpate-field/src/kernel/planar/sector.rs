@@ -27,8 +27,8 @@ fn bounds_of(wedge: &Wedge) -> Bounds<2> {
     if cos <= 0.0 {
         return bounds_about(aabb, 0.0, outer);
     }
-    // About the middle of the outer corners, or if the inner ones are further from
-    // there, where all four are equally far.
+    // The ball about the middle of the outer corners or, if the inner corners are farther from
+    // there, about the point equally far from all four.
     let height = (outer * cos).min(0.5 * (inner + outer) / cos);
     let radius = (outer * sin).hypot(outer * cos - height);
     bounds_about(aabb, height, radius + margin)

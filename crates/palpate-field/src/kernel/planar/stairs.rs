@@ -23,21 +23,19 @@ const OPERATIONS: f64 = 6.0;
 ///
 /// # Derivation
 ///
-/// From its lower left corner, step `k` has a riser at `x = kw` and a tread at
-/// `y = (k + 1)h`. Lines square to the slope through the inner corners part the
-/// plane into a strip for each step, which holds its riser and tread and nothing
-/// else of the steps.
+/// From its lower left corner, step `k` has a riser at `x = kw` and a tread at `y = (k + 1)h`.
+/// Lines perpendicular to the slope through the inner corners divide the plane into a strip for
+/// each step, which holds its riser and tread and no other part of the stairs.
 ///
-/// Inside, the nearest of the steps' points is in the point's own strip. For a tread
-/// `m` steps on, `u` to the right of the strip's upper inner corner and `mh + v`
-/// above the point, with `v ≥ uw/h` and `u ≤ mw`, is at
-/// `(mh + v)² ≥ 2u² + v²`, more than the inner corner at `u² + v²`. Risers are the
-/// same with the axes exchanged.
+/// Inside, the nearest point of the stairs is in the strip of the evaluated point. A tread `m`
+/// steps on, which is `u` to the right of the strip's upper inner corner and `mh + v` above the
+/// evaluated point, with `v ≥ uw/h` and `u ≤ mw`, has the squared distance
+/// `(mh + v)² ≥ 2u² + v²`, more than the inner corner's `u² + v²`. For risers the axes are
+/// exchanged.
 ///
-/// Outside, what holds inside holds for the strips through the outer corners instead:
-/// between two of them are a tread and the riser after it. So of the strips through
-/// the inner corners, the point's own riser and tread, the tread before and the riser
-/// after are enough.
+/// Outside, the same holds for strips through the outer corners, each with a tread and the
+/// riser after it. In terms of the strips through the inner corners, the riser and tread of the
+/// point's own strip, the tread before it and the riser after it suffice.
 ///
 /// The strip is found by halving.
 ///
@@ -58,7 +56,7 @@ const OPERATIONS: f64 = 6.0;
 pub struct Stairs {
     step: [f64; 2],
     half_extents: [f64; 2],
-    /// A step's vector over its square: a product with it counts steps.
+    /// The vector of a step over its square; the product of a point with it counts steps.
     count: [f64; 2],
     steps: u32,
     /// By how many steps a halving moves; zero when done.
@@ -85,7 +83,7 @@ impl Stairs {
         let half_extents = step.map(|length| 0.5 * length * f64::from(steps));
         positive("step_width times steps", 2.0 * half_extents[0], Unit::Metre)?;
         positive("step_height times steps", 2.0 * half_extents[1], Unit::Metre)?;
-        // Divided by the larger first, so that no square leaves the range.
+        // Divided by the larger first, so that no square overflows.
         let larger = w.max(h);
         let square = larger * ((w / larger) * (w / larger) + (h / larger) * (h / larger));
         let count = [w / larger / square, h / larger / square];
@@ -157,7 +155,7 @@ impl Kernel<2> for Stairs {
         S::select_less(sides, zero, -nearest, nearest)
     }
 
-    /// A cell may hold many steps, of which the formula sees one.
+    /// By the Lipschitz constant: a cell may hold many steps, and the formula sees one.
     #[inline(always)]
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         lipschitz_model(self, cell, OPERATIONS, self.size())

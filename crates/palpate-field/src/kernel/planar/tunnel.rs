@@ -17,8 +17,8 @@ use crate::vector::Vector;
 ///
 /// # Derivation
 ///
-/// Without its floor it is all that is within `r` of a ray that runs down the y
-/// axis. The floor is square to its walls, so both together are an orthant.
+/// Without its floor the shape is all points within `r` of a ray down the y axis. The floor is
+/// perpendicular to the walls, so both together are an orthant.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Tunnel};

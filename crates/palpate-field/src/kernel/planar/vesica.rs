@@ -89,7 +89,7 @@ primitive! {
 
 /// A lens of two equal arcs between two points. Exact.
 ///
-/// A [`Vesica`] in a frame of its own.
+/// A [`Vesica`] along the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::OrientedVesica};

@@ -11,10 +11,9 @@ use crate::vector::{Vector, array};
 ///
 /// # Derivation
 ///
-/// With φ the angle from the y axis, the nearest point is on the arc at φ if φ is at
-/// most that of the end, else it is the end. That φ is larger shows in the sign of
-/// the distance from the line through the end and the origin, without an inverse
-/// function.
+/// With φ the angle from the y axis, the nearest point is on the arc at φ if φ is at most that
+/// of the end, else it is the end. Whether φ is larger follows from the sign of the offset from
+/// the line through the end and the origin, without an inverse function.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct Curve {
     radius: f64,
@@ -28,8 +27,8 @@ pub(in crate::kernel) struct Curve {
 impl Curve {
     /// An arc of `radius` [m] to `angle` [rad], at most π.
     ///
-    /// A tube about it may fill the middle; if it goes round by more than a quarter,
-    /// it may meet its mirror image past the ends before.
+    /// A thick tube about the arc fills the centre. If the arc spans more than a quarter turn,
+    /// a thinner tube may already meet its mirror image past the ends.
     pub(in crate::kernel) fn to_angle(radius: f64, angle: f64) -> Self {
         let end = [libm::sin(angle), libm::cos(angle)];
         let whole = angle >= std::f64::consts::PI;
@@ -82,8 +81,8 @@ impl Curve {
         let [sin, cos] = self.end;
         let past_end = S::weighted_sum(p, &[cos, -sin]);
         let end = Vector(self.end) * self.radius;
-        // In this order, since at the centre the first decides the gradient, and the
-        // arc is sure to be there.
+        // y first: at the centre the first component decides the gradient, and every arc has a
+        // point on the +y axis.
         let from_centre = S::norm([p[1], p[0]]);
         let to_arc = (from_centre - S::constant(self.radius)).abs();
         let to_end = S::norm(array!(i < 2 => p[i] - S::constant(end.0[i])));

@@ -13,10 +13,11 @@ use crate::vector::Vector;
 ///
 /// # Derivation
 ///
-/// Two convex sets meet, so inside and where only one of them is left, the larger of
-/// their distances is the distance. The nearest point on the circle is kept where the
-/// angle from the +y axis is less than that of the corner, which is the end of the
-/// cut. Else the nearest point is on the cut where `p` is below it, or the corner.
+/// The shape is the intersection of two convex sets, a disc and a half-plane. Inside, and where
+/// the nearest point of the disc or of the half-plane is on the shape, the larger of their
+/// distances is the distance. The nearest point on the circle remains where the angle from the
+/// +y axis is less than that of the corner, which is the end of the cut. Else the nearest point
+/// is on the cut where `p` is below it, or the corner.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct CutDisc {
     radius: f64,
@@ -25,7 +26,7 @@ pub(in crate::kernel) struct CutDisc {
 }
 
 impl CutDisc {
-    /// The part of a disc of `radius` [m] above `height` [m], of less than that size.
+    /// The part of a disc of `radius` [m] above `height` [m], with `|height| < radius`.
     pub(in crate::kernel) fn new(radius: f64, height: f64) -> Self {
         Self { radius, height, half_width: half_chord(radius, height) }
     }

@@ -13,10 +13,10 @@ use crate::vector::{Point, Vector};
 ///
 /// # Derivation
 ///
-/// Of half width `w`, the disc has the radius `R = c + w`, and `R² = c² + h²`. So
-/// `c/R`, `h/R` and `1/R` are quotients with `h² + w²`, where nothing cancels. The
-/// distance from the circle is `‖(x + c, y)‖ − R`, in which nearly all digits cancel
-/// if the lens is thin; times and over the sum of both it is
+/// Of half width `w`, the disc has the radius `R = c + w`, and `R² = c² + h²`. So `c/R`, `h/R`
+/// and `1/R` are quotients with `h² + w²`, where nothing cancels. The distance from the circle
+/// is `‖(x + c, y)‖ − R`, in which nearly all digits cancel if the lens is thin. Multiplied and
+/// divided by the sum of both terms it is
 ///
 /// ```text
 /// (x(x/R + 2c/R) + (y − h)(y + h)/R) / (‖(x + c, y)‖/R + 1).
@@ -35,7 +35,7 @@ impl Lens {
     /// A lens of `half_height` and `half_width` [m], at most as wide as high.
     pub(in crate::kernel) fn new(half_height: f64, half_width: f64) -> Self {
         let (h, w) = (half_height, half_width);
-        // By the larger, so that no square leaves the range.
+        // Divided by the larger, so that no square overflows.
         let slim = w / h;
         let sum = 1.0 + slim * slim;
         let tip = [(1.0 - slim) * (1.0 + slim) / sum, 2.0 * slim / sum];
@@ -55,7 +55,8 @@ impl Lens {
             x * (across + S::constant(2.0 * tip_x)) + beyond * (up + S::constant(tip_y));
         let zero = S::constant(0.0);
         let arc = product / sum;
-        // `beyond` first: it is a normal of the tip.
+        // `beyond` first, because the first component decides the gradient at the tip, and +y
+        // is a normal there.
         let tip = face_if_on_it(S::norm([beyond, x]), arc, self.half_height);
         S::select_less(zero, past_tip, tip, arc)
     }

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Distances in the half plane `x ≥ 0`: what a planar shape folds to, and what a
-//! solid turns about the y axis.
+//! Distances in the half plane `x ≥ 0`, for planar shapes with a mirror image and for solids of
+//! revolution about the y axis.
 //!
-//! Each is the distance of the planar shape that is its own mirror image, asked
-//! where `x ≥ 0`. A shape that turns it about y has the same distance: the nearest
-//! point of a solid of revolution is in the half plane of the point that asks.
+//! Each is the distance of a planar shape that is its own mirror image, evaluated where
+//! `x ≥ 0`. The solid that the shape sweeps about y has the same distance, because the nearest
+//! point of a solid of revolution lies in the half plane of the evaluated point.
 
 mod arc;
 mod cut_disc;

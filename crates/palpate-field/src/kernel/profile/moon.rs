@@ -11,12 +11,12 @@ use crate::scalar::Scalar;
 ///
 /// # Derivation
 ///
-/// The boundary is an arc of either circle, between the corner where both cross and the
-/// y axis. Inside, what is outside is beyond the disc or in the bite: there the nearer of
-/// both circles counts, arc or not. Outside, the nearest point is on an arc, if the
-/// direction from its centre is one of the arc's, or it is the corner. That a direction
-/// is past the end of an arc shows in the sign of the offset from the line through the
-/// centre and the corner.
+/// The boundary is an arc of either circle, between the corner where both cross and the y axis.
+/// From inside, the exterior is beyond the disc or in the bite, so the nearer of both circles
+/// decides, even where it is not an arc. Outside, the nearest point is on an arc, if the
+/// direction from its centre is one of the arc's, or it is the corner. Whether a direction is
+/// past the end of an arc follows from the sign of the offset from the line through the centre
+/// and the corner.
 #[derive(Clone, Debug)]
 pub(in crate::kernel) struct Moon {
     pub(in crate::kernel) radius: f64,
@@ -31,8 +31,8 @@ impl Moon {
     /// [m]; the circles cross.
     pub(in crate::kernel) fn new(radius: f64, cut_radius: f64, distance: f64) -> Self {
         let (r, s, d) = (radius, cut_radius, distance);
-        // How far along the line to the other centre the circles cross, from the centre
-        // of the smaller, where less cancels: (r² − R² + d²)/2d.
+        // How far along the line between the centres the circles cross: (r² − R² + d²)/2d from
+        // the centre of the smaller circle, where less cancels.
         let (small, large) = (r.min(s), r.max(s));
         let along = 0.5 * (((d - large) / d) * (d + large) + small * (small / d));
         let along = along.clamp(-small, small);
@@ -52,7 +52,8 @@ impl Moon {
     pub(in crate::kernel) fn distance<S: Scalar>(&self, [x, y]: [S; 2]) -> S {
         let below = S::constant(self.distance) - y;
         let disc = S::norm([x, y]) - S::constant(self.radius);
-        // `below` first: from its centre, straight down leads to the arc.
+        // `below` first: at the bite's centre the first component decides the gradient, and the
+        // arc has a point straight below.
         let bite = S::constant(self.cut_radius) - S::norm([below, x]);
         let [corner_x, corner_y] = self.corner;
         let corner = S::norm([x - S::constant(corner_x), y - S::constant(corner_y)]);

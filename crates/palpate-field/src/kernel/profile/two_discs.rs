@@ -27,8 +27,8 @@ pub(in crate::kernel) struct TwoDiscs {
 }
 
 impl TwoDiscs {
-    /// Discs of two radii, their centres `distance` apart [m], which is more than the
-    /// radii differ.
+    /// Discs of two radii, their centres `distance` apart [m], which exceeds the difference of
+    /// the radii.
     pub(in crate::kernel) fn new(bottom_radius: f64, top_radius: f64, distance: f64) -> Self {
         let taper = bottom_radius - top_radius;
         let edge = ((distance - taper) * (distance + taper)).sqrt();

@@ -20,7 +20,7 @@ pub(in crate::kernel) struct Wedge {
 }
 
 impl Wedge {
-    /// Half of what spans `angle` [rad] about the +y axis, with a piece on its ray from
+    /// Half of a wedge that spans `angle` [rad] about the +y axis, with a piece on its ray from
     /// `inner` to `outer` [m].
     ///
     /// # Errors
@@ -39,10 +39,10 @@ impl Wedge {
     /// The signed distance of the intersection of the wedge with `round`, a disc or ring
     /// whose distance is given.
     ///
-    /// Outside the wedge, the nearest point is on the straight piece. In it, outside
-    /// `round`, that of `round` is in the wedge too, being on the same ray. Inside both,
-    /// the nearer of both decides; where the piece is not all of the ray, `round` ends
-    /// first.
+    /// Outside the wedge, the nearest point is on the straight piece. In the wedge and outside
+    /// `round`, the nearest point of `round` lies on the same ray from the origin, so it is in
+    /// the wedge too. Inside both, the nearer boundary decides; points of the ray off the piece
+    /// are outside `round`, whose boundary is nearer.
     #[inline(always)]
     pub(in crate::kernel) fn cut<S: Scalar>(&self, p: [S; 2], round: S) -> S {
         let zero = S::constant(0.0);
@@ -52,12 +52,12 @@ impl Wedge {
         let before = S::constant(self.inner) - along;
         let past = before.max(along - S::constant(self.outer)).max(zero);
         let to_piece = S::norm([out, past]);
-        // Beside the piece the offset itself, which has a gradient on it too.
+        // Beside the piece the signed offset, which has a gradient on the piece too.
         let inside = S::select_less(zero, past, -to_piece, out);
         S::select_less(zero, out, to_piece, round.max(inside))
     }
 
-    /// The sector of the disc whose radius is where the piece ends.
+    /// The signed distance of the sector of a disc whose radius is the end of the piece.
     #[inline(always)]
     pub(in crate::kernel) fn sector<S: Scalar>(&self, p: [S; 2]) -> S {
         self.cut(p, S::norm(p) - S::constant(self.outer))

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The haptics article's approximate forms: the largest signed distance to a
-//! face.
+//! The haptics article's approximate forms: the largest signed distance to a face.
 //!
-//! Inside they are exact. Outside, past edges and corners, they fall short of
-//! the distance, so their isolines keep sharp corners: lower bounds. The
-//! article's cone and pyramid were steeper than one and no bounds; here the
-//! lateral term is divided by its slope.
+//! They are exact inside. Outside they are lower bounds: past edges and corners they are less
+//! than the distance, so their isolines keep sharp corners. The article's cone and pyramid have
+//! Lipschitz constants above one and are no bounds; here the lateral term is divided by its
+//! slope.
 
 use super::cylinder::{from_axis, turned_bounds};
 use crate::bounds::Bounds;
@@ -17,7 +16,7 @@ use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
 use crate::vector::Vector;
 
-/// A bound outside, exact inside, and not above the distance to its box.
+/// The promise: a bound outside, exact inside, and at most the distance to the box.
 fn face_distance(bounds: Bounds<3>, symmetric_in_y: bool) -> Promise<3> {
     Promise {
         outside: Quality::Bound,
@@ -137,8 +136,8 @@ primitive! {
     example: (0.4, 1.0),
 }
 
-/// How far out of a side that leans from half width `w` at the bottom to the
-/// axis at the top: `(across − w(½ − y/h)) · h/√(h² + w²)`.
+/// The offset out of a side that leans from half width `w` at the bottom to the axis at the
+/// top: `(across − w(½ − y/h)) · h/√(h² + w²)`.
 #[derive(Clone, Debug)]
 struct LeaningSide {
     half_width: f64,
@@ -206,7 +205,7 @@ impl Kernel<3> for ConeApproximation {
 
 primitive! {
     ConeApproximation, cone_approximation, 3,
-    about: "The article's approximate cone, mended to be a bound.",
+    about: "The article's approximate cone, corrected to be a bound.",
     model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
@@ -261,7 +260,7 @@ impl Kernel<3> for PyramidApproximation {
 
 primitive! {
     PyramidApproximation, pyramid_approximation, 3,
-    about: "The article's approximate pyramid, mended to be a bound.",
+    about: "The article's approximate pyramid, corrected to be a bound.",
     model: ClosedForm,
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,

@@ -18,8 +18,8 @@ const OPERATIONS: f64 = 8.0;
 /// The part of a ball about the origin in a cone about the +y axis: a cone with a round
 /// base. Exact.
 ///
-/// A sector of a disc, turned. Over half a turn it is not convex, and cells are bounded
-/// by the formula; of a full turn nothing would be left to take away.
+/// A sector of a disc, turned about the y axis. If the angle exceeds half a turn, the shape is
+/// not convex and the formula bounds cells. A full turn would be the whole ball.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::SolidAngle};
@@ -113,7 +113,7 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
 
 /// The part of a ball about the origin above a height. Exact.
 ///
-/// A disc cut by a line, turned.
+/// A disc cut by a line, turned about the y axis.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CutBall};
@@ -182,8 +182,8 @@ primitive! {
 /// A bowl: what is left of a hollow sphere about the origin when all above a height is
 /// cut off, its rim rounded. Exact.
 ///
-/// All points within half the thickness of an arc, turned. With a thickness of zero it
-/// has no inside.
+/// All points within half the thickness of an arc, turned about the y axis. With a thickness of
+/// zero it has no inside.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CutHollowSphere};
@@ -221,7 +221,7 @@ impl CutHollowSphere {
         let wall = Curve::above(radius, -cut_height);
         let most = 2.0 * wall.room();
         if thickness > most {
-            let rule = format!("at most what closes the middle or the opening, {most} m");
+            let rule = format!("at most {most} m, where the middle or the opening closes");
             return Err(ShapeError::number("thickness", rule, thickness, Unit::Metre));
         }
         Ok(Self { wall, radius, cut_height, half_thickness: 0.5 * thickness })
@@ -266,7 +266,7 @@ primitive! {
 
 /// A ball about the origin with a bite from above: without another ball. Exact.
 ///
-/// A disc without another, turned.
+/// A disc without another, turned about the y axis.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::DeathStar};

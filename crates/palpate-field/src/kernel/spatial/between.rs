@@ -12,8 +12,8 @@ use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};
 
-/// The bounds of what is between two discs across the frame's axis, of the given radii
-/// at its start and end.
+/// The bounds of the hull of two discs across the frame's axis, with the given radii at its
+/// start and end.
 fn bounds_of_discs(between: &Between<3>, [start, end]: [f64; 2]) -> Bounds<3> {
     let (pose, half_length) = (between.pose(), between.half_length());
     let direction = between.direction();
@@ -32,7 +32,7 @@ fn bounds_of_discs(between: &Between<3>, [start, end]: [f64; 2]) -> Bounds<3> {
 
 /// A cylinder with flat ends between two points. Exact.
 ///
-/// A [`Cylinder`] in a frame of its own.
+/// A [`Cylinder`] along the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CylinderBetween};
@@ -57,8 +57,7 @@ impl CylinderBetween {
     ///
     /// # Errors
     ///
-    /// If the radius is not positive, a coordinate not finite, or the points are not
-    /// apart.
+    /// If the radius is not positive, a coordinate not finite, or the points are the same.
     pub fn new(from: Point<3>, to: Point<3>, radius: f64) -> Result<Self, ShapeError> {
         let between = Between::apart(from, to)?;
         let cylinder = Cylinder::new(radius, 2.0 * between.half_length())?;
@@ -93,7 +92,7 @@ primitive! {
 
 /// A capped cone between two points. Exact.
 ///
-/// A [`CappedCone`] in a frame of its own.
+/// A [`CappedCone`] along the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CappedConeBetween};
@@ -118,8 +117,8 @@ impl CappedConeBetween {
     ///
     /// # Errors
     ///
-    /// If a radius is negative, both are zero, a coordinate is not finite, or the
-    /// points are not apart.
+    /// If a radius is negative, both are zero, a coordinate is not finite, or the points are
+    /// the same.
     pub fn new(
         from: Point<3>,
         to: Point<3>,

@@ -14,7 +14,7 @@ use crate::vector::Vector;
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 10.0;
 
-/// The same of a cone without a base.
+/// The same for a cone without a base.
 const INFINITE_OPERATIONS: f64 = 6.0;
 
 /// A cone about the y axis with its tip cut off. Exact.

@@ -16,15 +16,15 @@ pub(super) fn from_axis<S: Scalar>(p: Vector<S, 3>) -> S {
     S::norm([p.0[0], p.0[2]])
 }
 
-/// The distance from the y axis, and the height: where `p` is in the profile of a
-/// solid that turns about y.
+/// The place of `p` in the profile of a solid of revolution about y: the distance from the
+/// axis, and the height.
 #[inline(always)]
 pub(super) fn in_profile<S: Scalar>(p: Vector<S, 3>) -> [S; 2] {
     [from_axis(p), p.0[1]]
 }
 
-/// The bounds of what a box of `half_width` and `half_height` holds when turned
-/// about the y axis.
+/// The bounds of a solid of revolution about y whose profile fits into a box of `half_width`
+/// and `half_height`.
 pub(super) fn turned_bounds(half_width: f64, half_height: f64) -> Bounds<3> {
     let radius = Vector([half_width, half_height]).norm() * (1.0 + 4.0 * f64::EPSILON);
     Bounds::centred(Vector([half_width, half_height, half_width]), radius)

@@ -17,11 +17,11 @@ const OPERATIONS: f64 = 6.0;
 ///
 /// # Derivation
 ///
-/// A point is in a bar if it is in the box and less than the thickness behind at least
-/// two of its faces. Folded into the positive octant, the three bars there are boxes,
-/// and outside the nearest of them counts. What is outside, seen from inside, is
-/// outside the box or in one of three tunnels, one along each axis: the distance to the
-/// nearest is that to a face of the box, or to a tunnel's rectangle across its axis.
+/// A point is in a bar if it is in the box and less than the thickness behind at least two of
+/// its faces. Folded into the positive octant, the three bars there are boxes, and outside the
+/// nearest of them counts. From inside, the exterior is outside the box or in one of three
+/// tunnels, one along each axis: the distance is that to a face of the box, or to the rectangle
+/// of a tunnel's cross-section.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::CuboidFrame};

@@ -18,7 +18,7 @@ const OPERATIONS: f64 = 8.0;
 /// A spindle between two points: an arc from one to the other, turned about the line
 /// between them. Exact.
 ///
-/// Half of what two discs have in common, turned, in a frame of its own.
+/// Half the intersection of two discs, turned about the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::VesicaSegment};

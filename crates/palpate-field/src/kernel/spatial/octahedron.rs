@@ -56,8 +56,8 @@ impl Kernel<3> for Octahedron {
         let radius = S::constant(self.radius);
         let [x, y, z] = p.abs().0;
         let beyond = x + y + z - radius;
-        // The coordinates in order: a ≥ b ≥ c. At ties each is still taken once,
-        // for the sake of the gradient: `min` and `max` keep their first argument.
+        // The coordinates in order: a ≥ b ≥ c. At ties `min` and `max` keep their first
+        // argument, so each coordinate is taken once and the gradient is right.
         let (larger, smaller) = (x.max(y), y.min(x));
         let (a, c) = (larger.max(z), smaller.min(z));
         let b = z.min(larger).max(smaller);

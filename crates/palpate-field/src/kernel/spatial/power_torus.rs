@@ -24,10 +24,10 @@ const OPERATIONS: f64 = 10.0;
 ///
 /// # Derivation
 ///
-/// Both gradients are at most one long, since both norms are at most the Euclidean. The
-/// outer one's is `(a, b)`, and the whole `(a·g, b)` with a `g` in the plane of x and z:
-/// its length is at most that of `(a, b)`. So the Lipschitz constant is 1, and values
-/// are bounds.
+/// Both norms are at most the Euclidean, so their gradients are at most one long. With `(a, b)`
+/// the gradient of the outer norm and `g` that of the inner one, in the plane of x and z, the
+/// gradient of `f` is `(a·g, b)`, which is no longer than `(a, b)`. So the Lipschitz constant
+/// is 1, and values are bounds.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::PowerTorus};

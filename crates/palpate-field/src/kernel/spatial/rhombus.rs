@@ -17,8 +17,8 @@ const OPERATIONS: f64 = 10.0;
 /// A prism along y on a rhombus whose diagonals are along x and z, its edges rounded
 /// inwards. Exact.
 ///
-/// The orthant of the rhombus's distance and `|y| − h/2`. All faces are moved inwards by
-/// the rounding, and the rest is grown by as much: the faces stay where they are.
+/// The orthant of the rhombus's distance and `|y| − h/2`. All faces are moved inwards by the
+/// rounding, and the smaller prism is grown by as much, which puts the faces back.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RhombusPrism};
@@ -64,13 +64,13 @@ impl RhombusPrism {
         Ok(Self { size, rhombus, half_height: half_height - rounding, rounding })
     }
 
-    /// From the centre to the farthest corner of what is grown, by coordinate [m].
+    /// From the centre to the farthest corner of the smaller prism, by coordinate [m].
     fn core(&self) -> Vector<f64, 3> {
         let [a, b] = self.rhombus.corners();
         Vector([a, self.half_height, b])
     }
 
-    /// The radius of the ball around it [m].
+    /// The radius of the bounding ball [m].
     fn reach(&self) -> f64 {
         self.core().norm() + self.rounding
     }

@@ -16,7 +16,7 @@ use crate::vector::{Point, Vector};
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
-/// Two balls of which neither holds the other.
+/// The profile of two balls, neither of which holds the other.
 fn two_discs(
     [first, second]: [(&'static str, f64); 2],
     (what, distance): (&'static str, f64),
@@ -35,7 +35,8 @@ fn two_discs(
 /// Two balls above each other on the y axis and all that is between: their convex
 /// hull. Exact.
 ///
-/// The origin is half-way between the centres. The hull of two discs, turned.
+/// The origin is half-way between the centres. The shape is the hull of two discs, turned about
+/// the y axis.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RoundCone};
@@ -107,7 +108,7 @@ primitive! {
 
 /// Balls about two points and all that is between: their convex hull. Exact.
 ///
-/// A [`RoundCone`] in a frame of its own.
+/// A [`RoundCone`] along the line between the points.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::RoundConeBetween};

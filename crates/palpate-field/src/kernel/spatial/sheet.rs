@@ -16,13 +16,12 @@ use crate::vector::{Point, Vector};
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
-/// A corner that is no farther from the line of its neighbours than this part of the
-/// size is no corner: the direction of the plane would be rounding.
+/// A point that is no farther from the line of its neighbours than this share of the size is
+/// refused as a corner: the direction of the plane would be rounding.
 const FLAT: f64 = 1e-9;
 
-/// Four points are in one plane if they are off by no more than this part of their
-/// size, which leaves room for coordinates with few digits. More would be a different
-/// shape.
+/// Four points count as in one plane if they are off by at most this share of their size, which
+/// leaves room for coordinates with few digits.
 const PLANAR: f64 = 1e-6;
 
 /// All points within a radius of a flat convex polygon in space. Exact.
@@ -32,9 +31,9 @@ const PLANAR: f64 = 1e-6;
 /// # Derivation
 ///
 /// In a frame whose y axis is across the plane, the polygon is at `y = 0`, its edges in
-/// `(x, z)`. Where `p` is above or below the polygon, behind the lines of all its edges,
-/// the distance is `|y|`. Else it is the least to an edge: of its line, of its ends and
-/// of the plane `p` is away at right angles.
+/// `(x, z)`. Where `p` is above or below the polygon, behind the lines of all its edges, the
+/// distance is `|y|`. Elsewhere it is the least distance to an edge: the norm of the offsets
+/// from the edge's line, past its end, and from the plane, which are at right angles.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Sheet};
@@ -73,7 +72,7 @@ impl Sheet<3> {
     pub fn new(points: Vec<Point<3>>, radius: f64) -> Result<Self, ShapeError> {
         let points: [_; 3] = checked(points)?;
         let length = |i: usize| (points[(i + 1) % 3] - points[i]).norm();
-        // From the ends of the longest edge, the height is best known.
+        // Over the longest edge, the height has the least relative error.
         let longest = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
         let corners = std::array::from_fn(|i| points[(longest + i) % 3]);
         let [from, to, top] = corners;
@@ -188,7 +187,7 @@ fn basis(first: Vector<f64, 3>, second: Vector<f64, 3>) -> Result<[Vector<f64, 3
     if height <= FLAT * first.norm() {
         return Err(height);
     }
-    // Twice, so that it is square where the vectors are nearly parallel too.
+    // Orthogonalised twice, so that it is perpendicular for nearly parallel vectors too.
     let across = (across - along * across.dot(along)).normalized().ok_or(height)?;
     Ok([along, across])
 }

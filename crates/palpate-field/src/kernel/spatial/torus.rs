@@ -15,7 +15,7 @@ use crate::vector::Vector;
 /// The largest number of rounded operations of the distance of a capped torus.
 const CAPPED_OPERATIONS: f64 = 10.0;
 
-/// The same of a link.
+/// The same for a link.
 const LINK_OPERATIONS: f64 = 9.0;
 
 /// All points within `radius` of a circle about the y axis. Exact.
@@ -43,8 +43,8 @@ impl Torus {
     ///
     /// # Errors
     ///
-    /// If a radius is not positive, or the tube's is the larger: then it would
-    /// meet itself at the axis.
+    /// If a radius is not positive, or the tube's is the larger, so that the tube would meet
+    /// itself at the axis.
     pub fn new(ring_radius: f64, radius: f64) -> Result<Self, ShapeError> {
         positive("ring_radius", ring_radius, Unit::Metre)?;
         positive("radius", radius, Unit::Metre)?;
@@ -176,9 +176,9 @@ primitive! {
 
 /// A chain's link: a torus about the y axis with straight sides along z. Exact.
 ///
-/// Cut in the middle, pulled apart and joined: in its plane, the curve inside the tube
-/// is at `ring_radius` from a segment, of which the nearest point leads to that of the
-/// curve.
+/// A torus cut in the middle, pulled apart and joined. In its plane, the curve inside the tube
+/// is at `ring_radius` from a segment; the curve's nearest point lies on the ray from the
+/// segment's nearest point through `p`.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Link};
