@@ -5,7 +5,8 @@
 
 use std::error::Error;
 
-use palpate::field::kernel::{Argument, Entry};
+use palpate::field::catalogue::Entry;
+use palpate::field::kernel::Argument;
 use palpate::field::{Node, Pose, Shape};
 use palpate::scene::{AnyScene, Scene};
 

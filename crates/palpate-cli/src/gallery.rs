@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use palpate::field::kernel::Entry;
+use palpate::field::catalogue::Entry;
 use palpate::field::{Aabb, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
 use palpate::scene::{AnyScene, Scene};

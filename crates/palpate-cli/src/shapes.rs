@@ -5,7 +5,8 @@
 
 use std::io::Write;
 
-use palpate::field::kernel::{Entry, ModelRule, Parameter, ParameterKind};
+use palpate::field::catalogue::Entry;
+use palpate::field::kernel::{ModelRule, Parameter, ParameterKind};
 use palpate::field::{Promise, Unit};
 use serde_json::{Value, json};
 

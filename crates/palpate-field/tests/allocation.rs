@@ -9,7 +9,8 @@ use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use palpate_field::kernel::{Ball, Cuboid, Cylinder, Entry, RegularStar, Torus};
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::{Ball, Cuboid, Cylinder, RegularStar, Torus};
 use palpate_field::operator::Profile;
 use palpate_field::scalar::{Model, Scalar};
 use palpate_field::{

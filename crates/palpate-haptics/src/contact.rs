@@ -122,7 +122,7 @@ impl<const D: usize> LocalSurface<D> {
 pub(crate) struct Place<'a, const D: usize> {
     /// The evaluated point.
     pub(crate) here: &'a mut Sample<D>,
-    /// The unit normal of the surface last seen.
+    /// The unit normal of the surface that the proxy last reached.
     pub(crate) normal: &'a mut Vector<f64, D>,
 }
 
@@ -138,7 +138,7 @@ pub(crate) struct Goal<const D: usize> {
 /// Slides from `here`, on or above the offset surface, to the point closest to `device`, which
 /// moved by `motion` [m] in this tick. Afterwards `here` is the place where the proxy rests, an
 /// evaluated point on or above the offset surface, and `normal` is the unit normal of the
-/// surface last seen. Returns `true` if that surface keeps the proxy from the device.
+/// surface that it last reached. Returns `true` if that surface keeps the proxy from the device.
 ///
 /// Every point of the path lies within the proven reach of an evaluated point, so the path
 /// crosses no surface. If the budget ends before the search does, the proxy rests at the

@@ -11,9 +11,9 @@ use crate::bodies::Body;
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
+use crate::options::ServoOptions;
 use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
-use crate::servo::ServoOptions;
 use crate::surface::{Press, Ringing};
 use palpate_safety::PointState;
 use palpate_safety::PortState;
@@ -35,11 +35,11 @@ pub struct Touch<const D: usize> {
     pub wanted: Vector<f64, D>,
     /// The force on the hand [N], always finite.
     pub force: Vector<f64, D>,
-    /// The unit normal of the surface last seen, pointing out.
+    /// The unit normal of the surface that the proxy last reached, pointing out.
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// The index of the body whose surface was last seen.
+    /// The index of the body whose surface the proxy last reached.
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,

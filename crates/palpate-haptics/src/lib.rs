@@ -40,6 +40,7 @@ mod accepted_bodies;
 mod bodies;
 mod contact;
 mod contact_point;
+mod coupled_tool;
 mod curvature;
 mod energy;
 mod error;
@@ -51,6 +52,7 @@ mod handoff;
 mod live;
 mod material;
 mod nearby;
+mod options;
 mod planes;
 mod protection;
 mod proxy;
@@ -75,6 +77,7 @@ pub use material::{
     Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
 };
 pub use nearby::Nearby;
+pub use options::ServoOptions;
 pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
     Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,
@@ -83,7 +86,7 @@ pub use palpate_safety::{
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
-pub use servo::{Renderer, Servo, ServoOptions, UnprotectedServo};
+pub use servo::{Renderer, Servo, UnprotectedServo};
 pub use surface::Surface;
 pub use tool::{
     Coupling, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch,

@@ -113,11 +113,11 @@ pub struct Following<const D: usize> {
     /// it is the device point, unless the device point lies outside the region of the field's
     /// promise.
     pub proxy: Point<D>,
-    /// The unit normal of the surface last seen, pointing out.
+    /// The unit normal of the surface that the proxy last reached, pointing out.
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// The index of the body whose surface was last seen.
+    /// The index of the body whose surface the proxy last reached.
     pub body: u32,
     /// `true` if the proxy slips; `false` if it sticks, or if there is no friction.
     pub is_slipping: bool,

@@ -21,11 +21,11 @@ pub struct TraceRow<const D: usize> {
     pub wanted: Vector<f64, D>,
     /// The force on the hand [N].
     pub force: Vector<f64, D>,
-    /// The unit normal of the surface last seen, pointing out.
+    /// The unit normal of the surface that the proxy last reached, pointing out.
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// The index of the body whose surface was last seen.
+    /// The index of the body whose surface the proxy last reached.
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,

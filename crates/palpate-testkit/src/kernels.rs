@@ -3,7 +3,8 @@
 
 //! Finds the type of a kernel by its name in the catalogue.
 
-use palpate_field::kernel::{self, Argument, Entry, NamedKernel};
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::{self, Argument, NamedKernel};
 use palpate_field::{Shape, ShapeError};
 
 /// A function of a kernel whose type is only known by name.

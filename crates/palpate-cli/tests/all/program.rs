@@ -164,8 +164,8 @@ fn the_schema_is_the_committed_one() {
 fn shapes_lists_the_catalogue_with_units_and_models() {
     let all = json(&["shapes", "--json"]);
     let all = all.as_array().unwrap();
-    let spatial = palpate::field::kernel::Entry::<3>::ALL.len();
-    let in_plane = palpate::field::kernel::Entry::<2>::ALL.len();
+    let spatial = palpate::field::catalogue::Entry::<3>::ALL.len();
+    let in_plane = palpate::field::catalogue::Entry::<2>::ALL.len();
     assert_eq!(all.len(), in_plane + spatial);
     let arc = all.iter().find(|shape| shape["name"] == "arc").unwrap();
     assert_eq!(arc["parameters"][1]["key"], "angle_degrees");
@@ -319,8 +319,8 @@ fn the_gallery_shows_every_primitive_on_every_plane() {
             }
         }
         let [planar, spatial] = [0, 1].map(|i| pictures[i]["shapes"].as_array().unwrap().len());
-        assert_eq!(planar, palpate::field::kernel::Entry::<2>::ALL.len());
-        assert_eq!(spatial, palpate::field::kernel::Entry::<3>::ALL.len());
+        assert_eq!(planar, palpate::field::catalogue::Entry::<2>::ALL.len());
+        assert_eq!(spatial, palpate::field::catalogue::Entry::<3>::ALL.len());
     }
 }
 
@@ -332,8 +332,8 @@ fn the_gallery_draws_each_shape_and_refuses_bad_input() {
         ["gallery", "--output", &output, "--plane", "xy", "--each", "--width", "200", "--json"];
     let answer = json(&arguments);
     let pictures = answer["pictures"].as_array().unwrap();
-    let count = palpate::field::kernel::Entry::<2>::ALL.len()
-        + palpate::field::kernel::Entry::<3>::ALL.len();
+    let count = palpate::field::catalogue::Entry::<2>::ALL.len()
+        + palpate::field::catalogue::Entry::<3>::ALL.len();
     assert!(pictures.len() > count + 3);
     for picture in pictures {
         let bytes = std::fs::read(picture["output"].as_str().unwrap()).unwrap();

@@ -21,7 +21,6 @@ pub mod spatial;
 
 use std::fmt::Debug;
 
-pub use crate::catalogue::Entry;
 pub use ball::Ball;
 pub use capsule::{Capsule, Segment};
 pub use cuboid::{Cuboid, RoundedCuboid};

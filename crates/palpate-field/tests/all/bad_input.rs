@@ -4,10 +4,11 @@
 //! Bad input is an error with the number and its unit; good input of any size
 //! gives numbers. Nothing panics.
 
+use palpate_field::catalogue::Entry;
 use palpate_field::kernel::{
     self, Arc, Argument, Ball, CappedCone, CappedConeBetween, CappedTorus, Capsule,
     ChamferedRectangle, Cross, Cuboid, CuboidFrame, CutBall, CutDisk, CutHollowSphere,
-    Cylinder, CylinderBetween, DeathStar, Ellipsoid, Entry, HalfSpace, Horseshoe, InfiniteCone,
+    Cylinder, CylinderBetween, DeathStar, Ellipsoid, HalfSpace, Horseshoe, InfiniteCone,
     IsoscelesTrapezoid, Link, Moon, OrientedRectangle, OrientedVesica, Parameter,
     ParameterKind, Pie, Polygon, PowerBall, PowerCuboid, PowerTorus, RegularPolygon,
     RegularStar, RhombusPrism, Ring, RingSector, RoundCone, RoundConeBetween, RoundedCuboid,

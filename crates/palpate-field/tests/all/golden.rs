@@ -3,7 +3,7 @@
 
 //! Where each primitive's example is, as maps that can be read: 32 × 32 signs.
 
-use palpate_field::kernel::Entry;
+use palpate_field::catalogue::Entry;
 use palpate_field::{Point, ShapeError, Vector};
 
 /// Rows and columns of a map.

@@ -4,7 +4,8 @@
 //! The tables of the guide name primitives, with their parameters, as the catalogue
 //! does.
 
-use palpate_field::kernel::{Entry, Parameter};
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::Parameter;
 
 const GUIDE: &str = include_str!("../../../../docs/guide/shapes.md");
 

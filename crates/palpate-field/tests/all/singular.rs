@@ -4,7 +4,7 @@
 //! Values and gradients are numbers where formulas divide by zero: at centres, on
 //! axes, at corners and on surfaces.
 
-use palpate_field::kernel::Entry;
+use palpate_field::catalogue::Entry;
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};

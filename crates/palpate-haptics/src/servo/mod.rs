@@ -9,20 +9,19 @@
 
 mod any;
 mod both;
-mod options;
 mod renderer;
 mod unprotected;
 
 use std::ops::Deref;
 
 pub(crate) use any::AnyServo;
-pub use options::ServoOptions;
 pub use renderer::Renderer;
 pub use unprotected::UnprotectedServo;
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
+use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
 use palpate_safety::Accepted;

@@ -10,18 +10,19 @@ use std::mem::swap;
 
 use palpate_field::{Point, Pose, Vector};
 
-use super::ServoOptions;
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, MOST_EVENTS, Setting, Tick, Touch};
+use crate::coupled_tool::{CoupledTool, Sides};
 use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
+use crate::options::ServoOptions;
 use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
-use crate::tool::{CoupledTool, Coupling, HeldTool, Sides, Tool};
+use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::NumberError;
 use palpate_safety::SafetyReport;
 use palpate_safety::WorkspaceMap;

@@ -5,9 +5,10 @@
 
 use std::ops::Deref;
 
-use super::{Renderer, Servo, ServoOptions};
+use super::{Renderer, Servo};
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
+use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
 use palpate_safety::DeviceProfile;

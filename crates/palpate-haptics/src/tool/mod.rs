@@ -14,11 +14,11 @@
 mod batch;
 mod carry;
 mod closest;
-mod coupled;
 mod coupling;
 mod felt;
 mod fixed_list;
 mod friction;
+mod held;
 mod obstacle;
 mod of_shape;
 mod scan;
@@ -37,11 +37,10 @@ use crate::error::HapticsError;
 use crate::event::{Event, Reaction};
 use crate::nearby::{Nearby, Punctured};
 use crate::sampler::Sampler;
-pub use coupled::HeldTool;
-pub(crate) use coupled::{CoupledTool, Sides};
 pub use coupling::Coupling;
 use felt::Before;
 use fixed_list::FixedList;
+pub use held::HeldTool;
 use scan::{Scan, Surroundings};
 use settle::{Ends, Lengths, RestSearch};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
@@ -157,7 +156,7 @@ const MOST_EVENTS: usize = 2;
 pub struct Tool<const D: usize> {
     shell: Shell<D>,
     options: ToolOptions,
-    coupling: Coupling,
+    pub(crate) coupling: Coupling,
     scan: Scan<D>,
     rest_search: RestSearch<D>,
     /// The pose of the tool; `None` before the first tick.
@@ -170,7 +169,7 @@ pub struct Tool<const D: usize> {
     has_new_bodies: bool,
     touch: ToolTouch<D>,
     /// The velocity of the device relative to the body that pushes hardest [m/s].
-    hand_velocity: Vector<f64, D>,
+    pub(crate) hand_velocity: Vector<f64, D>,
     /// The body that the tool rests on.
     carrier: Option<u32>,
     events: FixedList<Event>,

@@ -4,7 +4,8 @@
 //! Random scenes, and arguments that fit each primitive.
 
 use arbitrary::{Result, Unstructured};
-use palpate_field::kernel::{Argument, Entry, Parameter, ParameterKind};
+use palpate_field::catalogue::Entry;
+use palpate_field::kernel::{Argument, Parameter, ParameterKind};
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 use palpate_scene::{
     AxisAngle, Dimension, FreePlane, GuideCurve, GuideLine, GuidePlane, GuideSegment,

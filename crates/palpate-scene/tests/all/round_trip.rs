@@ -6,7 +6,7 @@
 use crate::random::{Generator, Known, known, written};
 use arbtest::arbtest;
 use palpate_field::Shape;
-use palpate_field::kernel::Entry;
+use palpate_field::catalogue::Entry;
 use palpate_scene::{AnyScene, Dimension, Scene, WrittenBody, schema};
 
 /// Set to write the scenes as they should be instead of comparing them.

@@ -10,7 +10,7 @@ mod thread;
 
 use std::path::Path;
 
-use palpate_field::kernel::Entry;
+use palpate_field::catalogue::Entry;
 use palpate_scene::{AnyScene, Scene, schema};
 
 /// Set to write the scenes instead of comparing them.
