@@ -194,9 +194,10 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
             return lost("its driver says so");
         }
         match self.seen {
-            // Written so that a patience of NaN is none.
             Some((number, since)) if number == reading.number => {
-                if !(time - since <= self.patience) {
+                // A patience of NaN is none.
+                let is_patient = time - since <= self.patience;
+                if !is_patient {
                     return lost("its driver sets nothing any more");
                 }
             }
