@@ -4,8 +4,11 @@
 //! `palpate mass`: computes volume, mass and moments of the bodies of a scene.
 
 use std::io::Write;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
-use palpate::field::{Mass, MassLimits};
+use palpate::field::{Mass, MassLimits, Shape, ShapeError};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
@@ -37,17 +40,14 @@ fn report<const D: usize>(
     let mut outcome = Outcome::Yes;
     interrupt.heed();
     for (done, body) in scene.bodies.iter().enumerate() {
-        if interrupt.is_asked() {
+        let Some(mass) = weighed(&body.shape, options.density, limits, interrupt) else {
             let all = scene.bodies.len();
             output::remark(format_args!("interrupted after {done} of {all} bodies"));
             outcome = Outcome::Interrupted;
             break;
-        }
+        };
         let name = &body.name;
-        let mass = body
-            .shape
-            .mass(options.density, limits)
-            .map_err(|error| Failure::input(format!("body {name:?}: {error}")))?;
+        let mass = mass.map_err(|error| Failure::input(format!("body {name:?}: {error}")))?;
         if mass.volume_error > options.tolerance * mass.volume {
             outcome = Outcome::No;
         }
@@ -78,6 +78,34 @@ fn report<const D: usize>(
         out.json(&json!({ "density_kg_per_m3": options.density, "bodies": bodies }))?;
     }
     Ok(outcome)
+}
+
+/// How often the program looks whether it is asked to end while a body is weighed.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The mass of a shape; `None` if the program is asked to end before it is known. A single body
+/// may take half a minute, so a thread weighs it; the thread ends with the program.
+fn weighed<const D: usize>(
+    shape: &Shape<D>,
+    density: f64,
+    limits: MassLimits,
+    interrupt: &Interrupt,
+) -> Option<Result<Mass<D>, ShapeError>> {
+    let (sender, weighed) = mpsc::channel();
+    let shape = shape.clone();
+    let worker = thread::spawn(move || sender.send(shape.mass(density, limits)));
+    loop {
+        match weighed.recv_timeout(LOOK) {
+            _ if interrupt.is_asked() => return None,
+            Ok(mass) => return Some(mass),
+            Err(RecvTimeoutError::Timeout) => {}
+            // The worker panicked, and so does the program.
+            Err(RecvTimeoutError::Disconnected) => match worker.join() {
+                Ok(_) => return None,
+                Err(panic) => std::panic::resume_unwind(panic),
+            },
+        }
+    }
 }
 
 /// Writes infinite errors as null.

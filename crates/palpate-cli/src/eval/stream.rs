@@ -84,7 +84,9 @@ impl<const D: usize> Stream<'_, D> {
             out.flush()?;
             self.read(&mut rows, &mut batch)?;
             if self.interrupt.is_asked() {
-                output::remark(format_args!("interrupted after {done} points"));
+                output::remark(format_args!(
+                    "interrupted after {done} points, whose answers are kept"
+                ));
                 return Ok(Outcome::Interrupted);
             }
             if batch.is_empty() {

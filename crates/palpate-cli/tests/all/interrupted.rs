@@ -148,6 +148,29 @@ fn the_gallery_ends_with_whole_sheets() {
     }
 }
 
+/// A signal did nothing until the body was weighed, half a minute later.
+#[test]
+fn mass_ends_while_it_weighs_a_body() {
+    let folder = Folder::new();
+    let torus = r#"{ "torus": { "ring_radius": 0.5, "radius": 0.2 } }"#;
+    let row = r#"{ "spacing": 2, "first": -20, "last": 20 }"#;
+    let many =
+        format!(r#"{{ "repeat": {{ "x": {row}, "y": {row}, "z": {row} }}, "of": {torus} }}"#);
+    let scene = format!(
+        r#"{{ "palpate": 1, "dimension": 3, "bodies": [
+            {{ "name": "one", "shape": {torus} }}, {{ "name": "many", "shape": {many} }} ] }}"#
+    );
+    let scene = folder.write("many.json", &scene);
+    let arguments = ["mass", &scene, "--tolerance", "0.002", "--cells", "6000000"];
+    let mut run = Run::start(&arguments);
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    assert!(line(&mut answers).starts_with("one, "));
+    run.signal(SIGINT);
+    let told: Vec<_> = answers.lines().map(Result::unwrap).collect();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    assert!(!told.iter().any(|line| line.starts_with("many, ")), "{told:?}");
+}
+
 /// A thousand bodies are not weighed between one line and the next.
 #[test]
 fn mass_tells_of_the_bodies_that_it_has_weighed() {
