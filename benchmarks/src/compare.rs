@@ -6,9 +6,9 @@
 //! The revision is built in a work tree of its own under `target/`. In each round both programs
 //! run the suite. A key got slower if two ratios of this program to the other say so: the median
 //! of those within each round, and that of the least numbers of all rounds. A machine that changes
-//! its pace from minute to minute raises one of them alone. Times over the reference are compared where both
-//! revisions print them: they do not depend on how busy the machine is. The reference itself is
-//! a row, so that it cannot get slower unseen.
+//! its pace from minute to minute raises one of them alone. Times over the reference are compared
+//! where both revisions print them: they do not depend on how busy the machine is. The reference
+//! itself is a row, so that it cannot get slower unseen.
 
 use std::collections::BTreeMap;
 use std::error::Error;

@@ -194,13 +194,14 @@ impl Tally {
     pub(crate) fn report(
         &self,
         ending: Ending,
+        is_released: bool,
         rows_dropped: u64,
         safety: Vec<SafetyReport>,
     ) -> RunReport {
         let ticks = self.ticks as f64;
         RunReport {
             ending,
-            is_released: true,
+            is_released,
             rate: self.rate,
             points: self.points,
             ticks: self.ticks,

@@ -182,8 +182,8 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
 ///
 /// [`HapticsError::Number`] if the duration is negative or not finite;
 /// [`HapticsError::ContactPoints`] if servo and device have different numbers of contact
-/// points; [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter limits than the one that the
-/// servo was made for. Failures during the run are in the report.
+/// points; [`SafetyError::OtherDevice`](palpate_haptics::SafetyError) if the device has tighter
+/// limits than the one that the servo was made for. Failures during the run are in the report.
 ///
 /// # Examples
 ///

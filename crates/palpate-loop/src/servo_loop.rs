@@ -102,8 +102,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             end.finish();
         }
         let dropped = self.recorder.map_or(0, |recorder| recorder.dropped());
-        let report = self.tally.report(ending, dropped, self.servo.safety());
-        RunReport { is_released, ..report }
+        self.tally.report(ending, is_released, dropped, self.servo.safety())
     }
 
     fn ticks(
