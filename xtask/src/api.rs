@@ -67,6 +67,13 @@ pub(crate) fn renew() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Makes the folders of the pages of all crates.
+pub(crate) fn make_folders() -> Result<(), Failure> {
+    CRATES.iter().map(|name| pages(name)).try_for_each(|folder| {
+        std::fs::create_dir_all(&folder).map_err(|error| cannot("made", &folder, &error))
+    })
+}
+
 fn list(name: &str) -> PathBuf {
     root().join("docs/public-api").join(format!("{name}.txt"))
 }
@@ -142,7 +149,7 @@ fn re_exports(folder: &Path, module: &str) -> Result<BTreeSet<String>, Failure> 
     let mut found: BTreeSet<_> =
         attributes(&index, "id=\"reexport.").into_iter().map(path).collect();
     for inner in attributes(&index, "class=\"mod\" href=\"") {
-        // Another crate's pages are linked only if they were there before this crate's.
+        // Another crate's pages have their own list.
         if inner.starts_with("../") {
             continue;
         }

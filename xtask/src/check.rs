@@ -30,6 +30,9 @@ const STAGES: &[Stage] = &[
 
 /// Makes the documentation of every crate.
 pub(crate) fn document() -> Result<(), Failure> {
+    // rustdoc links to another crate's pages only where their folder is there already, and cargo
+    // takes the crates in any order.
+    api::make_folders()?;
     cargo_with(
         &["doc", "--workspace", "--no-deps", "--locked"],
         &[("RUSTDOCFLAGS", "-D warnings")],
