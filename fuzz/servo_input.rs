@@ -217,8 +217,8 @@ impl<const D: usize> AnyServo<D> {
     fn swap_bodies(&mut self, bodies: Bodies<D>) {
         match self {
             Self::Protected(servo) => {
-                if let Ok(bodies) = servo.accept(bodies) {
-                    drop(servo.replace_bodies(bodies));
+                if let Ok(mut bodies) = servo.accept(bodies) {
+                    assert_eq!(servo.replace_bodies(&mut bodies), Ok(()));
                 }
             }
             Self::Unprotected(servo) => drop(servo.replace_bodies(bodies)),

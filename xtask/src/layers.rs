@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The layer rule: a crate depends only on crates above it in ARCHITECTURE.md.
+//! The layer rule: a crate depends only on lower crates, those to its left in ARCHITECTURE.md.
 
 use serde_json::Value;
 
 use crate::command::Failure;
 
-/// The crates from the top layer to the bottom.
+/// The crates from the lowest layer to the highest.
 const LAYERS: [&str; 15] = [
     "palpate-field",
     "palpate-mesh",
@@ -64,11 +64,11 @@ fn wrong_dependencies(package: &Value) -> Vec<String> {
         if FOR_TESTS.contains(&on) && !in_tests && !for_tests {
             wrong.push(format!("{name} depends on {on} outside its tests"));
         }
-        let below = LAYERS.iter().position(|crate_name| *crate_name == on);
-        if let (Some(layer), Some(below), false) = (layer, below, in_tests)
-            && below >= layer
+        let other = LAYERS.iter().position(|crate_name| *crate_name == on);
+        if let (Some(layer), Some(other), false) = (layer, other, in_tests)
+            && other >= layer
         {
-            wrong.push(format!("{name} depends on {on}, which is below it"));
+            wrong.push(format!("{name} depends on {on}, which is above it"));
         }
     }
     wrong
@@ -100,11 +100,11 @@ mod tests {
     }
 
     #[test]
-    fn a_crate_depends_on_crates_above_it_alone() {
+    fn a_crate_depends_on_lower_crates_alone() {
         let good = workspace("palpate-query", "palpate-field", Value::Null, &[]);
         assert_eq!(said(&good), "");
         let bad = workspace("palpate-field", "palpate-query", Value::Null, &[]);
-        assert_eq!(said(&bad), "palpate-field depends on palpate-query, which is below it");
+        assert_eq!(said(&bad), "palpate-field depends on palpate-query, which is above it");
         let in_tests = workspace("palpate-field", "palpate-query", "dev".into(), &[]);
         assert_eq!(said(&in_tests), "");
     }

@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use palpate::field::{Aabb, Point, Vector};
 use palpate::local::{ElementMethod, PairMethod};
-use palpate::query::{Limits, Workspace, minimum};
+use palpate::query::{ElementWorkspace, Limits, minimum};
 
 use super::pairs::{Pair, placed, plate_and_torus};
 use super::triangles::{SIZES, near};
@@ -41,7 +41,7 @@ fn triangles(work: &Work<3>, rows: &mut TimedRows) -> Result<(), Box<dyn Error>>
         let (mut evaluations, mut missed) = (0, 0);
         for size in SIZES {
             let limits = Limits::new(0.01 * MISSED * size);
-            let mut workspace = Workspace::new();
+            let mut workspace = ElementWorkspace::new();
             for triangle in near::<3, 3>(shape, size)? {
                 let least = minimum(shape, &triangle, &limits, &mut workspace)?;
                 let found = method.descend(shape, &triangle);

@@ -8,7 +8,9 @@ use std::error::Error;
 use std::hint::black_box;
 
 use palpate::field::{Point, Shape, Vector};
-use palpate::query::{Certified, Element, Limits, QueryError, Workspace, minimum, touches};
+use palpate::query::{
+    Certified, Element, ElementWorkspace, Limits, QueryError, minimum, touches,
+};
 
 use super::{TimedRows, fastest};
 use crate::random::Random;
@@ -28,7 +30,7 @@ type Ask<const N: usize, const D: usize> = fn(
     &Shape<D>,
     &Element<N, D>,
     &Limits,
-    &mut Workspace<N, D>,
+    &mut ElementWorkspace<N, D>,
 ) -> Result<Certified<Point<D>>, QueryError>;
 
 /// Adds the rows of triangles in space and of segments in the plane.
@@ -51,7 +53,7 @@ fn of<const N: usize, const D: usize>(
         let (mut evaluations, mut undecided) = (0, 0);
         for size in SIZES {
             let limits = Limits::new(tolerance * size);
-            let mut workspace = Workspace::new();
+            let mut workspace = ElementWorkspace::new();
             for element in near(&work.shape, size)? {
                 let answer = ask(&work.shape, &element, &limits, &mut workspace)?;
                 evaluations += answer.evaluations;

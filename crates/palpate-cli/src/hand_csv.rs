@@ -10,22 +10,18 @@ use csv::StringRecord;
 use palpate::devices::{HandPath, Interpolation};
 use palpate::field::Vector;
 
+use crate::input::AXES;
 use crate::outcome::Failure;
 
-const AXES: [&str; 3] = ["x_m", "y_m", "z_m"];
-
-/// The columns of the coordinates: `prefix` and then `x_m`, `y_m` (and `z_m` in space).
-pub(crate) fn columns<const D: usize>(
-    header: &StringRecord,
-    prefix: &str,
-) -> Result<[usize; D], String> {
+/// The columns of the coordinates: `x_m`, `y_m` (and `z_m` in space).
+pub(crate) fn columns<const D: usize>(header: &StringRecord) -> Result<[usize; D], String> {
     let mut columns = [0; D];
     for (column, axis) in columns.iter_mut().zip(AXES) {
-        let name = format!("{prefix}{axis}");
+        let name = format!("{axis}_m");
         *column = position(header, &name)
             .ok_or_else(|| format!("line 1: there is no column {name} for a {D}D scene"))?;
     }
-    if position(header, &format!("{prefix}z_m")).is_some() && D == 2 {
+    if position(header, "z_m").is_some() && D == 2 {
         return Err("line 1: the column z_m is for 3D scenes, but this scene is 2D".to_owned());
     }
     Ok(columns)
@@ -42,7 +38,7 @@ pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Fail
     let file = File::open(path).map_err(|error| Failure::file(path, error))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let header = reader.headers().map_err(|error| Failure::file(path, error))?.clone();
-    let coordinates = columns::<D>(&header, "").map_err(wrong)?;
+    let coordinates = columns::<D>(&header).map_err(wrong)?;
     let time = position(&header, "time_s")
         .ok_or_else(|| wrong("line 1: there is no column time_s".to_owned()))?;
     let point = position(&header, "point");

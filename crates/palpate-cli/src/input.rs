@@ -13,6 +13,9 @@ use crate::outcome::Failure;
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
 const GALLERY: &str = include_str!("../../../scenes/article_gallery.json");
 
+/// The names of the axes.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// A scene with its name in reports.
 pub(crate) struct Named {
     pub(crate) name: String,

@@ -68,13 +68,15 @@ pub fn run_until(
     arguments: impl IntoIterator<Item = impl Into<OsString>>,
     interrupt: &Interrupt,
 ) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments.into_iter().map(Into::into)) {
-        Ok(arguments) => arguments,
-        Err(refused) => return output::usage(&refused),
+    let arguments = Arguments::try_parse_from(arguments.into_iter().map(Into::into));
+    let status = match arguments {
+        Ok(arguments) => obey(&arguments.command.unwrap_or_default(), interrupt)
+            .and_then(output::ended)
+            .map(Outcome::status),
+        Err(refused) => output::usage(&refused),
     };
-    let command = arguments.command.unwrap_or_default();
-    match obey(&command, interrupt).and_then(output::ended) {
-        Ok(outcome) => outcome.status(),
+    match status {
+        Ok(status) => status,
         Err(failure) if failure.is_closed_pipe() => Outcome::Yes.status(),
         Err(failure) => {
             output::complain(&failure);

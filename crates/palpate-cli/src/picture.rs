@@ -74,7 +74,7 @@ impl Drawable<3> for Dimensions {
 
 /// A point of the plane or of space, as a point of space.
 pub(crate) fn in_space<const D: usize>(point: Vector<f64, D>) -> [f64; 3] {
-    std::array::from_fn(|axis| point.0.get(axis).copied().unwrap_or(0.0))
+    point.in_space().0
 }
 
 /// The isolines of `shape` on `plane`.

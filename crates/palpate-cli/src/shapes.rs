@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use palpate::field::catalogue::Entry;
-use palpate::field::kernel::{ModelRule, Parameter, ParameterKind};
+use palpate::field::kernel::{Parameter, ParameterKind};
 use palpate::field::{Promise, Unit};
 use serde_json::{Value, json};
 
@@ -39,7 +39,7 @@ pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
             };
             writeln!(out, "    {}{unit}: {}", text("key"), text("about"))?;
         }
-        writeln!(out, "    promise: {}; cells: {}", text("promise"), text("model"))?;
+        writeln!(out, "    promise: {}", text("promise"))?;
     }
     writeln!(out, "{} primitives", rows.len())?;
     Ok(Outcome::Yes)
@@ -63,7 +63,6 @@ fn described<const D: usize>(entry: &Entry<D>) -> Result<Value, Failure> {
         "lipschitz": promise.lipschitz,
         "convex": promise.convex,
         "bounded": promise.bounds.is_some(),
-        "model": model_in_words(entry.model),
     }))
 }
 
@@ -80,12 +79,4 @@ fn parameter(parameter: &Parameter) -> Value {
         unit => unit.symbol(),
     };
     json!({ "key": key, "unit": unit, "about": parameter.about })
-}
-
-fn model_in_words(rule: ModelRule) -> &'static str {
-    match rule {
-        ModelRule::ClosedForm => "closed form",
-        ModelRule::Tangent => "exact rule (tangent plane)",
-        ModelRule::Lipschitz => "default (Lipschitz)",
-    }
 }

@@ -9,9 +9,8 @@ use std::io::Write;
 use palpate::field::Vector;
 use palpate::servo_loop::{Recorder, TraceRow};
 
+use crate::input::AXES;
 use crate::outcome::Failure;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The names of the columns. Those of a tool with a shape come last, followed by those of a
 /// device with rotation.

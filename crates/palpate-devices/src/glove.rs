@@ -109,12 +109,12 @@ impl<const D: usize> Glove<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::ContactPoints`] if there are not as many limits as fingers,
+    /// [`HapticsError::OneForEach`] if there are not as many limits as fingers,
     /// [`HapticsError::Number`] if one is negative or not finite.
     pub fn with_limits(mut self, limits: &[f64]) -> Result<Self, HapticsError> {
         if limits.len() != self.fingers.len() {
-            let (servo, device) = (limits.len(), self.fingers.len());
-            return Err(HapticsError::ContactPoints { servo, device });
+            let (given, points) = (limits.len(), self.fingers.len());
+            return Err(HapticsError::OneForEach { items: "limits", given, points });
         }
         for (finger, limit) in self.fingers.iter_mut().zip(limits) {
             finger.limit = NumberError::check_not_negative("max_force", *limit, "N")?;

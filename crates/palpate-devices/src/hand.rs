@@ -37,7 +37,7 @@ use palpate_haptics::{HapticsError, NumberError};
 /// let hand = Hand::resting(Vector([0.0, 0.1]))?.with_mass(0.2)?.with_spring(400.0, 8.0)?;
 /// assert_eq!((hand.mass(), hand.stiffness(), hand.damping()), (0.2, 400.0, 8.0));
 /// let error = hand.with_mass(-1.0).unwrap_err();
-/// assert_eq!(error.to_string(), "hand mass must be zero or more and finite, got -1 kg");
+/// assert_eq!(error.to_string(), "mass must be zero or more and finite, got -1 kg");
 /// # Ok(())
 /// # }
 /// ```
@@ -97,7 +97,7 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`HapticsError::Number`] if the number is negative or not finite.
     pub fn with_mass(self, mass: f64) -> Result<Self, HapticsError> {
-        Ok(Self { mass: NumberError::check_not_negative("hand mass", mass, "kg")?, ..self })
+        Ok(Self { mass: NumberError::check_not_negative("mass", mass, "kg")?, ..self })
     }
 
     /// This hand with another stiffness [N/m] and damping [N·s/m].

@@ -16,9 +16,11 @@ use palpate_haptics::{
 ///
 /// The driver [sets](Mailbox::set) where the points are and [takes](Mailbox::forces) the newest
 /// forces, as often as it likes; the servo never waits for it. A driver that is too slow makes
-/// the hand feel older positions; it does not make ticks late. A driver that sets nothing for
-/// longer than [`patience`](Self::with_patience) has died: the device is lost, and the servo
-/// stops.
+/// the hand feel older positions; it does not make ticks late.
+///
+/// Each side watches the other. A driver that sets nothing for longer than its
+/// [`patience`](Self::with_patience) has died: the device is lost, and the servo stops. A servo
+/// whose [`ticks`](Mailbox::ticks) no longer grow hangs: the driver sets its motors to zero.
 ///
 /// # Examples
 ///
@@ -28,26 +30,30 @@ use palpate_haptics::{
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let profile = DeviceProfile::unlimited("of my own").with_max_force(4.0);
-/// let (mut device, mut mailbox) = MailboxDevice::<3>::new(profile, 1)?;
+/// let start = PointState::at_rest(Vector([0.0, 0.12, 0.0]));
+/// let (mut device, mut mailbox) = MailboxDevice::new(profile, &[start])?;
 /// mailbox.set(&[PointState::at_rest(Vector([0.0, 0.1, 0.0]))])?; // from any thread
-/// let mut points = [PointState::at_rest(Vector::ZERO)];
+/// let mut points = [start];
 /// device.read(0.0, &mut points)?; // in the servo's
 /// assert_eq!(points[0].position, Vector([0.0, 0.1, 0.0]));
 /// device.write(&[Vector([0.0, 2.0, 0.0])])?;
 /// assert_eq!(mailbox.forces(), [Vector([0.0, 2.0, 0.0])]);
+/// assert_eq!(mailbox.ticks(), 1);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Debug)]
 pub struct MailboxDevice<const D: usize> {
     profile: DeviceProfile,
-    points: usize,
+    /// Where the points are until the driver sets them.
+    start: Vec<PointState<D>>,
     readings: LatestReader<Reading<D>>,
     /// The last reading that was new, and when it came [s].
     seen: Option<(u64, f64)>,
     turn: Option<TurnState<D>>,
     patience: f64,
-    forces: LatestWriter<Vec<Vector<f64, D>>>,
+    ticks: u64,
+    forces: LatestWriter<Forces<D>>,
     torque: LatestWriter<Vector<f64, 3>>,
 }
 
@@ -56,7 +62,7 @@ pub struct MailboxDevice<const D: usize> {
 pub struct Mailbox<const D: usize> {
     reading: Reading<D>,
     readings: LatestWriter<Reading<D>>,
-    forces: LatestReader<Vec<Vector<f64, D>>>,
+    forces: LatestReader<Forces<D>>,
     torque: LatestReader<Vector<f64, 3>>,
 }
 
@@ -70,41 +76,47 @@ struct Reading<const D: usize> {
     is_lost: bool,
 }
 
+/// What the servo writes.
+#[derive(Clone, Debug)]
+struct Forces<const D: usize> {
+    /// How often the servo has written forces.
+    ticks: u64,
+    points: Vec<Vector<f64, D>>,
+}
+
 impl<const D: usize> MailboxDevice<D> {
     /// How long the driver may set nothing unless [`with_patience`](Self::with_patience) says
     /// otherwise [s].
     pub const PATIENCE: f64 = 0.1;
 
-    /// A device of so many `points`, and its driver's end. Until the driver sets them, the points
-    /// are at rest at the origin, and the device is not lost.
+    /// A device with one contact point for each state of `start`, and its driver's end. Until the
+    /// driver sets them, the points are there, and the device is not lost.
     ///
     /// # Errors
     ///
     /// [`HapticsError::NoContactPoint`] if there are none.
     pub fn new(
         profile: DeviceProfile,
-        points: usize,
+        start: &[PointState<D>],
     ) -> Result<(Self, Mailbox<D>), HapticsError> {
-        if points == 0 {
+        if start.is_empty() {
             return Err(HapticsError::NoContactPoint);
         }
-        let reading = Reading {
-            number: 0,
-            points: vec![PointState::at_rest(Vector::ZERO); points],
-            turn: None,
-            is_lost: false,
-        };
+        let start = start.to_vec();
+        let no_forces = Forces { ticks: 0, points: vec![Vector::ZERO; start.len()] };
+        let reading = Reading { number: 0, points: start.clone(), turn: None, is_lost: false };
         let (set_readings, readings) = latest_value(reading.clone());
-        let (set_forces, forces) = latest_value(vec![Vector::ZERO; points]);
+        let (set_forces, forces) = latest_value(no_forces);
         let (set_torque, torque) = latest_value(Vector::ZERO);
         let mailbox = Mailbox { reading, readings: set_readings, forces, torque };
         let device = Self {
             profile,
-            points,
+            start,
             readings,
             seen: None,
             turn: None,
             patience: Self::PATIENCE,
+            ticks: 0,
             forces: set_forces,
             torque: set_torque,
         };
@@ -124,11 +136,12 @@ impl<const D: usize> Mailbox<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::ContactPoints`] if there is not one state for each point.
+    /// [`HapticsError::OneForEach`] if there is not one state for each point.
     pub fn set(&mut self, states: &[PointState<D>]) -> Result<(), HapticsError> {
         let points = self.reading.points.len();
         if states.len() != points {
-            return Err(HapticsError::ContactPoints { servo: states.len(), device: points });
+            let (items, given) = ("states", states.len());
+            return Err(HapticsError::OneForEach { items, given, points });
         }
         self.reading.points.clone_from_slice(states);
         self.publish();
@@ -150,7 +163,15 @@ impl<const D: usize> Mailbox<D> {
     /// The newest forces on the hand [N], one for each point; empty before the first tick.
     #[must_use]
     pub fn forces(&mut self) -> &[Vector<f64, D>] {
-        self.forces.latest().map_or(&[], Vec::as_slice)
+        self.forces.latest().map_or(&[], |forces| &forces.points)
+    }
+
+    /// How often the servo has written forces. At 1 kHz, a number that does not change for 10 ms
+    /// means that the servo's thread hangs, and that the motors must be set to zero: the last
+    /// forces stay in the mailbox.
+    #[must_use]
+    pub fn ticks(&mut self) -> u64 {
+        self.forces.latest().map_or(0, |forces| forces.ticks)
     }
 
     /// The newest torque on the hand [N·m], zero for a device without rotation.
@@ -175,9 +196,16 @@ fn lost<T>(reason: &str) -> Result<T, DeviceLost> {
     Err(DeviceLost { reason: reason.to_owned() })
 }
 
+/// Copies as many states as both have.
+fn write_states<const D: usize>(points: &mut [PointState<D>], states: &[PointState<D>]) {
+    for (point, state) in points.iter_mut().zip(states) {
+        *point = *state;
+    }
+}
+
 impl<const D: usize> Device<D> for MailboxDevice<D> {
     fn points(&self) -> usize {
-        self.points
+        self.start.len()
     }
 
     fn profile(&self) -> &DeviceProfile {
@@ -187,7 +215,7 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
     /// Real-time: allocates nothing until the device is lost, takes no lock, cannot panic.
     fn read(&mut self, time: f64, points: &mut [PointState<D>]) -> Result<(), DeviceLost> {
         let Some(reading) = self.readings.latest() else {
-            points.fill(PointState::at_rest(Vector::ZERO));
+            write_states(points, &self.start);
             return Ok(());
         };
         if reading.is_lost {
@@ -195,7 +223,7 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
         }
         match self.seen {
             Some((number, since)) if number == reading.number => {
-                // A patience of NaN is none.
+                // NaN counts as no patience.
                 let is_patient = time - since <= self.patience;
                 if !is_patient {
                     return lost("its driver sets nothing any more");
@@ -203,17 +231,18 @@ impl<const D: usize> Device<D> for MailboxDevice<D> {
             }
             _ => self.seen = Some((reading.number, time)),
         }
-        for (point, state) in points.iter_mut().zip(&reading.points) {
-            *point = *state;
-        }
+        write_states(points, &reading.points);
         self.turn = reading.turn;
         Ok(())
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     fn write(&mut self, forces: &[Vector<f64, D>]) -> Result<(), DeviceLost> {
+        self.ticks += 1;
+        let ticks = self.ticks;
         self.forces.set(|all| {
-            for (written, force) in all.iter_mut().zip(forces) {
+            all.ticks = ticks;
+            for (written, force) in all.points.iter_mut().zip(forces) {
                 *written = *force;
             }
         });
@@ -239,12 +268,13 @@ mod tests {
 
     #[test]
     fn the_newest_states_and_forces_count() {
+        let start = [PointState::at_rest(Vector([3.0, 4.0])); 2];
         let (mut device, mut mailbox) =
-            MailboxDevice::<2>::new(DeviceProfile::unlimited("two"), 2).unwrap();
+            MailboxDevice::<2>::new(DeviceProfile::unlimited("two"), &start).unwrap();
         let mut points = [PointState::at_rest(Vector([9.0; 2])); 2];
         device.read(0.0, &mut points).unwrap();
-        assert_eq!(points, [PointState::at_rest(Vector::ZERO); 2]);
-        assert!(mailbox.forces().is_empty());
+        assert_eq!(points, start);
+        assert!(mailbox.forces().is_empty() && mailbox.ticks() == 0);
         for x in [1.0, 2.0] {
             let state = PointState::at_rest(Vector([x, 0.0]));
             mailbox.set(&[state, state]).unwrap();
@@ -253,15 +283,16 @@ mod tests {
         device.read(1.0, &mut points).unwrap();
         assert_eq!(points[1].position, Vector([2.0, 0.0]));
         assert_eq!(mailbox.forces(), [Vector([0.0, 2.0]), Vector::ZERO]);
+        assert_eq!(mailbox.ticks(), 2);
         assert!(mailbox.set(&points[..1]).is_err());
-        assert!(MailboxDevice::<2>::new(DeviceProfile::unlimited("none"), 0).is_err());
+        assert!(MailboxDevice::<2>::new(DeviceProfile::unlimited("none"), &[]).is_err());
     }
 
     #[test]
     fn a_driver_that_died_is_a_lost_device() {
-        let (mut device, mut mailbox) =
-            MailboxDevice::<2>::new(DeviceProfile::unlimited("one"), 1).unwrap();
         let mut points = [PointState::at_rest(Vector::ZERO)];
+        let (mut device, mut mailbox) =
+            MailboxDevice::<2>::new(DeviceProfile::unlimited("one"), &points).unwrap();
         device.read(7.0, &mut points).unwrap(); // a driver that has not begun is no dead one
         mailbox.set(&points).unwrap();
         for time in [7.0, 7.05, 7.1] {
@@ -279,12 +310,13 @@ mod tests {
 
     #[test]
     fn turns_and_torques_pass_as_well() {
+        let mut points = [PointState::at_rest(Vector::ZERO)];
         let (mut device, mut mailbox) =
-            MailboxDevice::<3>::new(DeviceProfile::unlimited("six"), 1).unwrap();
+            MailboxDevice::<3>::new(DeviceProfile::unlimited("six"), &points).unwrap();
         assert_eq!(device.read_turn().unwrap(), None);
         let about_y = Rotation::from_axis_angle(Vector::unit(1), 0.3).unwrap();
         mailbox.set_turn(TurnState::at_rest(about_y));
-        device.read(0.0, &mut [PointState::at_rest(Vector::ZERO)]).unwrap();
+        device.read(0.0, &mut points).unwrap();
         assert_eq!(device.read_turn().unwrap(), Some(TurnState::at_rest(about_y)));
         device.write_torque(Vector([0.0, 0.1, 0.0])).unwrap();
         assert_eq!(mailbox.torque(), Vector([0.0, 0.1, 0.0]));

@@ -104,14 +104,12 @@ impl<const D: usize> Steering<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::ContactPoints`] if there is not one target for each hand;
+    /// [`HapticsError::OneForEach`] if there is not one target for each hand;
     /// [`HapticsError::SampleNotFinite`] if one is not finite. No hand is led anywhere then.
     pub fn steer(&mut self, targets: &[Point<D>]) -> Result<(), HapticsError> {
         if targets.len() != self.hands {
-            return Err(HapticsError::ContactPoints {
-                servo: targets.len(),
-                device: self.hands,
-            });
+            let (items, given) = ("targets", targets.len());
+            return Err(HapticsError::OneForEach { items, given, points: self.hands });
         }
         for (index, target) in targets.iter().enumerate() {
             if let Some(value) = target.0.into_iter().find(|x| !x.is_finite()) {

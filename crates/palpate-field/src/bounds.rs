@@ -43,6 +43,12 @@ impl<const D: usize> Aabb<D> {
         Vector(array!(i < D => 0.5 * (self.max[i] - self.min[i])))
     }
 
+    /// A distance from the origin that none of its points exceeds [m].
+    #[must_use]
+    pub fn radius_about_origin(&self) -> f64 {
+        self.centre().norm() + self.half_extents().norm()
+    }
+
     /// The smallest box that holds both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {

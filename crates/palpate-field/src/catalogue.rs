@@ -23,8 +23,6 @@ pub struct Entry<const D: usize> {
     pub about: &'static str,
     /// The parameters, in the order of the arguments.
     pub parameters: &'static [Parameter],
-    /// The rule that bounds its values over a cell.
-    pub model: ModelRule,
     kernel: TypeId,
     build: fn(&[Argument]) -> Result<SharedField<D>, ShapeError>,
     arguments: fn(&dyn Any) -> Option<Vec<Argument>>,
@@ -37,7 +35,6 @@ impl<const D: usize> Entry<D> {
             name: K::NAME,
             about: K::ABOUT,
             parameters: K::PARAMETERS,
-            model: K::MODEL,
             kernel: TypeId::of::<K>(),
             build: |arguments| Ok(Shared::new(Leaf::new(K::from_arguments(arguments)?))),
             arguments: |kernel| kernel.downcast_ref::<K>().map(K::arguments),

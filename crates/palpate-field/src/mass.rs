@@ -356,14 +356,20 @@ impl<const D: usize> Shape<D> {
     ///
     /// # Errors
     ///
-    /// If the shape has no bounds, or the density or the tolerance is not positive.
+    /// If the shape has no bounds, or its steepness is known in a region alone, or the density or the tolerance is not positive.
     pub fn mass(&self, density: f64, limits: MassLimits) -> Result<Mass<D>, ShapeError> {
         let density = positive("density", density, Unit::One)?;
         let tolerance = positive("tolerance", limits.tolerance, Unit::One)?;
-        let Some(bounds) = self.promise().bounds else {
-            let needs = "a shape with bounds".into();
-            return Err(ShapeError::Unsuitable { operator: "mass", needs });
+        let needs = |needs: &'static str| ShapeError::Unsuitable {
+            operator: "mass",
+            needs: needs.into(),
         };
+        let Some(bounds) = self.promise().bounds else {
+            return Err(needs("a shape with bounds"));
+        };
+        if self.promise().region.is_some() {
+            return Err(needs("a shape whose steepness is known everywhere"));
+        }
         let middle = bounds.aabb.centre().0;
         let mut total = Total::new(&bounds.aabb);
         let mut cells = vec![MassCell { centre: [0.0; D], half: bounds.aabb.half_extents().0 }];

@@ -158,6 +158,41 @@ impl<const D: usize> Vector<f64, D> {
     }
 }
 
+impl<const D: usize> Vector<f64, D> {
+    /// The same vector in space: a vector of the plane has no depth.
+    #[must_use]
+    #[inline]
+    pub fn in_space(self) -> Vector<f64, 3> {
+        Vector(std::array::from_fn(|k| self.0.get(k).copied().unwrap_or(0.0)))
+    }
+}
+
+impl Vector<f64, 3> {
+    /// The first coordinates: the vector itself in space, its part in the plane z = 0 in the
+    /// plane.
+    #[must_use]
+    #[inline]
+    pub fn truncated<const D: usize>(self) -> Vector<f64, D> {
+        Vector(std::array::from_fn(|k| self.0.get(k).copied().unwrap_or(0.0)))
+    }
+
+    /// The cross product `self × other`.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    ///
+    /// let [x, y, z] = [0, 1, 2].map(Vector::<f64, 3>::unit);
+    /// assert_eq!((x.cross(y), z.cross(y)), (z, -x));
+    /// assert_eq!(Vector([1.0, 2.0]).in_space().truncated(), Vector([1.0, 2.0]));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub fn cross(self, other: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        Vector([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    }
+}
+
 impl<S, const D: usize> From<[S; D]> for Vector<S, D> {
     #[inline(always)]
     fn from(components: [S; D]) -> Self {

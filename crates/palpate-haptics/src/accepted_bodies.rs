@@ -5,7 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::sync::Arc;
+
 use crate::bodies::Bodies;
+use crate::protection::Protection;
 use crate::tool::Coupling;
 use palpate_safety::Accepted;
 
@@ -22,12 +25,26 @@ pub struct AcceptedBodies<const D: usize> {
     /// Contact points: one entry per body. Tool: the translational entry, then the rotational
     /// one if the device gives a torque. Empty without protection.
     pub(crate) accepted: Vec<Accepted>,
+    /// The protection of the servo, and of its clones, that they were accepted for; `None`
+    /// without protection.
+    pub(crate) protection: Option<Arc<Protection<D>>>,
 }
 
 impl<const D: usize> AcceptedBodies<D> {
     /// Unchanged bodies, for a servo without protection.
     pub(crate) fn unchanged(bodies: Bodies<D>) -> Self {
-        Self { bodies, coupling: None, accepted: Vec::new() }
+        Self { bodies, coupling: None, accepted: Vec::new(), protection: None }
+    }
+
+    /// `true` if both were accepted for the same servo.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn is_for_servo_of(&self, other: &Self) -> bool {
+        match (&self.protection, &other.protection) {
+            (None, None) => true,
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            _ => false,
+        }
     }
 
     /// The bodies.

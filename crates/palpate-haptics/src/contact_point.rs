@@ -18,7 +18,7 @@ use crate::surface::{Press, Ringing};
 use palpate_safety::PointState;
 use palpate_safety::PortState;
 use palpate_safety::WorkspaceMap;
-use palpate_safety::{limited, part_of};
+use palpate_safety::{limited, shortening};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -288,7 +288,7 @@ impl<const D: usize> ContactPoint<D> {
     #[inline(never)]
     fn start(&mut self, placed: bool, wanted: Vector<f64, D>) -> f64 {
         let others = std::mem::replace(&mut self.of_others, f64::INFINITY);
-        if placed { 0.0 } else { part_of(others, wanted.norm()) }
+        if placed { 0.0 } else { shortening(wanted.norm(), others) }
     }
 
     /// Ends the contact of the tick before and its ringing.

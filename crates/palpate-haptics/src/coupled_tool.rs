@@ -33,7 +33,7 @@ pub(crate) struct CoupledTool<const D: usize> {
     pub(crate) turn: Option<TurnState<D>>,
     /// The rotational port to the device; `None` without protection.
     pub(crate) port: Option<TurningPort<D>>,
-    /// The torque limit without protection [N·m].
+    /// The torque limit set by the caller [N·m]; a safety chain has the device's too.
     max_torque: f64,
     /// The torque to write to the device [N·m].
     pub(crate) torque: Vector<f64, 3>,
@@ -95,10 +95,18 @@ impl<const D: usize> CoupledTool<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit_torque(&mut self, max_torque: f64) {
-        match self.chain() {
-            Some(chain) => chain.limit_torque(max_torque),
-            // `min` ignores NaN.
-            None => self.max_torque = self.max_torque.min(max_torque),
+        // `min` ignores NaN.
+        self.max_torque = self.max_torque.min(max_torque);
+        self.keep_torque_limit();
+    }
+
+    /// Hands the torque limit on to the safety chain.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn keep_torque_limit(&mut self) {
+        let max_torque = self.max_torque;
+        if let Some(chain) = self.chain() {
+            chain.limit_torque(max_torque);
         }
     }
 

@@ -11,7 +11,7 @@ pub struct Energy {
     pub taken: f64,
     /// Energy that the rendered forces gave to the hand.
     pub given: f64,
-    /// Energy that the wanted forces would have given, but the rendered forces did not: what
-    /// the passivity controller held back.
+    /// Energy that the wanted forces would have given, but the rendered forces did not: what the
+    /// safety chain held back (passivity controller, limits, ramps, stops).
     pub kept: f64,
 }

@@ -33,7 +33,9 @@ pub enum HapticsError {
         positions: usize,
     },
     /// A time or coordinate of a hand path is not finite or exceeds 1e15.
-    #[error("sample {index} of the hand path must be finite and at most 1e15, got {value}")]
+    #[error(
+        "sample {index} of the hand path must be finite and at most 1e15 either way, got {value}"
+    )]
     SampleNotFinite {
         /// The index of the sample, from 0.
         index: usize,
@@ -52,8 +54,8 @@ pub enum HapticsError {
         /// The time of the sample [s].
         time: f64,
     },
-    /// A device must have at least one contact point.
-    #[error("a device needs at least one contact point")]
+    /// There must be at least one contact point, or one actuator or channel in its place.
+    #[error("there must be at least one contact point, actuator or channel")]
     NoContactPoint,
     /// The servo and the device disagree about the number of contact points.
     #[error("the servo has {servo} contact points, the device {device}")]
@@ -62,6 +64,16 @@ pub enum HapticsError {
         servo: usize,
         /// Contact points of the device.
         device: usize,
+    },
+    /// Not one item for each contact point.
+    #[error("{points} contact points need as many {items}, got {given}")]
+    OneForEach {
+        /// What is given.
+        items: &'static str,
+        /// How many there are.
+        given: usize,
+        /// The number of contact points.
+        points: usize,
     },
     /// The list of bodies is empty.
     #[error("there must be at least one body to touch")]
@@ -82,6 +94,9 @@ pub enum HapticsError {
         /// The capacity.
         most: usize,
     },
+    /// Bodies were accepted for another servo.
+    #[error("the bodies were accepted for another servo, whose device may render more")]
+    OtherServo,
     /// A thread for the servo could not be started.
     #[error("the servo's thread did not start: {reason}")]
     ThreadNotStarted {
@@ -89,7 +104,7 @@ pub enum HapticsError {
         reason: String,
     },
     /// A number of a pose is not finite or exceeds 1e15.
-    #[error("the numbers of a pose must be finite and at most 1e15")]
+    #[error("the numbers of a pose must be finite and at most 1e15 either way")]
     Pose,
     /// A shape cannot carry the texture of a surface.
     #[error(transparent)]
@@ -98,6 +113,12 @@ pub enum HapticsError {
     #[error("a guide needs one target, got {count}")]
     GuideTargets {
         /// The number of targets.
+        count: usize,
+    },
+    /// A curve needs two different points.
+    #[error("a curve needs at least 2 different points, got {count}")]
+    NoCurve {
+        /// The number of different points, one or none.
         count: usize,
     },
     /// The shape of a tool has no bounded surface.

@@ -93,11 +93,7 @@ impl<const D: usize> Reaction<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn add(&mut self, force: Vector<f64, D>, arm: Point<D>) {
-        let in_space = |v: Vector<f64, D>| -> [f64; 3] {
-            std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0))
-        };
-        let ([ax, ay, az], [fx, fy, fz]) = (in_space(arm), in_space(force));
-        let torque = Vector([ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx]);
+        let torque = arm.in_space().cross(force.in_space());
         let sum = Self { force: self.force + force, torque: self.torque + torque };
         if sum.force.is_finite() && sum.torque.is_finite() {
             *self = sum;

@@ -5,7 +5,8 @@
 //!
 //! A [`Proxy`] (a god-object with a radius) follows a device point but cannot enter the shape.
 //! A [`Material`] turns the distance between proxy and device point into a force. A [`Servo`]
-//! moves the proxies and computes the forces for every contact point of a [`Device`], a thousand times a second and more.
+//! moves the proxies and computes the forces for every contact point of a [`Device`], a thousand
+//! times a second and more.
 //! Through a [`handoff`](handoff()), another thread replaces bodies and reads snapshots without
 //! ever making the servo wait.
 //!
@@ -25,10 +26,12 @@
 //! # What is promised
 //!
 //! - *The proxy crosses no surface.* It moves only where an evaluation and the field's
-//!   Lipschitz constant prove the path free, at any speed of the hand.
-//! - *The step always ends, in bounded work.* [`Servo::step`] allocates nothing, takes no lock, does not panic and
-//!   evaluates the shape at most [`Probe::budget`] times for each contact point. A proxy that runs
-//!   out of budget lags behind; it does not enter a body.
+//!   Lipschitz constant prove the path free, at any speed of the hand. A probe of radius zero may
+//!   cross walls thinner than 1e-4 of the bounding radius.
+//! - *The step always ends, in bounded work.* [`Servo::step`] allocates nothing, takes no lock,
+//!   does not panic and evaluates the shape at most [`Probe::budget`] times for each contact
+//!   point, and a few times more for magnets and textures. A proxy that runs out of budget lags
+//!   behind; it does not enter a body.
 //! - *The force of contact never pulls*, is finite, and is no larger than the device's largest
 //!   force.
 //! - *No lengths are built in.* Every tolerance follows from the size of the shape, the probe

@@ -4,6 +4,8 @@
 //! Protection of a servo: the workspace map, what the device can render, and the safety chain
 //! of every contact point.
 
+use std::sync::Arc;
+
 use palpate_field::{Rotation, Vector};
 
 use crate::accepted_bodies::AcceptedBodies;
@@ -124,16 +126,23 @@ impl<const D: usize> Protection<D> {
     /// Accepts everything that a servo renders: its bodies, and with a tool the requested
     /// virtual coupling.
     pub(crate) fn accepted_bodies(
-        &self,
+        self: &Arc<Self>,
         bodies: Bodies<D>,
         requested: Option<Coupling>,
         rate: f64,
     ) -> Result<AcceptedBodies<D>, HapticsError> {
+        let protection = Some(self.clone());
         if let Some(coupling) = requested {
-            return self.accept_tool(bodies, coupling, rate);
+            let (bodies, coupling, accepted) = self.accept_tool(bodies, coupling, rate)?;
+            return Ok(AcceptedBodies {
+                bodies,
+                coupling: Some(coupling),
+                accepted,
+                protection,
+            });
         }
         let (bodies, accepted) = self.accept(bodies, rate)?;
-        Ok(AcceptedBodies { bodies, coupling: None, accepted })
+        Ok(AcceptedBodies { bodies, coupling: None, accepted, protection })
     }
 
     /// Accepts bodies and the coupling of a tool together: the factor that the worst layer in
@@ -144,7 +153,7 @@ impl<const D: usize> Protection<D> {
         mut bodies: Bodies<D>,
         mut coupling: Coupling,
         rate: f64,
-    ) -> Result<AcceptedBodies<D>, HapticsError> {
+    ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
         let mut worst: Option<Accepted> = None;
         for layer in layers(&bodies)? {
             let accepted = self.accepted(coupling.on(layer)?, rate)?;
@@ -161,7 +170,7 @@ impl<const D: usize> Protection<D> {
             let turning = self.accept_turning(&layers(&bodies)?, &mut coupling, turning, rate);
             accepted.push(turning?);
         }
-        Ok(AcceptedBodies { bodies, coupling: Some(coupling), accepted })
+        Ok((bodies, coupling, accepted))
     }
 
     /// The rotational properties of a device that gives a torque.

@@ -220,7 +220,8 @@ impl<const D: usize> Proxy<D> {
     /// Follows the device point to `device` [m] as far as the bodies let it.
     ///
     /// Free space costs one evaluation. The proxy moves only along paths that are proven free,
-    /// so it crosses no wall at any speed. It rests at points with `f ≥ r − 1e-9 R`, with the
+    /// so it crosses no wall at any speed, except that a probe of radius zero may cross one thinner
+    /// than 1e-4 of the bounding radius. It rests at points with `f ≥ r − 1e-9 R`, with the
     /// field's value `f`, the probe's radius `r` and the radius `R` of the ball around all
     /// bodies.
     ///

@@ -11,19 +11,19 @@ use crate::{Descent, check_start};
 /// Newton steps of a projection at most.
 const PROJECTION: u32 = 16;
 
-/// How far past the surface of the second body steps go, in tolerances: those that end at
-/// it come near from outside and never enter. More than one, or the round in which a step
-/// enters would be taken for the end.
+/// How far past the surface of the second body a step goes, in tolerances. A step that ends at
+/// the surface never enters; one that goes past by less than a tolerance would look like the end of
+/// the search.
 const PAST: f64 = 4.0;
 
 /// Moves a point onto the first body, along the gradient of the second, and back onto the
 /// first, until it is in both or stays where it is.
 ///
-/// The step along the gradient is what leads to the surface of an exact field, and four
-/// tolerances more: the constant step of the memoir goes to and fro, and one that ends at
-/// the surface never enters. A projection on a bound takes several steps. A point in both has values of at most zero,
-/// not below: bodies may touch. Where they barely do, rounds become ever smaller, and 64
-/// may not be enough.
+/// The step along the gradient leads to the surface of an exact field, and four tolerances past
+/// it: the constant step of the memoir goes to and fro, and one that ends at the surface never
+/// enters. A projection on a bound takes several steps. A point is in both where both values are
+/// at most zero, so bodies may just touch. Where they barely do, rounds become ever smaller, and
+/// 64 may not be enough.
 ///
 /// An upper bound, without a proof. A point in both is a witness that they overlap and
 /// says nothing of how much; that none was found says nothing. Of two pairs of balls one

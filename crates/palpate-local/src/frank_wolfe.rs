@@ -21,7 +21,7 @@ use crate::{Descent, least_vertex, support};
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
 /// use palpate_local::FrankWolfe;
-/// use palpate_query::{Element, Limits, Workspace, minimum};
+/// use palpate_query::{Element, Limits, ElementWorkspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let balls = Shape::union([
@@ -30,7 +30,7 @@ use crate::{Descent, least_vertex, support};
 /// ])?;
 /// let segment = Element::new([Vector([-1.0, 0.25]), Vector([1.0, -0.75])])?;
 /// let found = FrankWolfe::default().descend(&balls, &segment);
-/// let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
+/// let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(certified.upper < -0.032 && found.value > 0.02);
 /// let first = FrankWolfe::default().with_steps(1).descend(&balls, &segment);
 /// assert_eq!(first.steps, 1);

@@ -28,7 +28,7 @@ const LEFT: f64 = 0.618_033_988_749_894_9;
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::{Ball, HalfSpace}};
 /// use palpate_local::GoldenSection;
-/// use palpate_query::{Element, Limits, Workspace, minimum};
+/// use palpate_query::{Element, Limits, ElementWorkspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
@@ -36,7 +36,7 @@ const LEFT: f64 = 0.618_033_988_749_894_9;
 /// let segment = Element::new([Vector([-1.0, 0.125]), Vector([1.0, 0.125])])?;
 /// let scene = Shape::union([floor, bump])?;
 /// let found = GoldenSection::default().descend(&scene, &segment);
-/// let certified = minimum(&scene, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
+/// let certified = minimum(&scene, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(found.value == 0.125 && certified.upper < -0.0499);
 /// let coarse = GoldenSection::default().with_sections(2).descend(&scene, &segment);
 /// assert!(coarse.evaluations < found.evaluations);

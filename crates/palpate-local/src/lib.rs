@@ -25,7 +25,7 @@
 //! ```
 //! use palpate_field::{Shape, Vector, kernel::Ball};
 //! use palpate_local::ElementMethod;
-//! use palpate_query::{Element, Limits, Workspace, minimum};
+//! use palpate_query::{Element, Limits, ElementWorkspace, minimum};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A ball over the left end, and a smaller one that the segment cuts.
@@ -36,7 +36,7 @@
 //! let segment = Element::new([Vector([-1.0, 0.25]), Vector([1.0, -0.75])])?;
 //! let method: ElementMethod = "projected_gradient".parse()?;
 //! let found = method.descend(&balls, &segment);
-//! let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut Workspace::new())?;
+//! let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 //! assert!(found.value > 0.02 && certified.upper < -0.032);
 //! # Ok(())
 //! # }
@@ -82,7 +82,7 @@ impl<const D: usize> Descent<D> {
         Self { best: start, value, steps: 0, evaluations, path: vec![start] }
     }
 
-    /// The search is at `p` now.
+    /// The search is at `p`.
     fn visit(&mut self, p: Point<D>, value: f64) {
         self.path.push(p);
         if value < self.value {
@@ -104,7 +104,7 @@ pub struct UnknownMethod {
 
 /// Refuses a start or a tolerance that cannot be computed with.
 fn check_start<const D: usize>(start: Point<D>, tolerance: f64) -> Result<(), QueryError> {
-    QueryError::check_point("a start", start)?;
+    QueryError::check_point("start", start)?;
     QueryError::check_length(tolerance)
 }
 

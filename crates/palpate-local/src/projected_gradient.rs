@@ -28,7 +28,7 @@ const KEPT: f64 = 0.5;
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
 /// use palpate_local::ProjectedGradient;
-/// use palpate_query::{Element, Limits, Workspace, minimum};
+/// use palpate_query::{Element, Limits, ElementWorkspace, minimum};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let balls = Shape::union([
@@ -38,7 +38,7 @@ const KEPT: f64 = 0.5;
 /// let corners = [Vector([-0.6, -0.9]), Vector([1.2, 0.0]), Vector([-0.6, 0.9])];
 /// let triangle = Element::new(corners)?;
 /// let found = ProjectedGradient::default().descend(&balls, &triangle);
-/// let certified = minimum(&balls, &triangle, &Limits::new(1e-4), &mut Workspace::new())?;
+/// let certified = minimum(&balls, &triangle, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 /// assert!(found.value == -0.1 && certified.upper < -0.199);
 /// let first = ProjectedGradient::default().with_steps(1).descend(&balls, &triangle);
 /// assert_eq!(first.steps, 1);

@@ -10,7 +10,7 @@ use palpate_field::kernel::{Ball, Cuboid, HalfSpace, Torus};
 use palpate_field::{Point, Shape, Vector};
 use palpate_local::{Descent, ElementMethod, FrankWolfe, GoldenSection, PairMethod};
 use palpate_query::{
-    Element, Limits, PairWorkspace, QueryError, Workspace, minimum, overlap, separation,
+    Element, ElementWorkspace, Limits, PairWorkspace, QueryError, minimum, overlap, separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -40,16 +40,12 @@ fn on_elements<const N: usize, const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut workspace = Workspace::new();
-    let mut seed = 0;
-    cases::check(count, |u| {
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, 1 + seed % 4)?;
-        let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
-        let size = draw::size(&shape);
+    let mut workspace = ElementWorkspace::new();
+    cases::on_trees(count, 4, |u, _, shape| {
+        let size = draw::size(shape);
         // Triangles with a corner, an edge or all of it gone too.
         let extent = size * [0.0, 1e-6, 0.3, 2.0][u.choose_index(4)?];
-        let mut vertices = [draw::point(u, &shape)?; N];
+        let mut vertices = [draw::point(u, shape)?; N];
         for vertex in &mut vertices[1..] {
             *vertex += draw::direction::<D>(u)? * (extent * draw::unit(u)?);
         }
@@ -58,14 +54,14 @@ where
         }
         let Ok(element) = Element::new(vertices) else { return Ok(Ok(())) };
         let limits = Limits::new(1e-3 * size);
-        let certified = minimum(&shape, &element, &limits, &mut workspace).unwrap();
+        let certified = minimum(shape, &element, &limits, &mut workspace).unwrap();
         let reach = vertices.iter().map(|vertex| vertex.norm()).fold(0.0, f64::max);
         let rounding = 2.0 * shape.promise().rounding.within(reach);
         for method in ElementMethod::ALL {
-            let descent = method.descend(&shape, &element);
+            let descent = method.descend(shape, &element);
             let value = |p| shape.distance(p);
             if let Some(complaint) = wrong(&descent, value, certified.lower, rounding) {
-                return Ok(Err(format!("{method}: {complaint}, {element:?}, {tree:?}")));
+                return Ok(Err(format!("{method}: {complaint}, {element:?}")));
             }
             if descent.evaluations > 16 * 20 || descent.steps > 64 {
                 return Ok(Err(format!("{method}: {} evaluations", descent.evaluations)));
@@ -143,7 +139,7 @@ fn nothing_is_found_below_what_is_proven_of_pairs() {
 fn the_minimum_of_a_convex_field_is_found() -> Outcome {
     let ball = Shape::from_kernel(Ball::new(0.4)?);
     let limits = Limits::new(1e-9);
-    let mut workspace = Workspace::new();
+    let mut workspace = ElementWorkspace::new();
     let corner = |i: i32, k: i32| {
         let t = f64::from(7 * i + 3 * k);
         Vector([t.sin(), (1.3 * t).cos(), 0.7 + 0.4 * (2.1 * t).sin()])
@@ -209,7 +205,7 @@ fn a_needle_on_a_floor_is_missed_by_all_and_proven() -> Outcome {
         [Vector([-1.0, 0.1, -0.8]), Vector([1.0, 0.1, -0.7]), Vector([0.1, 0.1, 1.0])];
     let triangle = Element::new(corners)?;
     let certified =
-        minimum(&shape, &triangle, &Limits::new(1e-4), &mut Workspace::new()).unwrap();
+        minimum(&shape, &triangle, &Limits::new(1e-4), &mut ElementWorkspace::new()).unwrap();
     assert_eq!(certified.is_hit(), Some(true), "{certified:?}");
     for method in ElementMethod::ALL {
         let found = method.descend(&shape, &triangle);

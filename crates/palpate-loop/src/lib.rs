@@ -52,7 +52,7 @@ pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use pacer::Lateness;
 pub use priority::{Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};
-pub use report::{Ending, Evaluations, RunReport};
+pub use report::{Ending, Evaluations, RunError, RunReport};
 pub use run::{Pace, Run, RunOptions, Seconds, Watch, run, run_on};
 pub use statistics::{Bucket, Distribution};
 pub use thread::{EndedThread, ServoThread, ThreadOptions};

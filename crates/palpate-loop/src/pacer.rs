@@ -109,7 +109,7 @@ impl Lateness {
         rate: f64,
         duration: f64,
     ) -> Result<Self, HapticsError> {
-        let rate = NumberError::check_positive("rate", rate, "Hz")?;
+        let rate = NumberError::check_rate(rate)?;
         let duration = NumberError::check_not_negative("duration", duration, "s")?;
         let mut pacer = Pacer::new(clock, rate);
         let mut times = Times::new();

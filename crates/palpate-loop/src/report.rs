@@ -14,7 +14,7 @@ use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
 pub struct RunReport {
     /// Why the run ended.
     pub ending: Ending,
-    /// Whether the device took the zero forces that are written last; one that was lost need not.
+    /// `true` if the device accepted the final zero forces; a lost device may have refused them.
     pub is_released: bool,
     /// Ticks a second [Hz].
     pub rate: f64,
@@ -52,20 +52,39 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// The report of a run whose device stayed: for callers who take a lost device for an error.
+    /// The report of a run that ended as asked: for callers who take any other ending for an
+    /// error.
     ///
     /// # Errors
     ///
-    /// [`DeviceLost`] if the device was lost, or did not take the zero forces at the end.
-    pub fn unless_lost(self) -> Result<Self, DeviceLost> {
+    /// [`RunError`] if the device was lost or did not take the zero forces at the end, or if the
+    /// loop panicked.
+    pub fn unless_failed(self) -> Result<Self, RunError> {
+        let lost = |reason: &str| Err(DeviceLost { reason: reason.to_owned() }.into());
         match &self.ending {
-            Ending::DeviceLost { reason } => Err(DeviceLost { reason: reason.clone() }),
-            _ if !self.is_released => {
-                Err(DeviceLost { reason: "it did not take the zero forces at the end".into() })
+            Ending::DeviceLost { reason } => lost(reason),
+            Ending::Panicked { message } => {
+                Err(RunError::Panicked { message: message.clone() })
             }
+            _ if !self.is_released => lost("it did not take the zero forces at the end"),
             _ => Ok(self),
         }
     }
+}
+
+/// Why a run did not end as asked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The device was lost, or did not take the zero forces at the end.
+    #[error(transparent)]
+    DeviceLost(#[from] DeviceLost),
+    /// The loop panicked, which is a defect; the forces were set to zero.
+    #[error("the servo's loop panicked, which is a defect: {message}")]
+    Panicked {
+        /// The panic's message.
+        message: String,
+    },
 }
 
 /// How often the shape was evaluated.
@@ -87,9 +106,9 @@ pub struct Evaluations {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
 pub enum Ending {
-    /// The duration was over.
+    /// The duration was over, or the handle of the servo's thread ended the run.
     Finished,
-    /// The caller ended the run before its duration was over.
+    /// The [interrupt flag](crate::RunOptions::interrupt) of the run was set.
     Interrupted,
     /// The device was lost.
     DeviceLost {

@@ -9,6 +9,7 @@ use palpate_haptics::{
 use std::fmt;
 use std::panic::resume_unwind;
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use crate::clock::{Clock, WallClock};
 use crate::priority::{Priority, raise_priority};
@@ -89,8 +90,9 @@ impl ThreadOptions {
 /// A servo that runs with its device in a thread.
 ///
 /// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`, a panic in a tick ends
-/// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the
-/// loop without waiting for it.
+/// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the loop,
+/// and waits up to a second for those forces to be written: the end of the process would stop the
+/// thread before.
 ///
 /// # Examples
 ///
@@ -131,9 +133,27 @@ impl ThreadOptions {
 /// # }
 /// ```
 pub struct ServoThread<const D: usize> {
+    /// Dropped before the handle: that ends the loop, for which the handle then waits.
     control: Control<D>,
-    thread: JoinHandle<Left<D>>,
+    thread: Handle<D>,
 }
+
+/// The thread; `None` once it is joined.
+struct Handle<const D: usize>(Option<JoinHandle<Left<D>>>);
+
+impl<const D: usize> Drop for Handle<D> {
+    fn drop(&mut self) {
+        let Some(thread) = &self.0 else { return };
+        let start = Instant::now();
+        while !thread.is_finished() && start.elapsed() < PATIENCE {
+            std::thread::park_timeout(Duration::from_millis(1));
+        }
+    }
+}
+
+/// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
+/// that nobody advances lets it wait in vain.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What remains of a servo thread that has ended.
 pub struct EndedThread<const D: usize> {
@@ -221,7 +241,7 @@ impl<const D: usize> ServoThread<D> {
             std::thread::Builder::new().name("palpate servo".to_owned()).spawn(work).map_err(
                 |error| HapticsError::ThreadNotStarted { reason: error.to_string() },
             )?;
-        Ok(Self { control, thread })
+        Ok(Self { control, thread: Handle(Some(thread)) })
     }
 
     /// The hand-off to the servo: edits what is rendered, and reads its state.
@@ -247,11 +267,18 @@ impl<const D: usize> ServoThread<D> {
     /// may be never. A [driven](crate::VirtualClock::driven) clock must have been advanced to
     /// the end, or its driver dropped.
     #[must_use]
+    #[expect(
+        clippy::expect_used,
+        clippy::missing_panics_doc,
+        reason = "only this method takes the thread, and it consumes the handle"
+    )]
     pub fn join(self) -> EndedThread<D> {
+        let Self { control, mut thread } = self;
+        let thread = thread.0.take().expect("a thread that was not joined");
         // Panics in the loop are part of the report.
-        let left = self.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        let left = thread.join().unwrap_or_else(|panic| resume_unwind(panic));
         let Left { servo, device, report, recorder, priority, _end } = left;
-        EndedThread { servo, device, control: self.control, report, recorder, priority }
+        EndedThread { servo, device, control, report, recorder, priority }
     }
 }
 

@@ -16,7 +16,9 @@ pub enum MeshError {
         vertices: usize,
     },
     /// A coordinate is not a number, or too large to compute with.
-    #[error("vertex {vertex} must be finite and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
+    #[error(
+        "vertex {vertex} must be finite and at most {LARGEST_LENGTH:e} m either way, got {value:?} m"
+    )]
     Coordinate {
         /// The vertex, counted from 0.
         vertex: usize,

@@ -21,7 +21,7 @@ pub(crate) fn triangulate(
 ) {
     let at = |i: u32| vertices[i as usize];
     let normal = newell(corners.iter().map(|&i| at(i)));
-    let turn = |a: Point<3>, b: Point<3>, c: Point<3>| cross(b - a, c - a).dot(normal);
+    let turn = |a: Point<3>, b: Point<3>, c: Point<3>| (b - a).cross(c - a).dot(normal);
     let mut rest = corners.to_vec();
     while rest.len() > 3 {
         let count = rest.len();
@@ -54,13 +54,9 @@ fn newell(corners: impl Iterator<Item = Point<3>> + Clone) -> Vector<f64, 3> {
     let Some(first) = corners.clone().next() else { return Vector::ZERO };
     let mut normal = Vector::ZERO;
     for (a, b) in corners.zip(next) {
-        normal += cross(a - first, b - first);
+        normal += (a - first).cross(b - first);
     }
     normal
-}
-
-fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
-    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
 #[cfg(test)]

@@ -52,7 +52,8 @@ pub enum Stop {
     Converged,
     /// The sign of the value is proven, or that it exceeds the largest value asked for.
     SignKnown,
-    /// The budget of evaluations or the room of the workspace ended first.
+    /// The budget of evaluations or the room of the workspace ended first, or rounding allows no
+    /// closer bounds.
     BudgetSpent,
 }
 

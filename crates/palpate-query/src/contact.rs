@@ -28,12 +28,15 @@ use palpate_field::{Point, Pose, Vector};
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact<const D: usize> {
-    /// The point on the surface of body `a` [m].
+    /// The point on the surface of body `a` [m]. Where a manifold's search finds no surface along
+    /// the normal, it is estimated from the values of both fields.
     pub point_a: Point<D>,
-    /// The point on the surface of body `b` [m].
+    /// The point on the surface of body `b` [m]; estimated where that of `a` is.
     pub point_b: Point<D>,
     /// The unit vector from body `a` to body `b`, along which a solver separates them. Where the
-    /// fields give no direction, as in the middle of a ball, it is one of the axes.
+    /// fields give no direction, as in the middle of a ball, a manifold takes the line between
+    /// the centres of the bodies; where that has no direction, and for elements, it is the y
+    /// axis.
     pub normal: Vector<f64, D>,
     /// The distance from `point_a` to `point_b` along the normal,
     /// `(point_b − point_a)·normal` [m]; negative where the bodies overlap.

@@ -12,12 +12,12 @@ use palpate_field::{LARGEST_LENGTH, Point, SHORT, Shape, Vector};
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::element::Element;
-use crate::element_search::{ElementCell, ElementSearch, Terms, Workspace};
+use crate::element_search::{ElementCell, ElementSearch, ElementWorkspace, Terms};
 use crate::engine::{self, Frontier};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::patches::{MOST_CELLS, Patches};
-use crate::sampler::{normal as direction, unit};
+use crate::sampler::{arbitrary, normal as direction, unit};
 
 /// Heights over and under the centre of an element, in radii, from which [`is_plain`] proves
 /// that the element has one minimum: half a block each.
@@ -70,7 +70,7 @@ impl<const D: usize> ElementContacts<D> {
 /// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
 ///   lies a barrier: every path on the element from one to the other passes a point where
 ///   the field is larger than at both, by more than the tolerance. That is proven.
-/// - **Nothing is missed:** from every point within the gap a path on the element leads to a
+/// - **Nothing is missed**, unless the search stopped with [`Stop::BudgetSpent`]: from every point within the gap a path on the element leads to a
 ///   contact at least as deep, up to the tolerance, over cells that no bound proves to be
 ///   higher than the point.
 ///
@@ -89,13 +89,13 @@ impl<const D: usize> ElementContacts<D> {
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Ball};
-/// use palpate_query::{Element, Limits, Workspace, contacts};
+/// use palpate_query::{Element, Limits, ElementWorkspace, contacts};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let bump = |x: f64| Shape::from_kernel(Ball::new(1.0)?).translated(Vector([x, 0.0]));
 /// let bumps = Shape::union([bump(-2.0)?, bump(2.0)?])?;
 /// let segment = Element::new([Vector([-3.0, 0.8]), Vector([3.0, 0.9])])?;
-/// let mut workspace = Workspace::new();
+/// let mut workspace = ElementWorkspace::new();
 /// let touching = contacts(&bumps, &segment, 0.0, &Limits::new(1e-4), &mut workspace)?;
 /// let [left, right] = touching.contacts.as_slice() else { panic!("two contacts") };
 /// assert!(left.point_b[0] < 0.0 && right.point_b[0] > 0.0 && left.gap < right.gap);
@@ -107,7 +107,7 @@ pub fn contacts<'w, const N: usize, const D: usize>(
     element: &Element<N, D>,
     gap: f64,
     limits: &Limits,
-    workspace: &'w mut Workspace<N, D>,
+    workspace: &'w mut ElementWorkspace<N, D>,
 ) -> Result<&'w ElementContacts<D>, QueryError> {
     limits.check()?;
     let terms = Terms {
@@ -133,9 +133,9 @@ pub(crate) fn find<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     terms: &Terms,
-    workspace: &mut Workspace<N, D>,
+    workspace: &mut ElementWorkspace<N, D>,
 ) {
-    let Workspace { frontier, samples, patches, found } = workspace;
+    let ElementWorkspace { frontier, samples, patches, found } = workspace;
     let ElementContacts { contacts, least } = found;
     contacts.clear();
     let tolerance = terms.goal.tolerance;
@@ -180,7 +180,9 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
             self.keeps_all = false;
         }
         if patches.cells.is_empty() {
-            return self.answer(self.dropped, Stop::SignKnown);
+            let is_known = self.dropped > 0.0;
+            let stop = if is_known { Stop::SignKnown } else { Stop::BudgetSpent };
+            return self.answer(self.dropped, stop);
         }
         let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
         let mut all = self.answer(self.dropped, Stop::Converged);
@@ -283,7 +285,7 @@ pub(crate) fn at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Contact<D> {
     } else {
         // On the surface, or where the field has no direction.
         let there = direction(shape.distance_gradient(surface).1);
-        there.or(direction(gradient)).unwrap_or(Vector::unit(D - 1))
+        there.or(direction(gradient)).unwrap_or_else(arbitrary)
     };
     Contact::new(surface, p, normal)
 }

@@ -70,7 +70,8 @@ impl Display for MeshHits {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let [hits, undecided] = [self.hits.len(), self.undecided.len()];
         let evaluations = self.evaluations;
-        write!(f, "{hits} elements touch, {undecided} undecided, {evaluations} evaluations")
+        let touch = if hits == 1 { "element touches" } else { "elements touch" };
+        write!(f, "{hits} {touch}, {undecided} undecided, {evaluations} evaluations")
     }
 }
 
@@ -108,6 +109,6 @@ mod tests {
         };
         assert_eq!(answer.to_string(), "0.25 to 0.5 m, converged after 12 evaluations");
         let none = MeshHits { hits: vec![3], ..MeshHits::default() };
-        assert_eq!(none.to_string(), "1 elements touch, 0 undecided, 0 evaluations");
+        assert_eq!(none.to_string(), "1 element touches, 0 undecided, 0 evaluations");
     }
 }

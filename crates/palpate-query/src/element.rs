@@ -27,7 +27,7 @@ impl<const N: usize, const D: usize> Element<N, D> {
     pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
         for vertex in vertices {
-            QueryError::check_point("a vertex", vertex)?;
+            QueryError::check_point("vertex", vertex)?;
         }
         Ok(Self { vertices })
     }

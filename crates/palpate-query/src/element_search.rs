@@ -94,14 +94,14 @@ impl<const N: usize, const D: usize> ElementCell<N, D> {
 
 /// Memory of searches over elements, kept from one to the next: it is allocated once.
 #[derive(Debug)]
-pub struct Workspace<const N: usize, const D: usize> {
+pub struct ElementWorkspace<const N: usize, const D: usize> {
     pub(crate) frontier: Frontier<Vec<ElementCell<N, D>>>,
     pub(crate) samples: Samples<D>,
     pub(crate) patches: Patches<N, D>,
     pub(crate) found: ElementContacts<D>,
 }
 
-impl<const N: usize, const D: usize> Workspace<N, D> {
+impl<const N: usize, const D: usize> ElementWorkspace<N, D> {
     /// Room for searches over elements of `N` points in `D` dimensions.
     #[must_use]
     pub fn new() -> Self {
@@ -118,7 +118,7 @@ impl<const N: usize, const D: usize> Workspace<N, D> {
     }
 }
 
-impl<const N: usize, const D: usize> Default for Workspace<N, D> {
+impl<const N: usize, const D: usize> Default for ElementWorkspace<N, D> {
     fn default() -> Self {
         Self::new()
     }
@@ -135,7 +135,7 @@ pub fn minimum<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
-    workspace: &mut Workspace<N, D>,
+    workspace: &mut ElementWorkspace<N, D>,
 ) -> Result<Certified<Point<D>>, QueryError> {
     limits.check()?;
     let goal = Goal::least(limits.tolerance);
@@ -154,7 +154,7 @@ pub fn touches<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     limits: &Limits,
-    workspace: &mut Workspace<N, D>,
+    workspace: &mut ElementWorkspace<N, D>,
 ) -> Result<Certified<Point<D>>, QueryError> {
     limits.check()?;
     let goal = Goal::sign(limits.tolerance);
@@ -183,7 +183,7 @@ pub(crate) fn search<const N: usize, const D: usize>(
     shape: &Shape<D>,
     element: &Element<N, D>,
     terms: &Terms,
-    workspace: &mut Workspace<N, D>,
+    workspace: &mut ElementWorkspace<N, D>,
 ) -> Certified<Point<D>> {
     ElementSearch::new(shape, element, terms, &mut workspace.samples)
         .run(element, &mut workspace.frontier)

@@ -10,9 +10,11 @@ use palpate_field::{LARGEST_LENGTH, Point};
 #[non_exhaustive]
 pub enum QueryError {
     /// A coordinate is not a number, or too large to compute with.
-    #[error("{what} must be finite and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
+    #[error(
+        "{what} must be finite and at most {LARGEST_LENGTH:e} m either way, got {value:?} m"
+    )]
     Coordinate {
-        /// The point or vector with the coordinate.
+        /// The name of the point or vector with the coordinate.
         what: &'static str,
         /// The coordinate.
         value: f64,
@@ -29,7 +31,7 @@ pub enum QueryError {
     /// A setting that is negative, zero or too large to compute with.
     #[error("{what} must be positive and at most {LARGEST_LENGTH:e} m, got {value:?} m")]
     Setting {
-        /// The setting.
+        /// The name of the setting.
         what: &'static str,
         /// The number.
         value: f64,
@@ -61,7 +63,7 @@ pub enum QueryError {
 }
 
 impl QueryError {
-    /// Refuses coordinates that are not finite or beyond 1e15 m; `what` they are of.
+    /// Refuses coordinates that are not finite or beyond 1e15 m, of the parameter called `what`.
     ///
     /// # Errors
     ///

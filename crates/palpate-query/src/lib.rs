@@ -36,9 +36,12 @@
 //!   segment or a triangle; [`contacts`] finds all places where the element touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
 //!
+//! - [`rates`] says how a separation changes with both poses; [`proof`] lists the boxes that the
+//!   search for a separation ruled out.
+//!
 //! The searches take [`Limits`] and a workspace, for real time: once a workspace has grown,
-//! only [`manifold`] allocates, for its list. A `Query` calls these functions with a workspace of
-//! its own; it has no [`evaluate_point`], [`Track`] or [`World`].
+//! only [`manifold`] and [`proof`] allocate, for their lists. A `Query` calls these functions with
+//! a workspace of its own; it has no [`evaluate_point`], [`rates`], [`Track`] or [`World`].
 //!
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].
@@ -74,7 +77,7 @@ pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
 pub use contacts::{ElementContacts, contacts};
 pub use element::Element;
-pub use element_search::{Workspace, minimum, touches};
+pub use element_search::{ElementWorkspace, minimum, touches};
 pub use error::QueryError;
 pub use manifold::{Manifold, ManifoldSettings, manifold};
 pub use mesh::{

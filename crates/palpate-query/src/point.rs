@@ -86,7 +86,7 @@ pub fn evaluate_point<const D: usize>(
     shape: &Shape<D>,
     p: Point<D>,
 ) -> Result<AtPoint<D>, QueryError> {
-    QueryError::check_point("a point", p)?;
+    QueryError::check_point("point", p)?;
     Ok(AtPoint::of_slope(shape, p, shape.distance_gradient(p)))
 }
 

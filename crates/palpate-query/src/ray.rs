@@ -47,7 +47,7 @@ impl<const D: usize> Ray<D> {
         direction: Vector<f64, D>,
         length: f64,
     ) -> Result<Self, QueryError> {
-        for (what, numbers) in [("an origin", origin), ("a direction", direction)] {
+        for (what, numbers) in [("origin", origin), ("direction", direction)] {
             QueryError::check_point(what, numbers)?;
         }
         let largest = direction.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -55,8 +55,9 @@ impl<const D: usize> Ray<D> {
             return Err(QueryError::NoDirection);
         }
         QueryError::check_length(length)?;
-        // Divided by the largest first, since squares may underflow.
-        let direction = direction * (1.0 / largest);
+        // Divided by the largest first, since squares may underflow, as may its reciprocal
+        // overflow.
+        let direction = Vector(direction.0.map(|x| x / largest));
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
     }
 

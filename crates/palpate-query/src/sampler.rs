@@ -158,6 +158,11 @@ pub(crate) fn normal<const D: usize>(gradient: Vector<f64, D>) -> Option<Vector<
     (length >= FLAT).then(|| gradient * (1.0 / length))
 }
 
+/// The direction where neither field nor bodies give one: the y axis.
+pub(crate) fn arbitrary<const D: usize>() -> Vector<f64, D> {
+    Vector::unit(1)
+}
+
 /// The unit vector along `v`; zero if that is.
 #[inline]
 pub(crate) fn unit<const D: usize>(v: Vector<f64, D>) -> Vector<f64, D> {

@@ -9,7 +9,7 @@
 //! position quantization and sampling rate on virtual-wall passivity" (2005): `K ≤ min(2 b / T,
 //! 2 f_c / Δ)`.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
@@ -123,7 +123,17 @@ pub struct Accepted {
     /// The rule that determined the factor; `None` if the factor is one.
     pub rule: Option<Rule>,
     /// Names of the device's numbers that are assumed.
-    pub assumed: Cow<'static, [&'static str]>,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "as_list"))]
+    pub assumed: Arc<[&'static str]>,
+}
+
+/// Writes a shared list as a list.
+#[cfg(feature = "serde")]
+fn as_list<S: serde::Serializer>(
+    list: &Arc<[&'static str]>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(list.iter())
 }
 
 impl Accepted {
@@ -238,7 +248,7 @@ fn factors(
     limits: &DeviceLimits,
     rate: f64,
 ) -> Result<[(f64, Rule); 4], SafetyError> {
-    let period = 1.0 / NumberError::check_positive("rate", rate, "Hz")?;
+    let period = 1.0 / NumberError::check_rate(rate)?;
     let least = limits.least_damping.positive()?;
     let max_stiffness = limits.max_stiffness.positive()?;
     let step = limits.encoder_step.not_negative()?;
@@ -270,7 +280,7 @@ mod tests {
             encoder_step: 3e-5,
             max_stiffness: 2500.0,
             max_damping: 4.0,
-            assumed: Cow::Borrowed(&["least_damping"]),
+            assumed: (&["least_damping"][..]).into(),
             ..DeviceProfile::unlimited("example")
         }
     }
@@ -333,7 +343,7 @@ mod tests {
         assert_eq!(accepted.factor, 0.25);
         assert_eq!(accepted.device_stiffness, 1000.0);
         assert_eq!(accepted.impedance.stiffness(), 250.0);
-        assert_eq!(*accepted.assumed, ["least_damping"]);
+        assert_eq!(accepted.assumed[..], ["least_damping"]);
     }
 
     #[test]

@@ -99,9 +99,13 @@ impl<const D: usize> Channel<D> {
         }
         let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
-        // The stages scaled the observed part by the same factor as the whole force.
-        let left = if force == all { 1.0 } else { force.dot(all) / all.dot(all) };
-        (force, if left == 1.0 { observed } else { observed * left })
+        if force == all {
+            return (force, observed);
+        }
+        // The stages shorten both parts by the same share. What the slew limit holds beyond that
+        // comes from the bodies: it counts as observed.
+        let share = if all == Vector::ZERO { 0.0 } else { force.dot(all) / all.dot(all) };
+        (force, force - free * share.clamp(0.0, 1.0))
     }
 
     /// Lowers the force limit; never raises it.

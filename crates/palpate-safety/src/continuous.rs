@@ -19,8 +19,9 @@ const ONSET: f64 = 0.9;
 /// to the heat. With the written force `F` and the time constant `τ`: `τ dh/dt = |F|² − h`,
 /// exact for a held force. While `√h` rises from 0.9 to 1 of the continuous force, longer
 /// forces are shortened towards the continuous force, in proportion. So a burst of any force
-/// passes at first, and `√h` never exceeds the continuous force. Forces below the continuous
-/// force are never changed.
+/// passes at first, and `√h` does not exceed the continuous force, if the time constant is so
+/// long that `√h` takes more than a tick from 0.9 to 1 of it. Forces below the continuous force
+/// are never changed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContinuousLimit {
     continuous_force: f64,

@@ -55,12 +55,24 @@ impl<const D: usize> TurnState<D> {
 /// where they do not.
 ///
 /// No safe default exists for an unknown device: start from [`unlimited`](Self::unlimited) and
-/// set what its maker states as safe.
+/// set every number that its maker states or that you measured. A number that is left out
+/// switches its rule off: without `max_force` any force passes, without `friction` and
+/// `least_damping` any stiffness.
 ///
 /// ```
 /// use palpate_safety::DeviceProfile;
 ///
-/// let device = DeviceProfile::unlimited("example").with_max_force(2.5).with_mass(0.05);
+/// let device = DeviceProfile::unlimited("example")
+///     .with_max_force(2.5)
+///     .with_continuous_force(0.8)
+///     .with_max_force_rate(1500.0)
+///     .with_max_stiffness(1000.0)
+///     .with_max_damping(5.0)
+///     .with_workspace_radius(0.08)
+///     .with_mass(0.05)
+///     .with_least_damping(0.2)
+///     .with_friction(0.1)
+///     .with_encoder_step(30e-6);
 /// assert_eq!((device.max_force, device.mass), (2.5, 0.05));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -258,6 +270,7 @@ impl DeviceProfile {
         at_most("max_stiffness", self.max_stiffness, device.max_stiffness, "N/m")?;
         at_most("max_damping", self.max_damping, device.max_damping, "N·s/m")?;
         at_most("least_damping", self.least_damping, device.least_damping, "N·s/m")?;
+        at_most("friction", self.friction, device.friction, "N")?;
         at_least("encoder_step", self.encoder_step, device.encoder_step, "m")?;
         match (&self.turning, &device.turning) {
             // Without a torque there is no limit to check.
@@ -444,11 +457,12 @@ impl TurningProfile {
         let (torque, of_device) = (self.continuous_torque, device.continuous_torque);
         at_most("continuous_torque", torque, of_device, "N·m")?;
         at_most("max_torque_rate", self.max_torque_rate, device.max_torque_rate, "N·m/s")?;
-        at_most("angular max_stiffness", self.max_stiffness, device.max_stiffness, "N·m/rad")?;
-        at_most("angular max_damping", self.max_damping, device.max_damping, "N·m·s/rad")?;
+        at_most("angular_max_stiffness", self.max_stiffness, device.max_stiffness, "N·m/rad")?;
+        at_most("angular_max_damping", self.max_damping, device.max_damping, "N·m·s/rad")?;
         let (damping, of_device) = (self.least_damping, device.least_damping);
-        at_most("angular least_damping", damping, of_device, "N·m·s/rad")?;
-        at_least("angular encoder_step", self.encoder_step, device.encoder_step, "rad")
+        at_most("angular_least_damping", damping, of_device, "N·m·s/rad")?;
+        at_most("angular_friction", self.friction, device.friction, "N·m")?;
+        at_least("angular_encoder_step", self.encoder_step, device.encoder_step, "rad")
     }
 }
 
@@ -478,8 +492,8 @@ pub trait Device<const D: usize> {
     fn profile(&self) -> &DeviceProfile;
 
     /// Reads every contact point into `points`, which has one place for each, at `time` [s]
-    /// since the servo started. For a device with encoder steps, the servo estimates velocities
-    /// from positions; those read here count for other devices.
+    /// since the servo started. The servo uses the velocities read here only if the device has no
+    /// encoder steps; otherwise it estimates them from positions.
     ///
     /// Real-time: called in every tick, and must return well within one. A call that blocks makes
     /// ticks late, and the watchdog of the safety chain then releases the hand.
@@ -492,7 +506,8 @@ pub trait Device<const D: usize> {
 
     /// Writes one force on the hand for every contact point [N].
     ///
-    /// Real-time: called in every tick, and once with zero forces when the servo stops.
+    /// Real-time: called in every tick, and once more with zero forces however the run ends: also
+    /// after a [`DeviceLost`], and after a panic of the device.
     ///
     /// # Errors
     ///
@@ -515,7 +530,7 @@ pub trait Device<const D: usize> {
     /// the plane only z is used.
     ///
     /// Real-time: called in every tick of a device with rotation, after [`write`](Self::write),
-    /// and once with zero torque when the servo stops.
+    /// and once more with zero torque however the run ends.
     ///
     /// # Errors
     ///

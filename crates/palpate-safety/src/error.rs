@@ -63,6 +63,38 @@ impl NumberError {
         }
     }
 
+    /// Checks that a rate [Hz] is from 1e-6 to 1e9, so that its period is one of a clock.
+    ///
+    /// # Errors
+    ///
+    /// If it is outside, or NaN.
+    pub fn check_rate(rate: f64) -> Result<f64, Self> {
+        if (1e-6..=1e9).contains(&rate) {
+            Ok(rate)
+        } else {
+            Err(Self { parameter: "rate", rule: "from 1e-6 to 1e9", value: rate, unit: "Hz" })
+        }
+    }
+
+    /// Checks that `value` is not negative; it may be infinite.
+    ///
+    /// # Errors
+    ///
+    /// If it is negative or NaN.
+    pub fn check_not_negative_or_infinite(
+        parameter: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Result<f64, Self> {
+        // Written so that NaN fails.
+        if value >= 0.0 {
+            Ok(value)
+        } else {
+            let rule = "zero or more";
+            Err(Self { parameter, rule, value, unit })
+        }
+    }
+
     /// Checks that `value` is positive; it may be infinite.
     ///
     /// # Errors

@@ -21,12 +21,12 @@ impl ForceLimit {
         Self { max_force }
     }
 
-    /// Lowers the limit; never raises it.
+    /// Lowers the limit; never raises it. A negative one counts as zero, NaN as no limit.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn lower(&mut self, max_force: f64) {
         // `min` ignores NaN.
-        self.max_force = self.max_force.min(max_force);
+        self.max_force = self.max_force.min(max_force).max(0.0);
     }
 
     /// The limited force; `None` if it is unchanged.

@@ -41,11 +41,11 @@ pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, Turni
 pub use effect::Effect;
 pub use error::{NumberError, SafetyError};
 pub use impedance::Impedance;
-pub use limit::{limited, part_of};
+pub use limit::{limited, shortening};
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};
-pub use rotation::{cross, in_place, in_space, turn_between, turned};
+pub use rotation::{turn_between, turned};
 pub use velocity::VelocityEstimator;
 pub use workspace::WorkspaceMap;
 pub use wrench::{PerMotion, SpatialVector, WrenchChain, WrenchState};

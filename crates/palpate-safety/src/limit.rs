@@ -8,7 +8,7 @@
 use palpate_field::Vector;
 
 /// Shortens `force` to `max_force` [N], keeping its direction; zero if it is not finite, whatever
-/// the limit.
+/// the limit, and zero if the limit is negative or NaN.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -32,7 +32,7 @@ pub(crate) fn shortened<const D: usize>(
     max_force: f64,
 ) -> Option<Vector<f64, D>> {
     // The force is finite even if the limit is not. Written so that NaN is shortened.
-    let most = max_force.min(f64::MAX);
+    let most = if max_force > 0.0 { max_force.min(f64::MAX) } else { 0.0 };
     let passes = force.norm() <= most;
     (!passes).then(|| of_length(force, most))
 }
@@ -44,12 +44,12 @@ fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, 
     force.normalized().map_or(Vector::ZERO, |direction| direction * length)
 }
 
-/// The factor in [0, 1] that shortens a force of size `now` to the size `before`; one if `now`
+/// The factor in [0, 1] that shortens a force of size `from` to the size `to`; one if `from`
 /// is no larger.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic.
-pub fn part_of(before: f64, now: f64) -> f64 {
-    if now > before { before / now } else { 1.0 }
+pub fn shortening(from: f64, to: f64) -> f64 {
+    if from > to { to / from } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -61,6 +61,14 @@ mod tests {
         assert_eq!(limited(Vector([3.0, -4.0]), 2.5), Vector([1.5, -2.0]));
         assert_eq!(limited(Vector([3.0, -4.0]), 5.0), Vector([3.0, -4.0]));
         assert_eq!(limited(Vector([0.0, 1e300, 0.0]), 2.0), Vector([0.0, 2.0, 0.0]));
+    }
+
+    /// A negative limit turned a force around, with its own length; NaN was no limit.
+    #[test]
+    fn a_limit_that_is_no_length_lets_nothing_pass() {
+        for limit in [-1e9, -0.0, 0.0, f64::NAN, f64::NEG_INFINITY] {
+            assert_eq!(limited(Vector([3.0, -4.0]), limit), Vector::ZERO, "{limit}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! The limits of a device in one form for translation and rotation, so that each rule and each
 //! stage is written once: torque corresponds to force, and angle to length.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::Rule;
 use crate::device::{DeviceProfile, TurningProfile};
@@ -50,7 +50,7 @@ pub struct DeviceLimits {
     /// The rules, in the order in which they are checked.
     pub(crate) rules: [Rule; 4],
     pub(crate) is_turning: bool,
-    pub(crate) assumed: Cow<'static, [&'static str]>,
+    pub(crate) assumed: Arc<[&'static str]>,
 }
 
 impl DeviceLimits {
@@ -69,7 +69,7 @@ impl DeviceLimits {
             encoder_step: Limit::new(device.encoder_step, "encoder_step", "m"),
             rules: [Rule::Passivity, Rule::Quantisation, Rule::MaxStiffness, Rule::MaxDamping],
             is_turning: false,
-            assumed: device.assumed.clone(),
+            assumed: device.assumed.as_ref().into(),
         }
     }
 
@@ -81,12 +81,12 @@ impl DeviceLimits {
             max_force: limit(device.max_torque, "max_torque", "N·m"),
             continuous_force: limit(device.continuous_torque, "continuous_torque", "N·m"),
             max_force_rate: limit(device.max_torque_rate, "max_torque_rate", "N·m/s"),
-            max_stiffness: limit(device.max_stiffness, "turning max_stiffness", "N·m/rad"),
-            max_damping: limit(device.max_damping, "turning max_damping", "N·m·s/rad"),
+            max_stiffness: limit(device.max_stiffness, "angular_max_stiffness", "N·m/rad"),
+            max_damping: limit(device.max_damping, "angular_max_damping", "N·m·s/rad"),
             mass: limit(device.inertia, "inertia", "kg·m²"),
-            least_damping: limit(device.least_damping, "turning least_damping", "N·m·s/rad"),
-            friction: limit(device.friction, "turning friction", "N·m"),
-            encoder_step: limit(device.encoder_step, "turning encoder_step", "rad"),
+            least_damping: limit(device.least_damping, "angular_least_damping", "N·m·s/rad"),
+            friction: limit(device.friction, "angular_friction", "N·m"),
+            encoder_step: limit(device.encoder_step, "angular_encoder_step", "rad"),
             rules: [
                 Rule::AngularPassivity,
                 Rule::AngularQuantisation,
@@ -94,7 +94,7 @@ impl DeviceLimits {
                 Rule::MaxAngularDamping,
             ],
             is_turning: true,
-            assumed: device.assumed.clone(),
+            assumed: device.assumed.as_ref().into(),
         }
     }
 }

@@ -88,11 +88,11 @@ pub struct PassivityReport {
 
 /// The passivity observer and controller of one contact point.
 ///
-/// **Observer.* A force is held over a tick, so the energy that it takes from the hand is
+/// **Observer.** A force is held over a tick, so the energy that it takes from the hand is
 /// exactly `−F_k · (x_{k+1} − x_k)`, whatever the motion between. The device's damping `b`
 /// dissipates at least `b |x_{k+1} − x_k|² / T` of it (Cauchy and Schwarz).
 ///
-/// **Credit.* A sampled spring gives out `K |Δx|² / 2` a tick more than it stored. Up to `K = 2
+/// **Credit.** A sampled spring gives out `K |Δx|² / 2` a tick more than it stored. Up to `K = 2
 /// b / T` the device is sure to dissipate as much, so the rendering is passive. Each tick then
 /// credits the loss to the balance, which never falls below the spring's energy, and the force
 /// is never changed. The controller measures whether this holds: it compares the leaks `−½
@@ -100,7 +100,7 @@ pub struct PassivityReport {
 /// leaks are larger, there is no credit, and all energy given out must have been taken in
 /// before.
 ///
-/// **Controller.* The whole force is scaled down until the energy that it gives out in the
+/// **Controller.** The whole force is scaled down until the energy that it gives out in the
 /// coming tick is no more than the balance plus a reserve. The motion is predicted from the
 /// velocity, and from the acceleration of the device's mass by this force and the one before.
 /// If the slew limit would prevent a fast removal of the force, the energy given out during the

@@ -46,22 +46,6 @@ pub fn turn_between<const D: usize>(from: &Rotation<D>, to: &Rotation<D>) -> Vec
     angle(*to * from.inverse())
 }
 
-/// A vector of the plane or of space, in space.
-pub fn in_space<const D: usize>(v: Vector<f64, D>) -> Vector<f64, 3> {
-    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
-}
-
-/// The first coordinates of a vector of space.
-pub fn in_place<const D: usize>(v: Vector<f64, 3>) -> Vector<f64, D> {
-    Vector(std::array::from_fn(|k| v.0.get(k).copied().unwrap_or(0.0)))
-}
-
-/// a × b.
-pub fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
-    let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
-    Vector([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-}
-
 /// The rotation by a vector: `R = I + (sin θ / θ) W + (2 sin²(θ/2) / θ²) W²` with `W v = w × v`
 /// and `θ = ‖w‖` (Rodrigues 1840).
 fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
@@ -74,8 +58,8 @@ fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
     };
     let column = |axis: usize| {
         let e = Vector::<f64, 3>::unit(axis);
-        let turned = cross(w, e);
-        e + turned * first + cross(w, turned) * second
+        let turned = w.cross(e);
+        e + turned * first + w.cross(turned) * second
     };
     let (x, y, z) = (column(0), column(1), column(2));
     let rows: [[f64; D]; D] = std::array::from_fn(|i| {

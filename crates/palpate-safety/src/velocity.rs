@@ -69,7 +69,7 @@ impl<const D: usize> VelocityEstimator<D> {
     /// finite.
     pub fn new(rate: f64, encoder_step: f64) -> Result<Self, SafetyError> {
         Ok(Self {
-            rate: NumberError::check_positive("rate", rate, "Hz")?,
+            rate: NumberError::check_rate(rate)?,
             step: NumberError::check_not_negative("encoder_step", encoder_step, "m")?
                 * (1.0 + SLACK),
             positions: [Vector::ZERO; LONGEST],
@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn wrong_numbers_are_named() {
         let error = VelocityEstimator::<3>::new(0.0, 0.0).unwrap_err();
-        assert_eq!(error.to_string(), "rate must be positive and finite, got 0 Hz");
+        assert_eq!(error.to_string(), "rate must be from 1e-6 to 1e9, got 0 Hz");
         assert!(VelocityEstimator::<3>::new(1e3, -1e-6).is_err());
         assert!(VelocityEstimator::<3>::new(1e3, f64::NAN).is_err());
     }

@@ -9,7 +9,6 @@ use palpate_field::{Aabb, Point, Pose, Rotation, Vector};
 
 use crate::device::PointState;
 use crate::error::{NumberError, SafetyError};
-use crate::rotation::{in_place, in_space};
 
 /// From device to world coordinates and back: `world = s R device + t`.
 ///
@@ -226,7 +225,7 @@ impl<const D: usize> WorkspaceMap<D> {
 
 /// Rotates a rotation-like vector by the pose; in the plane the vector lies along z and stays.
 fn about_axes<const D: usize>(pose: &Pose<D>, v: Vector<f64, 3>) -> Vector<f64, 3> {
-    if D < 3 { v } else { in_space(pose.transform_vector(in_place(v))) }
+    if D < 3 { v } else { pose.transform_vector(v.truncated()).in_space() }
 }
 
 #[cfg(test)]

@@ -171,6 +171,7 @@ impl<const D: usize> WrenchChain<D> {
         options: &SafetyOptions,
         rate: f64,
     ) -> Result<Self, SafetyError> {
+        let rate = NumberError::check_rate(rate)?;
         let PerMotion { along, about } = limits;
         let sides =
             PerMotion { along: AxisLimits::new(along)?, about: AxisLimits::new(about)? };

@@ -5,10 +5,12 @@
 
 use std::fmt;
 
+use palpate_field::ShapeError;
+
 /// Why a scene cannot be read or built.
 ///
 /// ```
-/// use palpate_scene::Scene;
+/// use palpate_scene::{Scene, SceneCause};
 ///
 /// let text = r#"{ "palpate": 1, "dimension": 3,
 ///   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": -0.02 } } } ] }"#;
@@ -18,8 +20,10 @@ use std::fmt;
 ///     "bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.02 m",
 /// );
 /// assert_eq!((error.line, error.column), (2, 54));
+/// assert!(matches!(error.cause.as_deref(), Some(SceneCause::Shape(_))));
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub struct SceneError {
     /// Where in the scene: keys joined by dots, places in lists in brackets;
     /// empty for the whole.
@@ -31,6 +35,18 @@ pub struct SceneError {
     pub column: usize,
     /// What is wrong there.
     pub problem: String,
+    /// The error behind the problem, if another crate found it.
+    pub cause: Option<Box<SceneCause>>,
+}
+
+/// The error behind a [`SceneError`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SceneCause {
+    /// The file cannot be read.
+    File(std::io::ErrorKind),
+    /// A shape cannot be built.
+    Shape(ShapeError),
 }
 
 impl fmt::Display for SceneError {

@@ -61,7 +61,7 @@ mod write;
 mod written_material;
 
 pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
-pub use error::SceneError;
+pub use error::{SceneCause, SceneError};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};

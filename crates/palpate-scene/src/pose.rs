@@ -47,8 +47,8 @@ pub enum WrittenRotation {
     AxisAngle(AxisAngle),
     /// In space: a quaternion `[x, y, z, w]` of any length but zero.
     Quaternion([f64; 4]),
-    /// The rows of a matrix: the same rotation to the bit if they are orthonormal within 1e-9,
-    /// made orthonormal if they are within 1e-6.
+    /// The rows of a matrix, orthonormal within 1e-6: the same rotation to the bit if they are so
+    /// to rounding, as those of a [`Rotation`] are.
     Rows(Vec<Vec<f64>>),
 }
 
@@ -254,7 +254,7 @@ impl Turning<2> for Turns {
 impl Turning<3> for Turns {
     fn rotation(written: &WrittenRotation) -> Result<Rotation<3>, Problem> {
         let seen = |key: Option<&str>, error: ShapeError| {
-            let problem = Problem::new(error.to_string());
+            let problem = Problem::of_shape(error);
             key.map_or(problem.clone(), |key| problem.under(key))
         };
         match written {
@@ -275,10 +275,6 @@ impl Turning<3> for Turns {
     }
 }
 
-/// How far from orthonormal rows may be that are kept to the bit: more than the rounding of any
-/// product of rotations, less than that of numbers written with nine digits.
-const KEPT: f64 = 1e-9;
-
 /// The rotation with these rows.
 pub(crate) fn of_rows<const D: usize>(rows: &[Vec<f64>]) -> Result<Rotation<D>, Problem> {
     let count = rows.len();
@@ -288,14 +284,7 @@ pub(crate) fn of_rows<const D: usize>(rows: &[Vec<f64>]) -> Result<Rotation<D>, 
         let problem = Problem::new(message);
         return Err(if count == 5 - D { problem.of_dimension() } else { problem });
     };
-    let read = |error: ShapeError| Problem::new(error.to_string());
-    let straight = Rotation::from_matrix(rows).map_err(read)?;
-    let numbers = straight.matrix().as_flattened().iter().zip(rows.as_flattened());
-    if numbers.into_iter().all(|(straight, given)| (straight - given).abs() <= KEPT) {
-        Rotation::from_rows(rows).map_err(read)
-    } else {
-        Ok(straight)
-    }
+    Rotation::from_rows(rows).map_err(Problem::of_shape)
 }
 
 /// The largest angle accepted [°]: beyond, less than a millionth of a degree is
@@ -327,7 +316,7 @@ pub(crate) fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, 
     let accepted = |x: f64| x.abs() <= palpate_field::LARGEST_LENGTH;
     if let Some(i) = components.iter().position(|x| !accepted(*x)) {
         let quantity = palpate_field::Quantity(components[i], Unit::Metre);
-        let message = format!("must be finite and at most 1e15, got {quantity}");
+        let message = format!("must be finite and at most 1e15 either way, got {quantity}");
         return Err(Problem::about(message).at(i));
     }
     Ok(Vector(components))

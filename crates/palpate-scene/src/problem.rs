@@ -7,7 +7,9 @@ use std::fmt;
 
 use serde::de::{self, Expected, Unexpected};
 
-use crate::error::SceneError;
+use palpate_field::ShapeError;
+
+use crate::error::{SceneCause, SceneError};
 use crate::json::Position;
 
 /// One step down into a file.
@@ -31,6 +33,7 @@ pub(crate) struct Problem {
     /// `true` if the other dimension may accept what is wrong here.
     of_dimension: bool,
     message: String,
+    cause: Option<Box<SceneCause>>,
 }
 
 impl Problem {
@@ -41,7 +44,19 @@ impl Problem {
             rooted: false,
             of_dimension: false,
             message: message.into(),
+            cause: None,
         }
+    }
+
+    /// What a shape refuses.
+    pub(crate) fn of_shape(error: ShapeError) -> Self {
+        let problem = Self::new(error.to_string());
+        Self { cause: Some(Box::new(SceneCause::Shape(error))), ..problem }
+    }
+
+    /// The same problem in other words.
+    pub(crate) fn saying(self, message: String) -> Self {
+        Self { message, ..self }
     }
 
     /// A message that begins with its verb: "must be positive".
@@ -110,7 +125,7 @@ impl Problem {
             self.message
         };
         let (line, column) = position.map_or((0, 0), |p| (p.line, p.column));
-        SceneError { path, line, column, problem }
+        SceneError { path, line, column, problem, cause: self.cause }
     }
 }
 

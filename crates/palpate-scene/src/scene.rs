@@ -12,7 +12,7 @@ use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::build::{self, AnyScene};
-use crate::error::SceneError;
+use crate::error::{SceneCause, SceneError};
 use crate::guide::WrittenGuide;
 use crate::json::{self, Document};
 use crate::motion::Motion;
@@ -172,6 +172,7 @@ impl Scene {
             line: 0,
             column: 0,
             problem: format!("cannot read {}: {error}", path.display()),
+            cause: Some(Box::new(SceneCause::File(error.kind()))),
         })?;
         Self::from_json(&text)
     }

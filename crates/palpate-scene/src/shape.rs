@@ -57,8 +57,8 @@ impl WrittenShape {
     ///
     /// # Errors
     ///
-    /// If the shape holds what files cannot say (a kernel, field or closure of a user), a rotation
-    /// that deviates from orthonormal by more than 1e-9, or more than a million nodes.
+    /// If the shape holds what files cannot say (a kernel, field or closure of a user), or more
+    /// than a million nodes.
     ///
     /// ```
     /// use palpate_field::Shape;

@@ -3,8 +3,7 @@
 
 //! Generators of trees and points, biased towards what breaks formulas.
 //!
-//! They draw from [`Unstructured`], so property tests and fuzzing share them. They fail only
-//! when a case runs out of entropy.
+//! They draw from [`Unstructured`], so property tests and fuzzing share them.
 #![expect(clippy::missing_errors_doc, reason = "all errors are those of Unstructured")]
 
 use arbitrary::{Result, Unstructured};
@@ -262,7 +261,9 @@ fn copies(u: &mut Unstructured<'_>, width: f64) -> Result<Copies> {
     Ok(match u.int_in_range(0..=3_u8)? {
         0 | 1 => Copies::One,
         2 => {
-            let first = u.int_in_range(-3..=1_i32)?;
+            // At times without the copy at the origin, and far from it.
+            let away = if u.ratio(1, 4)? { *u.choose(&[-1000, -5, 5, 1000])? } else { 0 };
+            let first = away + u.int_in_range(-3..=1_i32)?;
             Copies::Between { spacing, first, last: first + u.int_in_range(0..=4)? }
         }
         _ => Copies::Endless { spacing },

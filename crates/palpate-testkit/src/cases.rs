@@ -4,9 +4,14 @@
 //! Runs a property a fixed number of times.
 
 use arbitrary::Unstructured;
+use palpate_field::Shape;
+
+use crate::arbitrary::{self as draw, Turn};
+use crate::kernels::Space;
+use crate::tree::{Solid, Tree};
 
 /// Bytes of entropy a case may draw.
-const ENTROPY: usize = 1 << 14;
+const ENTROPY: usize = 1 << 16;
 
 /// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
@@ -27,7 +32,10 @@ pub fn check(
     for seed in 0..count {
         let bytes = entropy(seed);
         let guard = Seed(seed);
-        let outcome = property(&mut Unstructured::new(&bytes));
+        let mut input = Unstructured::new(&bytes);
+        let outcome = property(&mut input);
+        // Past its end an input draws zeros: the same case again and again.
+        assert!(!input.is_empty(), "{ENTROPY} bytes are too few");
         std::mem::forget(guard);
         if let Ok(Err(complaint)) = outcome {
             failures.push((seed, complaint));
@@ -48,6 +56,54 @@ pub fn check(
         }
     }
     panic!("{} of {count} cases fail\n{}", failures.len(), shown.join("\n"));
+}
+
+/// Checks `property` on `count` random trees and their shapes; their depths go from 1 to `deepest`
+/// in turn. Complaints name their tree.
+///
+/// # Panics
+///
+/// As [`check`]; also if a tree makes no shape.
+pub fn on_trees<const D: usize>(
+    count: u64,
+    deepest: usize,
+    mut property: impl FnMut(
+        &mut Unstructured<'_>,
+        &Tree<D>,
+        &Shape<D>,
+    ) -> arbitrary::Result<Result<(), String>>,
+) where
+    Space: Solid<D> + Turn<D>,
+{
+    let mut drawn = 0;
+    check(count, |u| {
+        let depth = 1 + drawn % deepest;
+        drawn += 1;
+        let tree = draw::tree(u, depth)?;
+        let outcome = match tree.shape() {
+            Ok(shape) => property(u, &tree, &shape)?,
+            Err(error) => Err(error.to_string()),
+        };
+        Ok(outcome.map_err(|complaint| format!("{complaint}\n  {tree:?}")))
+    });
+}
+
+/// Makes two tests of each law, in the plane and in space, by the `on_trees` of the module.
+#[macro_export]
+macro_rules! in_both_dimensions {
+    ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
+        $(mod $name {
+            #[test]
+            fn in_the_plane() {
+                super::on_trees::<2>($count, $points, super::$law);
+            }
+
+            #[test]
+            fn in_space() {
+                super::on_trees::<3>($count, $points, super::$law);
+            }
+        })*
+    };
 }
 
 /// Checks a `property` that panics if it fails, for the seeds `0..count`. Cases that cannot be

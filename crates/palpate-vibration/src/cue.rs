@@ -10,7 +10,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::threshold::perceptual_weight;
-use palpate_haptics::{HapticsError, NumberError, Touch};
+use palpate_haptics::{HapticsError, Impact, NumberError, Touch};
 
 /// A decaying sinusoid: `a exp(−d t) sin(2π f t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +24,10 @@ pub struct Tap {
     pub decay: f64,
 }
 
-impl Tap {
+impl From<&Impact> for Tap {
     /// The ringing of a tap on a material.
-    #[must_use]
-    pub fn from_data(impact: &palpate_haptics::Impact) -> Self {
-        let palpate_haptics::Impact { amplitude, frequency, decay, .. } = *impact;
+    fn from(impact: &Impact) -> Self {
+        let Impact { amplitude, frequency, decay, .. } = *impact;
         Self { amplitude, frequency, decay }
     }
 }

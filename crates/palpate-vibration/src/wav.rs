@@ -5,6 +5,9 @@
 
 use std::io::{self, Seek, Write};
 
+/// The samples that fit into a WAV file: its header counts bytes in 32 bits.
+const MOST_SAMPLES: usize = (1 << 31) - 1024;
+
 /// Writes samples as a WAV file of one channel and 16 bits. Samples are clamped to [−1, 1]; NaN
 /// becomes silence.
 ///
@@ -13,8 +16,8 @@ use std::io::{self, Seek, Write};
 ///
 /// # Errors
 ///
-/// The errors of `file`, and an error if there are more than 2³¹ samples, the most that a WAV
-/// file holds.
+/// The errors of `file`, and an error if there are more than 2³¹ − 1024 samples, the most that
+/// fit into a WAV file.
 ///
 /// ```
 /// use palpate_vibration::write_wav;
@@ -39,7 +42,11 @@ pub fn write_wav(
         sample_format: hound::SampleFormat::Int,
     };
     let mut writer = hound::WavWriter::new(file, format).map_err(io_error)?;
-    for sample in samples {
+    for (count, sample) in samples.into_iter().enumerate() {
+        // The writer's count of bytes would begin again at zero.
+        if count >= MOST_SAMPLES {
+            return Err(io::Error::other("a WAV file holds at most 2³¹ − 1024 samples"));
+        }
         // `as` cuts off, and makes NaN zero.
         let rounded = (f64::from(sample) * f64::from(i16::MAX)).round() as i16;
         writer.write_sample(rounded).map_err(io_error)?;

@@ -20,11 +20,9 @@ impl Device<2> for Carriage {
     fn points(&self) -> usize {
         1
     }
-
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
-
     fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
         let (sin, cos) = (std::f64::consts::PI * time).sin_cos();
         let speed = 0.048 * std::f64::consts::PI;
@@ -34,7 +32,6 @@ impl Device<2> for Carriage {
         }
         Ok(())
     }
-
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
         for force in forces {
             self.volts = [0.5 * force[0], 0.5 * force[1]];
@@ -46,13 +43,18 @@ impl Device<2> for Carriage {
 fn main() -> Result<(), Error> {
     let profile = DeviceProfile::unlimited("carriage")
         .with_max_force(1.5)
+        .with_continuous_force(0.5)
         .with_max_force_rate(3000.0)
+        .with_max_stiffness(1500.0)
+        .with_max_damping(10.0)
         .with_mass(0.1)
-        .with_least_damping(0.5);
+        .with_least_damping(0.5)
+        .with_friction(0.2)
+        .with_encoder_step(20e-6);
     let mut device = Carriage { profile, volts: [0.0; 2] };
     let disc = Shape::circle(0.02)?.translated([0.06, 0.0])?;
     let mut servo = Servo::for_device(disc, &device)?;
-    let report = servo.run(&mut device, Seconds(2.0))?.unless_lost()?;
+    let report = servo.run(&mut device, Seconds(2.0))?.unless_failed()?;
     println!("{} ticks, at most {:.2} N", report.ticks, report.largest_force);
     Ok(())
 }

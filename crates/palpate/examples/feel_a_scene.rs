@@ -36,7 +36,7 @@ fn main() -> Result<(), Error> {
         let [x, y, z] = row.device.0;
         writeln!(csv, "{},{x},{y},{z},{}", row.time_s, row.force.norm())?;
     }
-    ended.report.clone().unless_lost()?;
+    ended.report.clone().unless_failed()?;
     println!(
         "{} ticks, at most {:.2} N: {}",
         ended.report.ticks,

@@ -8,6 +8,8 @@ use palpate_field::ShapeError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
 use palpate_mesh::MeshError;
 use palpate_query::QueryError;
+#[cfg(feature = "scene")]
+use palpate_scene::SceneCause;
 
 /// What went wrong in any crate of palpate.
 ///
@@ -25,6 +27,22 @@ use palpate_query::QueryError;
 /// assert_eq!((error.kind(), error.parameter()), (ErrorKind::Shape, Some("radius")));
 /// assert_eq!((error.value(), error.unit()), (Some(-1.0), Some("m")));
 /// assert_eq!((error.kind().name(), error.rule()), ("shape", Some("positive")));
+/// ```
+///
+/// What a scene file holds is refused with the same data, and its place:
+///
+/// ```
+/// # #[cfg(feature = "scene")] {
+/// use palpate::Error;
+/// use palpate::scene::Scene;
+///
+/// let text = r#"{ "palpate": 1, "dimension": 3,
+///   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": -0.02 } } } ] }"#;
+/// let error = Error::from(Scene::from_json(text).unwrap_err());
+/// assert_eq!((error.parameter(), error.value()), (Some("radius"), Some(-0.02)));
+/// assert_eq!((error.line(), error.path()), (Some(2), Some("bodies[0].shape.ball.radius")));
+/// assert_eq!(Error::from(Scene::from_file("no such file").unwrap_err()).kind().name(), "file");
+/// # }
 /// ```
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
@@ -53,6 +71,12 @@ pub enum Error {
     UnknownMaterial(#[from] UnknownMaterial),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
+    /// A run of a servo did not end as asked.
+    #[cfg(feature = "std-loop")]
+    Run(#[from] palpate_loop::RunError),
+    /// There is no local search of that name.
+    #[cfg(feature = "local")]
+    UnknownMethod(#[from] palpate_local::UnknownMethod),
     /// A file cannot be read or written.
     File(#[from] std::io::Error),
 }
@@ -73,10 +97,12 @@ pub enum ErrorKind {
     Scene,
     /// A picture cannot be drawn.
     Plot,
-    /// There is no device or material of that name.
+    /// There is no device, material or local search of that name.
     UnknownName,
     /// A device no longer answers.
     DeviceLost,
+    /// The loop of a servo panicked, which is a defect.
+    Panicked,
     /// A file cannot be read or written.
     File,
 }
@@ -94,6 +120,7 @@ impl ErrorKind {
             Self::Plot => "plot",
             Self::UnknownName => "unknown_name",
             Self::DeviceLost => "device_lost",
+            Self::Panicked => "panicked",
             Self::File => "file",
         }
     }
@@ -111,11 +138,20 @@ impl Error {
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,
             #[cfg(feature = "scene")]
-            Self::Scene(_) => ErrorKind::Scene,
+            Self::Scene(error) => match error.cause.as_deref() {
+                Some(SceneCause::File(_)) => ErrorKind::File,
+                _ => ErrorKind::Scene,
+            },
             #[cfg(feature = "plot")]
             Self::Plot(_) => ErrorKind::Plot,
             Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
+            #[cfg(feature = "std-loop")]
+            Self::Run(palpate_loop::RunError::DeviceLost(_)) => ErrorKind::DeviceLost,
+            #[cfg(feature = "std-loop")]
+            Self::Run(_) => ErrorKind::Panicked,
+            #[cfg(feature = "local")]
+            Self::UnknownMethod(_) => ErrorKind::UnknownName,
             Self::File(_) => ErrorKind::File,
         }
     }
@@ -232,7 +268,24 @@ impl Error {
     fn shape_error(&self) -> Option<&ShapeError> {
         match self {
             Self::Shape(error) | Self::Haptics(HapticsError::Shape(error)) => Some(error),
+            #[cfg(feature = "scene")]
+            Self::Scene(error) => match error.cause.as_deref() {
+                Some(SceneCause::Shape(error)) => Some(error),
+                _ => None,
+            },
             _ => None,
         }
+    }
+}
+
+impl From<SafetyError> for Error {
+    fn from(error: SafetyError) -> Self {
+        Self::Haptics(error.into())
+    }
+}
+
+impl From<NumberError> for Error {
+    fn from(error: NumberError) -> Self {
+        Self::Haptics(error.into())
     }
 }

@@ -4,9 +4,10 @@
 //! Signed distance functions that can be touched.
 //!
 //! This crate re-exports the crates of palpate: the [`field`]s and their
-//! promises, [`query`] for where things touch, [`mesh`]es, the [`haptics`] proxy and servo,
-//! [`devices`] to touch with, [`scene`] files, [`plot`]s. The [`prelude`] has what most programs
-//! need.
+//! promises, [`query`] for where things touch, [`local`] searches of the literature, [`mesh`]es,
+//! the [`haptics`] proxy and servo with its safety chain, the [`servo_loop`] that runs it
+//! (`palpate-loop`), [`devices`] to touch with, [`vibration`], [`scene`] files, [`plot`]s. The
+//! [`prelude`] has what most programs need.
 //!
 //! # Examples
 //!
@@ -29,7 +30,7 @@
 //! let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let mut servo = Servo::for_device([Body::new(plate, Material::wood())?], &device)?;
-//! let report = servo.run(&mut device, Seconds(0.01))?.unless_lost()?; // in real time
+//! let report = servo.run(&mut device, Seconds(0.01))?.unless_failed()?; // in real time
 //! assert_eq!(report.ticks, 10);
 //! # Ok(())
 //! # }
@@ -39,8 +40,8 @@
 //!
 //! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares batches and worlds
 //! among threads; `plot` draws; `scene` reads and writes scene files; `serde` implements serde's
-//! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration` makes
-//! commands for motors and audio. Off by default: `local` has local searches from the
+//! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration`
+//! makes commands for motors and audio. Off by default: `local` has local searches from the
 //! literature, without bounds; `mint` and `glam` convert vectors and poses.
 
 mod error;
@@ -63,7 +64,9 @@ pub use palpate_scene as scene;
 #[cfg(feature = "vibration")]
 pub use palpate_vibration as vibration;
 
-/// The examples of README.md, as tests.
+/// The examples of README.md and the guide, as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/guide/bindings.md")]
+#[doc = include_str!("../../../docs/guide/devices.md")]
+struct Pages;

@@ -13,7 +13,7 @@ use std::str::FromStr;
 use palpate::field::{Point, Shape, Vector};
 use palpate::local::{Descent, ElementMethod, UnknownMethod};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
-use palpate::query::{Certified, Element, Limits, Workspace, minimum};
+use palpate::query::{Certified, Element, ElementWorkspace, Limits, minimum};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
@@ -91,7 +91,7 @@ where
     let answer = Answer {
         method,
         found: method.descend(&scene.whole, element),
-        certified: minimum(&scene.whole, element, &limits, &mut Workspace::new())
+        certified: minimum(&scene.whole, element, &limits, &mut ElementWorkspace::new())
             .map_err(Failure::input)?,
     };
     answer.print(options.json)?;

@@ -6,7 +6,7 @@
 use palpate::query::AtPoint;
 use serde_json::{Value, json};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+use crate::input::AXES;
 
 pub(crate) fn to_json<const D: usize>(answer: &AtPoint<D>) -> Value {
     json!({

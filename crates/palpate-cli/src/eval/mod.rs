@@ -20,7 +20,14 @@ use crate::output::{self, Destination, Files};
 pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
     let destination = match &options.output {
-        Some(path) => Files::reading(inputs.into_iter().flatten()).output(path)?,
+        Some(path) => {
+            let mut files = Files::reading(inputs.into_iter().flatten());
+            let destination = files.output(path)?;
+            if let Some(part) = destination.part() {
+                files.output(&part)?;
+            }
+            destination
+        }
         None => Destination::standard(),
     };
     match &input::scene(Some(&options.scene))?.scene {

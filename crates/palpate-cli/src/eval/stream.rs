@@ -36,7 +36,15 @@ pub(crate) fn run<const D: usize>(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options.threads)).build();
     let pool = pool.map_err(Failure::input)?;
     let stream = Stream { shape, points, as_json: options.json, pool, interrupt };
-    destination.write(|out| stream.evaluate(out))
+    let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
+    let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
+    if outcome == Outcome::Interrupted {
+        let place = destination.part().map_or_else(String::new, |part| {
+            format!("; their answers are in {}", part.display())
+        });
+        output::remark(format_args!("interrupted after {done} points{place}"));
+    }
+    Ok(outcome)
 }
 
 /// The requested number of threads, but no more than the machine runs at once: further ones
@@ -68,8 +76,9 @@ struct Rows<const D: usize> {
 }
 
 impl<const D: usize> Stream<'_, D> {
-    /// Writes the answers, batch by batch. An interrupted run ends after a whole row.
-    fn evaluate(&self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    /// Writes the answers, batch by batch, and returns for how many points. An interrupted run
+    /// ends after a whole row.
+    fn evaluate(&self, out: &mut dyn Write) -> Result<(Outcome, usize), Failure> {
         let file = File::open(self.points).map_err(|error| self.wrong(error))?;
         let bar = bar(file.metadata().map(|metadata| metadata.len()).unwrap_or(0));
         let mut rows = self.rows(file)?;
@@ -84,14 +93,11 @@ impl<const D: usize> Stream<'_, D> {
             out.flush()?;
             self.read(&mut rows, &mut batch)?;
             if self.interrupt.is_asked() {
-                output::remark(format_args!(
-                    "interrupted after {done} points, whose answers are kept"
-                ));
-                return Ok(Outcome::Interrupted);
+                return Ok((Outcome::Interrupted, done));
             }
             if batch.is_empty() {
                 bar.finish_and_clear();
-                return Ok(Outcome::Yes);
+                return Ok((Outcome::Yes, done));
             }
             let texts: Vec<String> = self.pool.install(|| {
                 let answers = |points| answers(self.shape, points, self.as_json);
@@ -108,7 +114,7 @@ impl<const D: usize> Stream<'_, D> {
     fn rows(&self, file: File) -> Result<Rows<D>, Failure> {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
         let header = reader.headers().map_err(|error| self.wrong(error))?;
-        let columns = columns::<D>(header, "").map_err(|problem| self.wrong(problem))?;
+        let columns = columns::<D>(header).map_err(|problem| self.wrong(problem))?;
         Ok(Rows { reader, columns, record: StringRecord::new() })
     }
 

@@ -12,13 +12,13 @@ mod slices;
 mod tool;
 mod vibration;
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::Vector;
-use palpate::haptics::{Acceptance, Accepted, Probe, Progress, ToolOptions};
+use palpate::haptics::{Acceptance, Probe, Progress, ToolOptions};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
@@ -144,42 +144,23 @@ where
     }
 
     let written = outputs.write(scene, &recorder, options.rate, &report::title(name, &outcome));
-    let mut out = output::answer();
-    if options.json {
-        let mut json = serde_json::to_value(&outcome)?;
-        json["device"] = device.profile().name.as_ref().into();
-        if servo.tool().is_some() {
-            json["coupling"] = serde_json::to_value(accepted.first())?;
-            if let Some(turning) = accepted.get(1) {
-                json["angular_coupling"] = serde_json::to_value(turning)?;
-            }
-        } else {
-            json["bodies"] = accepted_as_json(scene, &accepted)?;
-        }
-        out.json(&json)?;
-    } else {
-        write!(out, "{}", report::text(name, &outcome, (&servo, device.profile(), &accepted)))?;
-    }
-    // After the report, which is whole even if a file cannot be written.
-    written?;
+    let felt = report::Felt {
+        name,
+        scene,
+        report: &outcome,
+        servo: &servo,
+        device: device.profile(),
+        accepted: &accepted,
+    };
+    // The report is whole even if a file cannot be written, and a reader that closed the pipe
+    // hides no file that is missing.
+    written.and(felt.print(options.json))?;
     Ok(match outcome.ending {
+        _ if !outcome.is_released => Outcome::No,
         Ending::Finished => Outcome::Yes,
         Ending::Interrupted => Outcome::Interrupted,
         Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
     })
-}
-
-/// The accepted stiffness and damping of each body.
-fn accepted_as_json<const D: usize>(
-    scene: &BuiltScene<D>,
-    accepted: &[Accepted],
-) -> Result<serde_json::Value, serde_json::Error> {
-    let bodies = scene.bodies.iter().zip(accepted).map(|(body, accepted)| {
-        let mut json = serde_json::to_value(accepted)?;
-        json["name"] = body.name.as_str().into();
-        Ok(json)
-    });
-    bodies.collect()
 }
 
 /// The ticks of a run.

@@ -4,14 +4,19 @@
 //! The report of a run, as text.
 
 use std::fmt::Write;
+use std::io::Write as _;
+use std::path::Path;
 
 use palpate::haptics::{
     Accepted, Body, DeviceProfile, PassivityReport, Progress, Rule, SafetyReport, Servo,
     Surface, TurningReport,
 };
+use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Ending, RunReport, ToolReport};
+use serde_json::Value;
 
-use crate::output::shown;
+use crate::outcome::Failure;
+use crate::output::{self, shown};
 use crate::times::{quantiles, write_histogram};
 
 /// The line that is shown while the servo runs.
@@ -33,32 +38,61 @@ pub(crate) fn title(name: &str, report: &RunReport) -> String {
         (None, 1) => "one point",
         (None, _) => "several points",
     };
-    format!("{}, felt with {points}", file_name(name))
+    format!("{}, felt with {points}", crate::plot::title(Path::new(name)))
 }
 
-fn file_name(name: &str) -> String {
-    let name = std::path::Path::new(name).file_stem().unwrap_or_default();
-    name.to_string_lossy().replace('_', " ")
+/// A run that has ended.
+pub(super) struct Felt<'a, const D: usize> {
+    pub(super) name: &'a str,
+    pub(super) scene: &'a BuiltScene<D>,
+    pub(super) report: &'a RunReport,
+    pub(super) servo: &'a Servo<D>,
+    pub(super) device: &'a DeviceProfile,
+    pub(super) accepted: &'a [Accepted],
 }
 
-/// The whole report.
-pub(crate) fn text<const D: usize>(
-    name: &str,
-    report: &RunReport,
-    felt: (&Servo<D>, &DeviceProfile, &[Accepted]),
-) -> String {
-    let mut out = String::new();
-    write_report(&mut out, name, report, felt).unwrap_or_default();
-    out
+impl<const D: usize> Felt<'_, D> {
+    /// Prints the report.
+    pub(super) fn print(&self, as_json: bool) -> Result<(), Failure> {
+        let mut out = output::answer();
+        if as_json {
+            out.json(&self.json()?)?;
+        } else {
+            let mut text = String::new();
+            write_report(&mut text, self).unwrap_or_default();
+            out.write_all(text.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    fn json(&self) -> Result<Value, serde_json::Error> {
+        let mut json = serde_json::to_value(self.report)?;
+        json["device"] = self.device.name.as_ref().into();
+        if self.servo.tool().is_some() {
+            json["coupling"] = serde_json::to_value(self.accepted.first())?;
+            if let Some(turning) = self.accepted.get(1) {
+                json["angular_coupling"] = serde_json::to_value(turning)?;
+            }
+        } else {
+            json["bodies"] = self.bodies_json()?;
+        }
+        Ok(json)
+    }
+
+    /// The accepted stiffness and damping of each body.
+    fn bodies_json(&self) -> Result<Value, serde_json::Error> {
+        let bodies = self.scene.bodies.iter().zip(self.accepted).map(|(body, accepted)| {
+            let mut json = serde_json::to_value(accepted)?;
+            json["name"] = body.name.as_str().into();
+            Ok(json)
+        });
+        bodies.collect()
+    }
 }
 
-fn write_report<const D: usize>(
-    out: &mut String,
-    name: &str,
-    report: &RunReport,
-    (servo, profile, accepted): (&Servo<D>, &DeviceProfile, &[Accepted]),
-) -> std::fmt::Result {
-    let name = shown(name);
+fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    let Felt { report, servo, device, accepted, .. } = felt;
+    let name = shown(felt.name);
     let options = servo.options();
     let surfaces = || servo.bodies().bodies().iter().map(Body::surface);
     match &report.tool {
@@ -84,7 +118,7 @@ fn write_report<const D: usize>(
         )?,
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
-    writeln!(out, "  device         {}", profile.name)?;
+    writeln!(out, "  device         {}", device.name)?;
     match (&report.tool, accepted.split_first()) {
         (Some(_), Some((coupling, turning))) => {
             write_accepted(
@@ -110,6 +144,9 @@ fn write_report<const D: usize>(
         Ending::Panicked { message } => {
             writeln!(out, "  the servo panicked, forces were set to zero: {message}")?;
         }
+    }
+    if !report.is_released {
+        writeln!(out, "  the device did not take the zero forces at the end")?;
     }
     let share = 100.0 * report.contact_time / report.duration.max(f64::MIN_POSITIVE);
     writeln!(out, "  ticks          {} at {} Hz", report.ticks, report.rate)?;

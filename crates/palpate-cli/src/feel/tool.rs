@@ -25,6 +25,9 @@ const SWINGS: [f64; 3] = [3.1, 4.3, 5.7];
 /// Points of the swinging path per second.
 const SWING_POINTS: f64 = 20.0;
 
+/// The most points of the swinging path: those of half a day.
+const MOST_SWING_POINTS: f64 = 1e6;
+
 /// A tool with a shape, and the places that its origin cannot take.
 pub(super) struct Held<const D: usize> {
     pub(super) tool: Tool<D>,
@@ -67,7 +70,14 @@ impl<const D: usize> Held<D> {
 
 /// The rotation of the built-in hand over `duration` [s], for a device with rotation.
 pub(super) fn turns(duration: f64) -> Result<HandPath<3>, Failure> {
-    let steps = (SWING_POINTS * duration).ceil().max(1.0) as usize;
+    let steps = (SWING_POINTS * duration).ceil().max(1.0);
+    if steps > MOST_SWING_POINTS {
+        let longest = MOST_SWING_POINTS / SWING_POINTS;
+        let problem =
+            format!("the built-in hand turns a tool for at most {longest} s, got {duration} s");
+        return Err(Failure::input(problem));
+    }
+    let steps = steps as usize;
     let times: Vec<_> = (0..=steps).map(|i| i as f64 / SWING_POINTS).collect();
     let turn = |time: &f64| {
         Vector(SWINGS.map(|period| SWING * (std::f64::consts::TAU * time / period).sin()))

@@ -68,7 +68,7 @@ fn cue<const D: usize>(
         normal_speed: -outward,
         slide_speed: (velocity - row.normal * outward).norm(),
         wavelength: body.material.texture.as_ref().map(|texture| texture.wavelength),
-        impact: body.material.impact.as_ref().map(Tap::from_data),
+        impact: body.material.impact.as_ref().map(Tap::from),
         began: last.is_some_and(|last| !last.contact),
     }
 }

@@ -70,8 +70,7 @@ impl Measured {
 }
 
 pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
-    let rate =
-        NumberError::check_positive("rate", options.rate, "Hz").map_err(Failure::input)?;
+    let rate = NumberError::check_rate(options.rate).map_err(Failure::input)?;
     let duration = NumberError::check_positive("duration", options.duration, "s")
         .map_err(Failure::input)?;
     if rate > MOST_RATE {

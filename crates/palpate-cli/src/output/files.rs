@@ -91,9 +91,11 @@ fn direct(path: &Path) -> Destination {
     Destination { name: path.to_owned(), target: Target::Direct }
 }
 
-/// `true` for names of open files, such as `/dev/stdout`.
+/// `true` for names of open files, such as `/dev/stdout`; other files below `/dev`, as in
+/// `/dev/shm`, are files as any.
 fn is_special(path: &Path) -> bool {
-    path.starts_with("/dev") || path.starts_with("/proc")
+    let open_files = ["/dev/fd", "/dev/stdin", "/dev/stdout", "/dev/stderr", "/proc"];
+    open_files.iter().any(|open| path.starts_with(open))
 }
 
 /// An existing file, to be replaced, and its real path.
@@ -201,6 +203,20 @@ mod tests {
             assert!(said.contains(why), "{place}: {said}");
         }
         assert_eq!(fs::read_dir(folder.0.path()).unwrap().count(), 1);
+    }
+
+    /// A file in `/dev/shm` was written as a pipe is: after a run it could not be made, and an
+    /// old one grew.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_in_shared_memory_is_a_file() {
+        let Ok(folder) = tempfile::tempdir_in("/dev/shm") else { return };
+        let place = folder.path().join("trace.csv");
+        for text in ["the old trace", "new"] {
+            let destination = Files::default().output(&place).unwrap();
+            destination.write(|out| Ok(out.write_all(text.as_bytes())?)).unwrap();
+            assert_eq!(fs::read_to_string(&place).unwrap(), text);
+        }
     }
 
     #[cfg(unix)]

@@ -54,10 +54,29 @@ impl Destination {
         &self.name
     }
 
+    /// Where an output goes that is not whole: `NAME.part`, or `None` if the destination cannot
+    /// be replaced.
+    pub(crate) fn part(&self) -> Option<PathBuf> {
+        match &self.target {
+            Target::Standard | Target::Direct => None,
+            Target::Replaced(place) => Some(part(place)),
+        }
+    }
+
     /// Writes what `fill` writes. If that fails, an existing file stays as it was.
     pub(crate) fn write<T>(
         &self,
         fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        self.write_whole(fill, |_| true)
+    }
+
+    /// As [`write`](Self::write), but an output that is not whole goes to
+    /// [`part`](Self::part), and an existing file stays as it was.
+    pub(crate) fn write_whole<T>(
+        &self,
+        fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+        is_whole: impl FnOnce(&T) -> bool,
     ) -> Result<T, Failure> {
         match &self.target {
             Target::Standard => filled(io::stdout().lock(), fill),
@@ -67,7 +86,7 @@ impl Destination {
                 let file = OpenOptions::new().append(true).open(&self.name);
                 file.map_err(Failure::from).and_then(|file| filled(file, fill))
             }
-            Target::Replaced(place) => replaced(place, fill),
+            Target::Replaced(place) => replaced(place, fill, is_whole),
         }
         .map_err(|failure| match failure {
             Failure::Output(error) if !self.name.as_os_str().is_empty() => {
@@ -89,13 +108,18 @@ fn filled<T>(
     Ok(answer)
 }
 
-/// Calls `fill` with a new file beside `place`, and renames it to `place`.
+/// Calls `fill` with a new file beside `place`, and renames it to `place`, or to its part.
 fn replaced<T>(
     place: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+    is_whole: impl FnOnce(&T) -> bool,
 ) -> Result<T, Failure> {
     let file = beside(place)?;
     let answer = filled(file.as_file(), fill)?;
+    if !is_whole(&answer) {
+        file.persist(part(place)).map_err(|refused| refused.error)?;
+        return Ok(answer);
+    }
     if let Ok(old) = fs::metadata(place) {
         file.as_file().set_permissions(old.permissions())?;
         // Synchronised first, so the old file goes only once the new one is on the disk.
@@ -103,6 +127,13 @@ fn replaced<T>(
     }
     file.persist(place).map_err(|refused| refused.error)?;
     Ok(answer)
+}
+
+/// `NAME.part`.
+fn part(place: &Path) -> PathBuf {
+    let mut part = place.as_os_str().to_owned();
+    part.push(".part");
+    part.into()
 }
 
 /// Creates a folder for outputs, and missing ones above it.
@@ -163,6 +194,18 @@ mod tests {
         destination(&place).write(|out| Ok(out.write_all(b"new")?)).unwrap();
         assert_eq!(fs::read(&place).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn an_output_that_is_not_whole_has_a_file_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("out.csv");
+        fs::write(&place, "old").unwrap();
+        let destination = destination(&place);
+        destination.write_whole(|out| Ok(out.write_all(b"half")?), |()| false).unwrap();
+        assert_eq!(fs::read(&place).unwrap(), b"old");
+        assert_eq!(fs::read(destination.part().unwrap()).unwrap(), b"half");
+        assert_eq!(names(folder.path()), ["out.csv", "out.csv.part"]);
     }
 
     #[cfg(unix)]

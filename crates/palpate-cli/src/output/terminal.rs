@@ -51,10 +51,13 @@ pub(crate) fn ended(outcome: Outcome) -> Result<Outcome, Failure> {
 
 /// Prints help on standard output, or an error of the command line on standard error; returns
 /// the exit status.
-pub(crate) fn usage(refused: &clap::Error) -> u8 {
-    // Ignored: without standard error there is nowhere to report the failure.
-    let _ = refused.print();
-    u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS)
+pub(crate) fn usage(refused: &clap::Error) -> Result<u8, Failure> {
+    let printed = refused.print().and_then(|()| io::stdout().flush());
+    // Without standard error there is nowhere to report that an error could not be printed.
+    if !refused.use_stderr() {
+        printed?;
+    }
+    Ok(u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS))
 }
 
 /// Prints on standard error why a command fails.

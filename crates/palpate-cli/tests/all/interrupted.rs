@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Ctrl-C and SIGTERM: what was done is written and reported.
+//! Ctrl-C, SIGTERM and the end of a terminal: what was done is written and reported.
 #![cfg(unix)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::common::{Folder, program};
 
@@ -19,7 +19,10 @@ struct Run(Child);
 
 impl Run {
     fn start(arguments: &[&str]) -> Self {
-        let mut command = program(arguments);
+        Self::of(program(arguments))
+    }
+
+    fn of(mut command: Command) -> Self {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         Self(command.spawn().unwrap())
     }
@@ -48,7 +51,7 @@ fn line(pipe: &mut impl BufRead) -> String {
 
 #[test]
 fn feel_ends_with_trace_picture_and_report() {
-    for signal in [SIGINT, SIGTERM] {
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
         let folder = Folder::new();
         let (trace, plot) = (folder.name("trace.csv"), folder.name("touch.svg"));
         let mut run = Run::start(&[
@@ -103,6 +106,26 @@ fn eval_ends_after_whole_rows() {
     assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
     assert_eq!((1 + rest.len()) % 65_536, 0);
     assert!(rest.iter().all(|line| *line == first.trim_end()));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_that_outlives_its_terminal_goes_on() {
+    let eval = program(&["eval", "scenes/s1.json", "--points", "/dev/stdin"]);
+    // As `nohup` does.
+    let mut ignoring = Command::new("sh");
+    ignoring.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]);
+    ignoring.arg(eval.get_program()).args(eval.get_args());
+    ignoring.current_dir(eval.get_current_dir().unwrap());
+    let mut run = Run::of(ignoring);
+    let mut points = run.0.stdin.take().unwrap();
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    writeln!(points, "x_m,y_m,z_m\n0.1,0.2,0.3").unwrap();
+    assert!(line(&mut answers).starts_with("x_m,"));
+    run.signal(SIGHUP);
+    drop(points);
+    assert!(line(&mut answers).starts_with("0.1,0.2,0.3,"));
+    assert_eq!(run.0.wait().unwrap().code(), Some(0));
 }
 
 #[test]

@@ -111,7 +111,9 @@ fn a_full_disk_keeps_the_report() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_is_an_error() {
-    for command in [&["shapes"][..], &["schema"], &["check", "scenes/cup.json"]] {
+    let commands: [&[&str]; 5] =
+        [&["shapes"], &["schema"], &["check", "scenes/cup.json"], &["help"], &["--version"]];
+    for command in commands {
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let output = program(command).stdout(full).output().unwrap();
         assert_eq!(status(&output), 2, "{command:?}");

@@ -21,8 +21,8 @@ use crate::promise::Promise;
 use crate::scalar::{Float, Recorded, Scalar};
 use crate::vector::Vector;
 
-/// Beyond this distance from the origin [m], squares of lengths near the limits
-/// of single precision: every member is asked.
+/// Beyond this distance from the origin [m], squares of lengths near the limits of single
+/// precision: every member is asked, as at a place that is no number.
 const FAR: f64 = 1e15;
 
 /// The union of at least one member.
@@ -90,12 +90,20 @@ impl<const D: usize> Union<D> {
         near: impl FnMut(usize) -> f64,
     ) {
         let from_origin = query.centre.norm() + query.radius;
-        let slack = if from_origin < FAR {
-            self.slack.constant + self.slack.per_metre * from_origin + query.radius
+        if from_origin < FAR {
+            let slack = self.slack.constant + self.slack.per_metre * from_origin + query.radius;
+            nearby.for_each(Vector::of(&query.centre.0), slack, value, near);
         } else {
-            f64::INFINITY
-        };
-        nearby.for_each(Vector::of(&query.centre.0), slack, value, near);
+            self.each_of_all(near);
+        }
+    }
+
+    /// Calls `near` for every member: of a place that is far or no number, nothing is known.
+    #[cold]
+    fn each_of_all(&self, mut near: impl FnMut(usize) -> f64) {
+        for i in 0..self.members.len() {
+            near(i);
+        }
     }
 
     /// The smallest value at a point, and which member has it.

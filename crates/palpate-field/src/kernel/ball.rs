@@ -55,7 +55,6 @@ impl<const D: usize> Kernel<D> for Ball {
 primitive! {
     Ball, ball, any,
     about: "All points within a radius of the origin.",
-    model: ClosedForm,
     parameters: { radius: Length = "the radius" },
     example: (0.7),
 }

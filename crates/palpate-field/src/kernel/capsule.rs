@@ -79,7 +79,6 @@ fn promise<const D: usize>(half_length: f64, radius: f64) -> Promise<D> {
 primitive! {
     Capsule, capsule, any,
     about: "A rod with round ends along the y axis.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the rod",
         height: Length = "the length from tip to tip",
@@ -136,7 +135,6 @@ impl<const D: usize> Kernel<D> for Segment<D> {
 primitive! {
     Segment<D>, segment, any,
     about: "All points within a radius of the segment between two points.",
-    model: ClosedForm,
     parameters: {
         from: Vector = "one end" => |kernel| kernel.between.from(),
         to: Vector = "the other end" => |kernel| kernel.between.to(),

@@ -73,7 +73,6 @@ impl<const D: usize> Kernel<D> for Cuboid<D> {
 primitive! {
     Cuboid<D>, cuboid, any,
     about: "A box along the axes: a rectangle in 2D.",
-    model: ClosedForm,
     parameters: {
         size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
     },
@@ -138,7 +137,6 @@ impl<const D: usize> Kernel<D> for RoundedCuboid<D> {
 primitive! {
     RoundedCuboid<D>, rounded_cuboid, any,
     about: "A box along the axes, its edges rounded inwards.",
-    model: ClosedForm,
     parameters: {
         size: Vector = "the edge lengths",
         rounding: LengthOrZero = "the radius of the edges",

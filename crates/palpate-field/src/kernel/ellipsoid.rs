@@ -160,7 +160,6 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
 primitive! {
     Ellipsoid<2>, ellipse, 2,
     about: "An ellipse along the axes.",
-    model: Tangent,
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
@@ -170,7 +169,6 @@ primitive! {
 primitive! {
     Ellipsoid<3>, ellipsoid, 3,
     about: "An ellipsoid along the axes.",
-    model: Tangent,
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },

@@ -58,7 +58,6 @@ impl<const D: usize> Kernel<D> for HalfSpace<D> {
 primitive! {
     HalfSpace<D>, half_space, any,
     about: "All points behind a plane.",
-    model: ClosedForm,
     parameters: {
         normal: Direction = "the direction out of the half-space, of any length",
         offset: Coordinate = "where the plane is along the normal",

@@ -30,7 +30,7 @@ pub use planar::*;
 pub use power_ball::PowerBall;
 pub use power_cuboid::PowerCuboid;
 pub(crate) use primitive::primitive;
-pub use primitive::{Argument, ModelRule, NamedKernel, Parameter, ParameterKind};
+pub use primitive::{Argument, NamedKernel, Parameter, ParameterKind};
 pub use simplex::Simplex;
 pub use spatial::*;
 

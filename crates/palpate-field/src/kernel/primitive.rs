@@ -68,17 +68,6 @@ pub enum Argument {
     Rings(Vec<Vec<Vec<f64>>>),
 }
 
-/// The rule by which a primitive bounds its values over a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ModelRule {
-    /// Its formula, evaluated in models.
-    ClosedForm,
-    /// The tangent plane of a convex exact field.
-    Tangent,
-    /// Its value at the centre and its Lipschitz constant.
-    Lipschitz,
-}
-
 /// A kernel with a name, which can be made from arguments.
 ///
 /// Implemented by the `primitive!` declaration beside each kernel.
@@ -89,8 +78,6 @@ pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     const ABOUT: &'static str;
     /// The parameters, in the order of `new`.
     const PARAMETERS: &'static [Parameter];
-    /// The rule that bounds its values over a cell.
-    const MODEL: ModelRule;
 
     /// Makes the primitive from one argument for each parameter, in their order.
     ///
@@ -359,7 +346,6 @@ macro_rules! primitive {
     (
         $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
         about: $about:literal,
-        model: $model:ident,
         parameters: {
             $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* $(,)?
         },
@@ -367,7 +353,7 @@ macro_rules! primitive {
     ) => {
         primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
             { $($parameter: $kind = $what $(=> $given)?),* });
-        primitive!(@declare $dimension, $kernel, $kernel $(<$argument>)?, $name, $about, $model,
+        primitive!(@declare $dimension, $kernel, $kernel $(<$argument>)?, $name, $about,
             { $($parameter: $kind = $what),* }, ($($example),*));
     };
     (@accessors [D] any, $kernel:ty, $parameters:tt) => {
@@ -414,7 +400,7 @@ macro_rules! primitive {
     };
     (
         @constructor [$($generics:tt)*], $dimension:tt, $type:ident,
-        $name:ident, $about:literal, $model:ident,
+        $name:ident, $about:literal,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         $example:tt
     ) => {
@@ -447,7 +433,7 @@ macro_rules! primitive {
     };
     (
         @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
-        $name:ident, $about:literal, $model:ident,
+        $name:ident, $about:literal,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
@@ -461,7 +447,6 @@ macro_rules! primitive {
                     about: $what,
                 }),*
             ];
-            const MODEL: $crate::kernel::ModelRule = $crate::kernel::ModelRule::$model;
 
             fn from_arguments(
                 arguments: &[$crate::kernel::Argument],

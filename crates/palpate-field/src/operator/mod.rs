@@ -18,4 +18,4 @@ pub(crate) mod surface;
 pub(crate) mod transform;
 
 pub use repetition::Copies;
-pub use smooth::{Boolean, Profile, Profile as Smooth};
+pub use smooth::{Boolean, Profile};

@@ -65,6 +65,7 @@ struct Row {
     half_extent: f64,
     /// The copies to both sides are asked too.
     neighbours: bool,
+    is_endless: bool,
 }
 
 impl Row {
@@ -75,7 +76,7 @@ impl Row {
             Copies::Endless { spacing } => (spacing, -ENDLESS, ENDLESS),
         };
         let number = |x: i32| {
-            if x.abs() <= ENDLESS {
+            if (-ENDLESS..=ENDLESS).contains(&x) {
                 return Ok(f64::from(x));
             }
             let rule = format!("from -{ENDLESS} to {ENDLESS}");
@@ -101,7 +102,19 @@ impl Row {
             centre,
             half_extent,
             neighbours: repeats && !stays,
+            is_endless: matches!(copies, Copies::Endless { .. }),
         })
+    }
+
+    /// How much farther from the origin a copy may be asked than the point is [m]: where copy
+    /// zero is left out, or the middle of its tile or a neighbour's is elsewhere.
+    fn detour(&self) -> f64 {
+        if self.is_alone() {
+            return 0.0;
+        }
+        let left_out = self.spacing * self.first.max(-self.last).max(0.0);
+        let beside = if self.neighbours { 1.5 * self.spacing } else { 0.0 };
+        left_out + beside + 2.0 * self.centre.abs()
     }
 
     /// There is one copy, where the shape is.
@@ -181,7 +194,7 @@ impl<const D: usize> Grid<D> {
 
     /// The bounds of all copies; none if they are endless.
     fn bounds(&self, copy: &Aabb<D>) -> Option<Bounds<D>> {
-        let endless = self.rows.iter().any(|row| row.last - row.first > f64::from(ENDLESS));
+        let endless = self.rows.iter().any(|row| row.is_endless);
         (!endless).then(|| Bounds::of_box(self.aabb(copy)))
     }
 }
@@ -265,14 +278,15 @@ fn promise_of_tiles<const D: usize>(
         row.first == row.last || copy.max[i] < 0.5 * row.spacing
     });
     let size = copy.min.norm().max(copy.max.norm());
-    let moved = Rounding::of_operations(8.0 * grid.lipschitz, size);
+    let detour = Vector(std::array::from_fn::<_, D, _>(|i| grid.rows[i].detour())).norm();
+    let moved = Rounding::of_operations(8.0 * grid.lipschitz, size + detour);
     Promise {
         inside: if apart { child.inside } else { child.inside.bounded() },
         lipschitz: grid.lipschitz,
         bounds: grid.bounds(copy),
         convex: false,
         symmetric: std::array::from_fn(|i| child.symmetric[i] && grid.rows[i].is_alone()),
-        rounding: child.rounding.plus(&moved),
+        rounding: child.rounding.at(1.0, detour).plus(&moved),
         ..*child
     }
 }

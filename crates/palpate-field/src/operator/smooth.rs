@@ -150,7 +150,8 @@ impl Boolean {
             Self::Union => {
                 let union = promise_of_union(a, b);
                 let bounds = union.bounds.map(|bounds| bounds.grown(width));
-                Promise { bounds, ..union }
+                // Where both surfaces are near, their union is filled.
+                Promise { bounds, has_interior: true, ..union }
             }
             Self::Intersection => promise_of_intersection(a, b),
             Self::Difference => promise_of_difference(a, b),

@@ -17,18 +17,9 @@ fn on_trees<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % 6;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth)?;
-        let shape = match tree.shape() {
-            Ok(shape) => shape,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
-        };
-        let points = block_of_points(u, &shape)?;
-        Ok(laws::bits_agree(&shape, &points)
-            .map_err(|complaint| format!("{complaint}\n  {tree:?}")))
+    cases::on_trees(count, 6, |u, _, shape| {
+        let points = block_of_points(u, shape)?;
+        Ok(laws::bits_agree(shape, &points))
     });
 }
 

@@ -168,3 +168,26 @@ fn the_inertia_of_a_ball_is_two_fifths() -> Result<(), ShapeError> {
     }
     Ok(())
 }
+
+/// Second moments by axis, and products between axes: those of a cuboid that is turned are
+/// `R diag(V aᵢ²/12) Rᵀ`, about its centre.
+#[test]
+fn the_second_moments_of_a_turned_cuboid_turn_with_it() -> Result<(), ShapeError> {
+    let size = [0.4, 0.7, 1.1];
+    let turn = Rotation::from_axis_angle(Vector([1.0, -2.0, 0.5]), 0.7)?;
+    let cuboid = Shape::from_kernel(Cuboid::new(Vector(size))?).rotated(turn)?;
+    let mass = mass(&cuboid, 3.0);
+    let volume: f64 = size.iter().product();
+    let rows = turn.matrix();
+    for i in 0..3 {
+        for k in 0..3 {
+            let of = |axis: usize| rows[i][axis] * rows[k][axis] * size[axis] * size[axis];
+            let expected = 3.0 * volume * (of(0) + of(1) + of(2)) / 12.0;
+            let error = (mass.second_moments[i][k] - expected).abs();
+            assert!(error <= mass.second_moments_error, "{i} {k}: {mass:?}, {expected}");
+        }
+    }
+    // The error that is allowed tells them apart.
+    assert!(mass.second_moments_error < 0.05 * mass.second_moments[0][0], "{mass:?}");
+    Ok(())
+}

@@ -20,25 +20,17 @@ fn motions_and_scales<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % DEEPEST;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth)?;
-        let shape = match tree.shape() {
-            Ok(shape) => shape,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
-        };
-        let size = draw::size(&shape);
+    cases::on_trees(count, DEEPEST, |u, _, shape| {
+        let size = draw::size(shape);
         let mut pose: Pose<D> = draw::pose(u)?;
         pose.translation = pose.translation * size;
         let factor = 10.0_f64.powf(draw::within(u, -3.0, 3.0)?);
         for _ in 0..POINTS {
-            let p = draw::point(u, &shape)?;
-            let outcome = laws::motion_keeps_distances(&shape, &pose, p)
-                .and_then(|()| laws::scale_scales_distances(&shape, factor, p));
+            let p = draw::point(u, shape)?;
+            let outcome = laws::motion_keeps_distances(shape, &pose, p)
+                .and_then(|()| laws::scale_scales_distances(shape, factor, p));
             if let Err(complaint) = outcome {
-                return Ok(Err(format!("{complaint}\n  {pose:?}, {factor}, {tree:?}")));
+                return Ok(Err(format!("{complaint}\n  {pose:?}, {factor}")));
             }
         }
         Ok(Ok(()))

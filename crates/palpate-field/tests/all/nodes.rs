@@ -10,7 +10,7 @@ use palpate_field::{BLOCK, Block, Column, Node, Point, Promise, Shape, ShapeErro
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 
 type Outcome = Result<(), ShapeError>;
 
@@ -78,17 +78,12 @@ fn nodes_rebuild_shapes<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % 6;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth)?;
-        let built = tree.shape().and_then(|shape| Ok((rebuilt(&shape)?, shape)));
-        let (again, shape) = match built {
-            Ok(built) => built,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
+    cases::on_trees(count, 6, |u, _, shape: &Shape<D>| {
+        let again = match rebuilt(shape) {
+            Ok(again) => again,
+            Err(error) => return Ok(Err(error.to_string())),
         };
-        let same = again == shape
+        let same = again == *shape
             && again.to_string() == shape.to_string()
             && again.depth() == shape.depth()
             && format!("{:?}", again.promise()) == format!("{:?}", shape.promise());
@@ -96,8 +91,8 @@ where
             return Ok(Err(format!("{shape}\n  {again}")));
         }
         for _ in 0..8 {
-            let p = draw::point(u, &shape)?;
-            let (before, after) = (answers(&shape, p), answers(&again, p));
+            let p = draw::point(u, shape)?;
+            let (before, after) = (answers(shape, p), answers(&again, p));
             if before != after {
                 return Ok(Err(format!("{before}, rebuilt {after} at {p:?}: {shape}")));
             }

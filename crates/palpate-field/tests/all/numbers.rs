@@ -12,7 +12,7 @@ use palpate_testkit::tree::{Solid, Tree};
 use palpate_testkit::{cases, laws};
 
 /// Deepest trees drawn.
-const DEEPEST: u64 = 6;
+const DEEPEST: usize = 6;
 
 /// Room for the length of a gradient that promises one, in ulp: 6 of the kernel, since a
 /// star of many branches folds the plane nine times,
@@ -27,19 +27,11 @@ fn on_trees<const D: usize>(count: u64, points: usize, law: Law<D>)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % DEEPEST;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth as usize)?;
-        let shape = match tree.shape() {
-            Ok(shape) => shape,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
-        };
+    cases::on_trees(count, DEEPEST, |u, tree, shape| {
         for _ in 0..points {
-            let p = draw::point(u, &shape)?;
-            if let Err(complaint) = law(u, &tree, &shape, p)? {
-                return Ok(Err(format!("{complaint}\n  {tree:?}")));
+            let p = draw::point(u, shape)?;
+            if let Err(complaint) = law(u, tree, shape, p)? {
+                return Ok(Err(complaint));
             }
         }
         Ok(Ok(()))
@@ -152,23 +144,7 @@ fn single<const D: usize>(
     Ok(laws::single_precision_holds(shape, p))
 }
 
-macro_rules! in_both_dimensions {
-    ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
-        $(mod $name {
-            #[test]
-            fn in_the_plane() {
-                super::on_trees::<2>($count, $points, super::$law);
-            }
-
-            #[test]
-            fn in_space() {
-                super::on_trees::<3>($count, $points, super::$law);
-            }
-        })*
-    };
-}
-
-in_both_dimensions! {
+palpate_testkit::in_both_dimensions! {
     gradients_are_as_long_as_promised: bounded, 1800, 60;
     gradients_are_slopes: slope, 1800, 60;
     rounding_is_as_promised: rounding, 1200, 30;

@@ -7,11 +7,11 @@ use arbitrary::Unstructured;
 use palpate_field::{Point, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 use palpate_testkit::{cases, laws};
 
 /// Deepest trees drawn.
-const DEEPEST: u64 = 6;
+const DEEPEST: usize = 6;
 
 type Law<const D: usize> = fn(&mut Unstructured<'_>, &Shape<D>, Point<D>) -> Outcome;
 type Outcome = arbitrary::Result<Result<(), String>>;
@@ -22,19 +22,11 @@ fn on_trees<const D: usize>(count: u64, points: usize, law: Law<D>)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % DEEPEST;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth as usize)?;
-        let shape = match tree.shape() {
-            Ok(shape) => shape,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
-        };
+    cases::on_trees(count, DEEPEST, |u, _, shape| {
         for _ in 0..points {
-            let p = draw::point(u, &shape)?;
-            if let Err(complaint) = law(u, &shape, p)? {
-                return Ok(Err(format!("{complaint}\n  {tree:?}")));
+            let p = draw::point(u, shape)?;
+            if let Err(complaint) = law(u, shape, p)? {
+                return Ok(Err(complaint));
             }
         }
         Ok(Ok(()))
@@ -96,23 +88,7 @@ fn convex<const D: usize>(u: &mut Unstructured<'_>, shape: &Shape<D>, p: Point<D
     Ok([q, near].into_iter().try_for_each(|q| laws::convex_where_promised(shape, p, q)))
 }
 
-macro_rules! in_both_dimensions {
-    ($($name:ident: $law:ident, $count:literal, $points:literal;)*) => {
-        $(mod $name {
-            #[test]
-            fn in_the_plane() {
-                super::on_trees::<2>($count, $points, super::$law);
-            }
-
-            #[test]
-            fn in_space() {
-                super::on_trees::<3>($count, $points, super::$law);
-            }
-        })*
-    };
-}
-
-in_both_dimensions! {
+palpate_testkit::in_both_dimensions! {
     values_never_exceed_the_distance: overclaims, 1800, 40;
     values_are_no_steeper_than_promised: lipschitz, 1800, 60;
     shapes_stay_in_their_bounds: bounds, 1800, 60;

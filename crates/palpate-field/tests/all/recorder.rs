@@ -15,7 +15,7 @@ use palpate_field::scalar::{Expression, Quadratic, Recorded, Scalar};
 use palpate_field::{Point, Pose, Promise, Rotation, Shape, ShapeError, Vector};
 use palpate_testkit::arbitrary::Turn;
 use palpate_testkit::kernels::{Dimension, Space, Visit};
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 use palpate_testkit::{arbitrary as draw, cases};
 
 fn recorded<const D: usize>(
@@ -102,20 +102,12 @@ fn formulas_of_trees_agree<const D: usize>(count: u64)
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(count, |u| {
-        let depth = 1 + seed % 6;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth)?;
-        let shape = match tree.shape() {
-            Ok(shape) => shape,
-            Err(error) => return Ok(Err(format!("{error}: {tree:?}"))),
-        };
+    cases::on_trees(count, 6, |u, _, shape: &Shape<D>| {
         let Some(formula) = shape.formula() else {
             return Ok(Err(format!("no formula of {shape}")));
         };
         for _ in 0..32 {
-            let p = draw::point(u, &shape)?;
+            let p = draw::point(u, shape)?;
             let (direct, recorded) = (shape.distance(p), formula.evaluate(&p.0));
             if direct.to_bits() != recorded.to_bits() {
                 return Ok(Err(format!("{direct:e}, recorded {recorded:e} at {p:?}: {shape}")));

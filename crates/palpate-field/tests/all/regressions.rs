@@ -4,13 +4,14 @@
 //! The smallest case of each bug that a law or an oracle found.
 
 use palpate_field::kernel::{
-    Arc, Ball, CoolS, CuboidFrame, CylinderApproximation, DeathStar, Ellipsoid, HexagonalPrism,
-    Moon, Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
+    Arc, Ball, CoolS, CuboidFrame, CylinderApproximation, DeathStar, Ellipsoid, HalfSpace,
+    HexagonalPrism, Moon, Octahedron, Polygon, Pyramid, RegularPolygon, Simplex,
 };
-use palpate_field::operator::Profile;
-use palpate_field::scalar::{Cubic, Model, Scalar};
+use palpate_field::operator::{Copies, Profile};
+use palpate_field::scalar::{Cubic, Dual, Model, Scalar};
 use palpate_field::{
-    BLOCK, Block, Column, Kernel, Point, Quantity, Shape, ShapeError, Unit, Vector,
+    BLOCK, Block, BoundingBall, Column, Kernel, MassLimits, Point, Promise, Quantity, Shape,
+    ShapeError, Unit, Vector,
 };
 
 type Outcome = Result<(), ShapeError>;
@@ -347,5 +348,102 @@ fn models_of_a_moon_over_large_cells_say_as_much_as_its_steepness() -> Outcome {
     let over = model(&moon, Vector([0.92, 0.0]), [4.5, 1.5]);
     let width = over.maximum() - over.minimum();
     assert!(width < 2.0 * 4.5_f64.hypot(1.5) + 1e-12, "{width} m: {over:?}");
+    Ok(())
+}
+
+/// The child was asked up to 8 km away, and its rounding counted at the point.
+#[test]
+fn rows_that_leave_out_the_origin_round_as_far_copies_do() -> Outcome {
+    let row = Copies::Between { spacing: 1000.0, first: 5, last: 8 };
+    let shape =
+        Shape::from_kernel(Ball::new(0.1)?).repeated([row, Copies::One, Copies::One])?;
+    for x in [0.0, 1e-3, 0.7] {
+        let f = shape.distance(Vector([x, 0.3, 0.1]));
+        // To the centre of copy 5, in numbers that are short enough to be exact.
+        let exact = (5000.0 - x).mul_add(5000.0 - x, 0.1).sqrt() - 0.1;
+        let rounding = shape.promise().rounding.within(x.hypot(0.32));
+        assert!((f - exact).abs() <= rounding, "{f} {exact} {rounding:e}");
+        assert!(rounding > 1e-12);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_row_that_begins_beyond_all_numbers_is_refused() -> Outcome {
+    for first in [i32::MIN, -1_000_001] {
+        let row = Copies::Between { spacing: 1.0, first, last: 0 };
+        assert!(Shape::from_kernel(Ball::new(0.1)?).repeated([row; 2]).is_err(), "{first}");
+    }
+    Ok(())
+}
+
+/// More than a million copies in a row had no bounds, as if they had no end.
+#[test]
+fn long_rows_have_bounds() -> Outcome {
+    let row = Copies::Between { spacing: 1.0, first: -600_000, last: 600_000 };
+    let shape = Shape::from_kernel(Ball::new(0.1)?).repeated([row, Copies::One])?;
+    assert!(shape.promise().bounds.is_some());
+    Ok(())
+}
+
+/// Of a point that is no number no member of a larger union was near: a slice panicked, and a
+/// single point was infinitely far.
+#[test]
+fn a_point_that_is_no_number_has_no_distance_to_a_union() -> Outcome {
+    let members = (0..20).map(|i| {
+        Shape::from_kernel(Ball::new(0.1)?).translated(Vector([f64::from(i), 0.0, 0.0]))
+    });
+    let union = Shape::union(members.collect::<Result<Vec<_>, _>>()?)?;
+    let nan = Vector([f64::NAN, 0.0, 0.0]);
+    assert!(union.distance(nan).is_nan());
+    let mut distances = [0.0; 2];
+    union.distances(&[nan, Vector([0.0, 1.0, 0.0])], &mut distances);
+    assert!(distances[0].is_nan());
+    assert!((distances[1] - 0.9).abs() < 1e-15);
+    union.distances(&[nan, nan], &mut distances);
+    assert!(distances[0].is_nan() && distances[1].is_nan());
+    Ok(())
+}
+
+/// Far half-spaces were left out beyond the range of single precision.
+#[test]
+fn a_union_of_unbounded_members_is_right_far_away() -> Outcome {
+    let planes = (0..8).map(|i| {
+        let angle = 0.1 * f64::from(i);
+        let normal = Vector([angle.cos(), angle.sin()]);
+        Ok(Shape::from_kernel(HalfSpace::new(normal, 0.0)?))
+    });
+    let planes = planes.collect::<Result<Vec<_>, ShapeError>>()?;
+    let union = Shape::union(planes.clone())?;
+    for x in [1e15, 1e19, 1e20, -1e30] {
+        let p = Vector([x, 0.0]);
+        let by_hand =
+            planes.iter().map(|plane| plane.distance(p)).fold(f64::INFINITY, f64::min);
+        assert_eq!(union.distance(p), by_hand, "{x}");
+    }
+    Ok(())
+}
+
+/// Two wires without an inside have one where they blend.
+#[test]
+fn a_smooth_union_of_wires_has_an_interior() -> Outcome {
+    let wire = Shape::segment([-1.0, 0.0], [1.0, 0.0], 0.0)?;
+    let across = Shape::segment([0.0, -1.0], [0.0, 1.0], 0.0)?;
+    let cross = Shape::smooth_union([wire, across], Profile::Quadratic, 0.1)?;
+    assert!(cross.distance(Vector([0.0, 0.0])) < 0.0);
+    assert!(cross.promise().has_interior);
+    Ok(())
+}
+
+/// Models say nothing outside the region in which the steepness holds: what was counted there as
+/// outside or inside was a guess, and the error of the volume was none.
+#[test]
+fn a_shape_that_is_known_in_a_region_alone_is_not_weighed() -> Outcome {
+    let region = BoundingBall { centre: Vector([0.0; 2]), radius: 0.1 };
+    let bounds = Shape::from_kernel(Ball::new(1.0)?).promise().bounds;
+    let promise = Promise::<2>::lipschitz(bounds, 2.0).with_region(region);
+    let disc = Shape::from_fn(promise, |p| p.norm() - Dual::constant(1.0));
+    let error = disc.mass(1.0, MassLimits::default()).unwrap_err();
+    assert!(error.to_string().contains("known everywhere"), "{error}");
     Ok(())
 }

@@ -10,7 +10,7 @@ use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 
 /// Sets of arguments drawn for each primitive.
 const ARGUMENTS: u64 = 12;
@@ -95,9 +95,8 @@ fn numbers_at<const D: usize>(shape: &Shape<D>, p: Point<D>) -> Result<(), Strin
     Ok(())
 }
 
-fn numbers_everywhere<const D: usize>(shape: &Shape<D>, what: &str) -> Result<(), String> {
-    let check = |p: Point<D>| numbers_at(shape, p).map_err(|text| format!("{text}: {what}"));
-    places(shape).into_iter().try_for_each(check)
+fn numbers_everywhere<const D: usize>(shape: &Shape<D>) -> Result<(), String> {
+    places(shape).into_iter().try_for_each(|p| numbers_at(shape, p))
 }
 
 fn primitives<const D: usize>(catalogue: &[Entry<D>])
@@ -106,14 +105,14 @@ where
 {
     for entry in catalogue {
         let example = entry.example().unwrap_or_else(|error| panic!("{}: {error}", entry.name));
-        let outcome = numbers_everywhere(&example, entry.name);
-        assert_eq!(outcome, Ok(()));
+        assert_eq!(numbers_everywhere(&example), Ok(()), "{}", entry.name);
         cases::check(ARGUMENTS, |u| {
             let drawn = draw::arguments::<D>(u, entry.name, entry.parameters)?;
             let Some(Ok(shape)) = drawn.as_ref().map(|all| entry.build(all)) else {
                 return Ok(Err(format!("no arguments found for {}", entry.name)));
             };
-            Ok(numbers_everywhere(&shape, &format!("{} of {drawn:?}", entry.name)))
+            Ok(numbers_everywhere(&shape)
+                .map_err(|complaint| format!("{complaint}: {} of {drawn:?}", entry.name)))
         });
     }
 }
@@ -122,16 +121,7 @@ fn trees<const D: usize>()
 where
     Space: Solid<D> + Turn<D>,
 {
-    let mut seed = 0;
-    cases::check(TREES, |u| {
-        let depth = 2 + seed % 5;
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, depth)?;
-        Ok(tree.shape().map_or_else(
-            |error| Err(error.to_string()),
-            |shape| numbers_everywhere(&shape, &format!("{tree:?}")),
-        ))
-    });
+    cases::on_trees(TREES, 6, |_, _, shape: &Shape<D>| Ok(numbers_everywhere(shape)));
 }
 
 #[test]

@@ -60,7 +60,7 @@ impl<const D: usize> Curve<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::TooFewSamples`] without two different points;
+    /// [`HapticsError::NoCurve`] without two different points;
     /// [`HapticsError::Number`] with more than 1025, or if a coordinate is not finite.
     pub fn polyline(points: &[Point<D>]) -> Result<Self, HapticsError> {
         if points.len() > MOST_SEGMENTS + 1 {
@@ -78,7 +78,7 @@ impl<const D: usize> Curve<D> {
             })
             .collect();
         if segments.is_empty() {
-            return Err(HapticsError::TooFewSamples { count: points.len().min(1) });
+            return Err(HapticsError::NoCurve { count: points.len().min(1) });
         }
         let balls = segments.chunks(GROUP).map(ball_around).collect();
         Ok(Self { segments, balls, deviation: 0.0 })

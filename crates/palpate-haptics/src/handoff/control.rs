@@ -35,7 +35,7 @@ pub struct Control<const D: usize> {
     pub(super) most_bodies: usize,
     /// The protection of a [`Servo`](crate::Servo) and its rate [Hz]; `None` for an
     /// [`UnprotectedServo`](crate::UnprotectedServo).
-    pub(super) protection: Option<(Protection<D>, f64)>,
+    pub(super) protection: Option<(Arc<Protection<D>>, f64)>,
     /// The requested virtual coupling of the tool; `None` for contact points.
     pub(super) requested_coupling: Option<Coupling>,
 }

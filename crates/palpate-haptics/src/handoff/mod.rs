@@ -66,8 +66,10 @@ impl HandoffOptions {
 /// `servo`. The capacity for bodies is at least the number of bodies that the servo has.
 ///
 /// The `ServoThread` of `palpate-loop` makes its own hand-off. A custom loop, for example the
-/// callback of a device driver, [receives](ServoEnd::receive) before each
-/// [step](crate::Servo::step) and [publishes](ServoEnd::publish) after it.
+/// callback of a device driver, first [checks the device](crate::Servo::check_device);
+/// [receives](ServoEnd::receive) before each [step](crate::Servo::step) and
+/// [publishes](ServoEnd::publish) after it; and writes zero force and zero torque last, however it
+/// ends.
 ///
 /// # Examples
 ///

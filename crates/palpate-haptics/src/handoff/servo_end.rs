@@ -28,6 +28,9 @@ pub struct ServoEnd<const D: usize> {
 impl<const D: usize> ServoEnd<D> {
     /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
+    /// A servo that is no clone of the one the hand-off was made for is stopped when bodies come:
+    /// they were accepted for another device.
+    ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
         let servo = servo.renderer_mut();
@@ -38,8 +41,10 @@ impl<const D: usize> ServoEnd<D> {
         }
         let Some(mut parcel) = self.receiver.take() else { return };
         let edits = &mut parcel.content;
-        if let Some(bodies) = &mut edits.bodies {
-            servo.adopt(bodies);
+        if let Some(bodies) = &mut edits.bodies
+            && !servo.adopt(bodies)
+        {
+            servo.stop(true);
         }
         for (body, pose) in edits.poses.iter().enumerate() {
             if let Some(pose) = pose {

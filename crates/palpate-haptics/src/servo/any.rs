@@ -3,6 +3,8 @@
 
 //! A trait for both kinds of servo.
 
+use std::sync::Arc;
+
 use super::{Renderer, Servo, UnprotectedServo};
 use crate::protection::Protection;
 
@@ -17,7 +19,7 @@ pub trait AnyServo<const D: usize> {
     fn renderer_mut(&mut self) -> &mut Renderer<D>;
 
     #[doc(hidden)]
-    fn any_protection(&self) -> Option<&Protection<D>>;
+    fn any_protection(&self) -> Option<&Arc<Protection<D>>>;
 }
 
 impl<const D: usize> AnyServo<D> for Servo<D> {
@@ -29,7 +31,7 @@ impl<const D: usize> AnyServo<D> for Servo<D> {
         &mut self.renderer
     }
 
-    fn any_protection(&self) -> Option<&Protection<D>> {
+    fn any_protection(&self) -> Option<&Arc<Protection<D>>> {
         Some(&self.protection)
     }
 }
@@ -43,7 +45,7 @@ impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
         &mut self.renderer
     }
 
-    fn any_protection(&self) -> Option<&Protection<D>> {
+    fn any_protection(&self) -> Option<&Arc<Protection<D>>> {
         None
     }
 }

@@ -13,6 +13,7 @@ mod renderer;
 mod unprotected;
 
 use std::ops::Deref;
+use std::sync::Arc;
 
 pub(crate) use any::AnyServo;
 pub use renderer::Renderer;
@@ -60,8 +61,7 @@ use palpate_safety::{Device, PointState};
 #[derive(Clone, Debug)]
 pub struct Servo<const D: usize> {
     renderer: Renderer<D>,
-    protection: Protection<D>,
-    accepted: Vec<Accepted>,
+    protection: Arc<Protection<D>>,
 }
 
 impl<const D: usize> Servo<D> {
@@ -129,7 +129,7 @@ impl<const D: usize> Servo<D> {
     /// rotational entry. Empty for a device that gives no force.
     #[must_use]
     pub fn accepted(&self) -> &[Accepted] {
-        &self.accepted
+        self.renderer.accepted().accepted()
     }
 
     /// Scales bodies to what the servo's device renders, for
@@ -150,18 +150,24 @@ impl<const D: usize> Servo<D> {
         )
     }
 
-    /// Replaces the bodies from the next tick on. Returns the old bodies, to be dropped on a
-    /// thread that may free memory.
+    /// Replaces the bodies from the next tick on. `bodies` holds the old ones then, to be dropped
+    /// on a thread that may free memory, or to be given back later.
     ///
     /// If the new bodies cover a contact point, its proxy is placed anew and its force rises
     /// from zero. If they push a contact point harder than the old ones, its force rises from
     /// the old force.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    #[must_use]
-    pub fn replace_bodies(&mut self, mut bodies: AcceptedBodies<D>) -> AcceptedBodies<D> {
-        self.renderer.adopt(&mut bodies);
-        bodies
+    ///
+    /// # Errors
+    ///
+    /// [`HapticsError::OtherServo`] if the bodies were accepted for a servo of which this is no
+    /// clone; then nothing changes.
+    pub fn replace_bodies(
+        &mut self,
+        bodies: &mut AcceptedBodies<D>,
+    ) -> Result<(), HapticsError> {
+        if self.renderer.adopt(bodies) { Ok(()) } else { Err(HapticsError::OtherServo) }
     }
 
     /// Refuses a device with tighter limits than the one that the servo was made for, or with

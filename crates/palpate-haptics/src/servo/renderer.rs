@@ -7,6 +7,7 @@
 
 use std::hint::black_box;
 use std::mem::swap;
+use std::sync::Arc;
 
 use palpate_field::{Point, Pose, Vector};
 
@@ -20,7 +21,7 @@ use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::protection::{Port, TurningPort};
+use crate::protection::{Port, Protection, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::NumberError;
@@ -41,7 +42,7 @@ const WAYS: f64 = 32.0;
 /// to a renderer: the renderer has the methods that read, the servos those that change.
 #[derive(Clone, Debug)]
 pub struct Renderer<const D: usize> {
-    bodies: Bodies<D>,
+    accepted: AcceptedBodies<D>,
     contacts: Contacts<D>,
     rendered: Rendered<D>,
     setting: Setting<D>,
@@ -93,11 +94,11 @@ impl<const D: usize> Renderer<D> {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        let rate = NumberError::check_positive("rate", options.rate, "Hz")?;
+        let rate = NumberError::check_rate(options.rate)?;
         let rise_time = NumberError::check_positive("rise_time", options.rise_time, "s")?;
         NumberError::check_positive_or_infinite("max_force", options.max_force, "N")?;
         Ok(Self {
-            bodies,
+            accepted: AcceptedBodies::unchanged(bodies),
             contacts: Contacts::new(options.probe, points),
             rendered: Rendered::Points { doubles: Contacts::new(options.probe, points) },
             setting: Setting {
@@ -167,7 +168,12 @@ impl<const D: usize> Renderer<D> {
     /// The bodies, with the stiffness and damping that are rendered.
     #[must_use]
     pub fn bodies(&self) -> &Bodies<D> {
-        &self.bodies
+        &self.accepted.bodies
+    }
+
+    /// The bodies with what was accepted for the device.
+    pub(super) fn accepted(&self) -> &AcceptedBodies<D> {
+        &self.accepted
     }
 
     /// The contact points after the last tick.
@@ -191,7 +197,7 @@ impl<const D: usize> Renderer<D> {
     /// Force and torque on each body in the last tick.
     #[must_use]
     pub fn reactions(&self) -> &[Reaction<D>] {
-        self.bodies.reactions()
+        self.bodies().reactions()
     }
 
     /// Whether forces and torques are stopped.
@@ -238,16 +244,26 @@ impl<const D: usize> Renderer<D> {
         self.coupled_tool().map(|coupled| coupled.requested)
     }
 
+    /// Notes whose servo this is, for a device that gives no force.
+    pub(super) fn set_protection(&mut self, protection: &Arc<Protection<D>>) {
+        self.accepted.protection = Some(protection.clone());
+    }
+
     /// Sets the map between device and world coordinates.
     pub(super) fn set_map(&mut self, map: WorkspaceMap<D>) {
         self.setting.map = map;
     }
 
-    /// Sets the port of every contact point, and for a tool the rotational port `turning`.
+    /// Sets the port of every contact point, and for a tool the rotational port `turning`. What
+    /// was limited or stopped before stays so.
     pub(super) fn set_ports(&mut self, port: &Port<D>, turning: Option<TurningPort<D>>) {
         self.contacts.points.iter_mut().for_each(|point| point.port = Some(port.clone()));
         if let Some(coupled) = self.coupled_tool_mut() {
             coupled.port = turning;
+            coupled.keep_torque_limit();
+        }
+        if self.is_stopped {
+            self.stop(true);
         }
     }
 
@@ -280,23 +296,36 @@ impl<const D: usize> Renderer<D> {
     }
 
     pub(crate) fn set_pose(&mut self, body: usize, world_from_body: Pose<D>) {
-        self.bodies.set_pose(body, world_from_body);
+        self.accepted.bodies.set_pose(body, world_from_body);
     }
 
-    /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones.
+    /// Swaps the rendered bodies with `bodies`; the next tick renders the new ones. `false`, and
+    /// nothing changes, if `bodies` were accepted for another servo.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
-    pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) {
-        swap(&mut self.bodies, &mut bodies.bodies);
-        let Contacts { points, touches, .. } = &mut self.contacts;
-        for (point, touch) in points.iter_mut().zip(touches) {
+    #[must_use]
+    pub(crate) fn adopt(&mut self, bodies: &mut AcceptedBodies<D>) -> bool {
+        let is_own = self.accepted.is_for_servo_of(bodies);
+        if is_own {
+            self.exchange(bodies);
+        }
+        is_own
+    }
+
+    /// Swaps the rendered bodies with `bodies`, whichever servo they were accepted for.
+    ///
+    /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
+    pub(super) fn exchange(&mut self, bodies: &mut AcceptedBodies<D>) {
+        swap(&mut self.accepted, bodies);
+        let Self { accepted, contacts, rendered, .. } = self;
+        for (point, touch) in contacts.points.iter_mut().zip(&contacts.touches) {
             point.forget_bodies(touch.wanted);
+            if let Some((port, accepted)) = point.port.as_mut().zip(accepted.along()) {
+                port.renew(accepted);
+            }
         }
-        if let Some(accepted) = bodies.along() {
-            self.ports().for_each(|port| port.renew(accepted));
-        }
-        if let Some(coupled) = self.coupled_tool_mut() {
-            coupled.adopt(bodies);
+        if let Rendered::Tool(coupled) = rendered {
+            coupled.adopt(accepted);
         }
     }
 
@@ -321,7 +350,7 @@ impl<const D: usize> Renderer<D> {
             self.render_tool(states);
         } else {
             self.render_points(states);
-            self.bodies.settle();
+            self.accepted.bodies.settle();
         }
         self.tick += 1;
         if self.is_stopped {
@@ -348,7 +377,7 @@ impl<const D: usize> Renderer<D> {
         events.clear();
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
-            let sides = Sides { point, bodies: &mut self.bodies };
+            let sides = Sides { point, bodies: &mut self.accepted.bodies };
             *force = coupled.tick(sides, &self.setting, state(states, index), touch);
         }
         let told = coupled.tool.events().iter().take(MOST_EVENTS);
@@ -363,10 +392,11 @@ impl<const D: usize> Renderer<D> {
     fn render_points(&mut self, states: &[PointState<D>]) {
         let Contacts { points, touches, events, forces } = &mut self.contacts;
         events.clear();
-        let (mut list, mut reactions) = self.bodies.take_scratch();
+        let bodies = &mut self.accepted.bodies;
+        let (mut list, mut reactions) = bodies.take_scratch();
         reactions.fill(Reaction::NONE);
         let hand = || hand(touches, states, &self.setting);
-        let nearby = nearby(&self.bodies, hand, &mut list);
+        let nearby = nearby(bodies, hand, &mut list);
         let mut tick = Tick::new(&nearby, &self.setting, self.tick, events);
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
@@ -377,7 +407,7 @@ impl<const D: usize> Renderer<D> {
                 reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
             }
         }
-        self.bodies.put_back(list, reactions);
+        bodies.put_back(list, reactions);
     }
 
     /// Runs a tick with `states` on copies of the contact points, only to load the code and
@@ -389,7 +419,7 @@ impl<const D: usize> Renderer<D> {
         match &mut self.rendered {
             Rendered::Tool(coupled) => {
                 let origin = coupled.tool.touch().pose.translation;
-                black_box(self.bodies.everything().look(origin));
+                black_box(self.accepted.bodies.everything().look(origin));
                 return;
             }
             Rendered::Points { doubles } => {
@@ -410,7 +440,7 @@ impl<const D: usize> Renderer<D> {
         if let Rendered::Points { doubles } = &mut self.rendered {
             swap(&mut self.contacts, doubles);
         }
-        self.bodies.swap_reactions();
+        self.accepted.bodies.swap_reactions();
     }
 }
 

@@ -4,14 +4,16 @@
 //! A servo without a safety chain.
 
 use std::ops::Deref;
+use std::sync::Arc;
 
 use super::{Renderer, Servo};
+use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
-use palpate_safety::DeviceProfile;
+use palpate_safety::{DeviceProfile, NumberError};
 
 /// Renders bodies to contact points or to a tool, **without protection of a device or a hand**
 /// except a force limit.
@@ -175,8 +177,10 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # }
     /// ```
     pub fn protected(self, protection: &Protection<D>) -> Result<Servo<D>, HapticsError> {
+        let max_force = protection.profile.max_force;
+        NumberError::check_not_negative_or_infinite("max_force", max_force, "N")?;
         let mut renderer = self.renderer;
-        let protection = protection.clone();
+        let protection = Arc::new(protection.clone());
         renderer.set_map(protection.map);
         renderer.limit_force(protection.profile.max_force);
         if protection.profile.turning.is_none() {
@@ -185,17 +189,18 @@ impl<const D: usize> UnprotectedServo<D> {
         let limit = renderer.options().max_force;
         if limit == 0.0 {
             renderer.limit_torque(0.0);
-            return Ok(Servo { renderer, protection, accepted: Vec::new() });
+            renderer.set_protection(&protection);
+            return Ok(Servo { renderer, protection });
         }
         let rate = renderer.options().rate;
         let coupling = renderer.requested_coupling();
         let bodies = renderer.bodies().clone();
         let mut bodies = protection.accepted_bodies(bodies, coupling, rate)?;
         let profile = protection.profile.clone().with_max_force(limit);
-        let limited = Protection { profile, ..protection.clone() };
+        let limited = Protection { profile, ..Protection::clone(&protection) };
         renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
-        renderer.adopt(&mut bodies);
-        Ok(Servo { renderer, protection, accepted: bodies.accepted })
+        renderer.exchange(&mut bodies);
+        Ok(Servo { renderer, protection })
     }
 
     /// This servo with the default protection for `profile`.
@@ -216,8 +221,8 @@ impl<const D: usize> UnprotectedServo<D> {
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn replace_bodies(&mut self, bodies: Bodies<D>) -> Bodies<D> {
-        let mut bodies = crate::accepted_bodies::AcceptedBodies::unchanged(bodies);
-        self.renderer.adopt(&mut bodies);
+        let mut bodies = AcceptedBodies::unchanged(bodies);
+        self.renderer.exchange(&mut bodies);
         bodies.bodies
     }
 }

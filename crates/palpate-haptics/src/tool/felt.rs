@@ -15,8 +15,7 @@ use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
-use palpate_safety::part_of;
-use palpate_safety::{cross, in_place, in_space};
+use palpate_safety::shortening;
 
 /// The response of the pushing bodies to the coupling.
 struct BodyResponse<const D: usize> {
@@ -135,7 +134,7 @@ impl<const D: usize> Tool<D> {
         self.touch.force = damped(&force, options.max_force) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
         if has_new_bodies {
-            let start = part_of(before, self.effort());
+            let start = shortening(self.effort(), before);
             self.rise *= start;
             self.touch.force = self.touch.force * start;
             self.touch.torque = self.touch.torque * start;
@@ -180,9 +179,9 @@ impl<const D: usize> Tool<D> {
             let velocity = self.speed_at(nearby, push, device, arms);
             let approach = (-velocity.dot(push.normal)).max(0.0);
             let damper = push.normal * (layer.damping * approach) - velocity * layer.viscosity;
-            let arm = in_space(push.centre - self.touch.pose.translation) * arms;
+            let arm = (push.centre - self.touch.pose.translation).in_space() * arms;
             force += damper * share;
-            torque += cross(arm, in_space(damper * share));
+            torque += arm.cross((damper * share).in_space());
         }
         BodyResponse { part, force, torque }
     }
@@ -200,8 +199,8 @@ impl<const D: usize> Tool<D> {
         device: &ToolState<D>,
         arms: f64,
     ) -> Vector<f64, D> {
-        let arm = in_space(push.centre - self.touch.pose.translation) * arms;
-        let turning = in_place(cross(device.angular_velocity, arm));
+        let arm = (push.centre - self.touch.pose.translation).in_space() * arms;
+        let turning = device.angular_velocity.cross(arm).truncated();
         device.velocity + turning - self.body_velocity(nearby, push.body, push.centre)
     }
 
@@ -253,7 +252,7 @@ impl<const D: usize> Tool<D> {
         for push in pushes {
             let pushed = push.normal * (stiffness * push.push);
             force -= pushed;
-            torque -= cross(in_space(push.centre - origin), in_space(pushed));
+            torque -= (push.centre - origin).in_space().cross(pushed.in_space());
         }
         for push in pushes {
             let place = nearby.body(push.body).map(|body| body.world_from_body().translation);

@@ -26,7 +26,6 @@ use super::settle::{Lengths, Push, RestSearch, stacked_along};
 use super::twist::Twist;
 use crate::nearby::Nearby;
 use crate::surface::Friction;
-use palpate_safety::{cross, in_place, in_space};
 
 /// Directions along a surface, in a basis of two orthogonal ones.
 const AROUND: [(f64, f64); MOST_AROUND] = [
@@ -204,8 +203,11 @@ fn along_surface<const D: usize>(
     let steepest = |k: usize| normal.0.get(k).copied().unwrap_or(1.0).abs();
     let axis = (1..D).fold(0, |best, k| if steepest(k) < steepest(best) { k } else { best });
     let first = flat(way).or_else(|| flat(Vector::unit(axis))).unwrap_or(Vector::ZERO);
-    let second =
-        if D == 2 { Vector::ZERO } else { in_place(cross(in_space(normal), in_space(first))) };
+    let second = if D == 2 {
+        Vector::ZERO
+    } else {
+        normal.in_space().cross(first.in_space()).truncated()
+    };
     [first, second]
 }
 

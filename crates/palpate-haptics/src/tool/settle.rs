@@ -23,7 +23,6 @@ use super::friction::{Cone, Hold, MOST_AROUND};
 use super::scan::{Path, Scan, Surroundings};
 use super::twist::Twist;
 use crate::nearby::Nearby;
-use palpate_safety::{cross, in_space};
 
 /// The most iterations in a tick. Sliding takes three or four; the rest is for impacts and
 /// creases.
@@ -330,7 +329,7 @@ pub(super) fn stacked_along<const D: usize>(
     normal: Vector<f64, D>,
     unit: f64,
 ) -> [f64; FREEDOMS] {
-    let [x, y, z] = in_space(normal).0;
-    let [a, b, c] = (cross(in_space(arm), in_space(normal)) * (1.0 / unit)).0;
+    let [x, y, z] = normal.in_space().0;
+    let [a, b, c] = (arm.in_space().cross(normal.in_space()) * (1.0 / unit)).0;
     [x, y, z, a, b, c]
 }

@@ -123,7 +123,7 @@ impl ToolOptions {
 
     /// Checks all options except the stiffnesses.
     pub(super) fn check(&self) -> Result<(), HapticsError> {
-        NumberError::check_positive("rate", self.rate, "Hz")?;
+        NumberError::check_rate(self.rate)?;
         NumberError::check_positive("rise_time", self.rise_time, "s")?;
         NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
         NumberError::check_not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;

@@ -9,7 +9,7 @@
 
 use palpate_field::{Pose, Vector};
 
-use palpate_safety::{cross, in_place, in_space, turn_between, turned};
+use palpate_safety::{turn_between, turned};
 
 /// A change of a pose: the origin moves, then the pose rotates about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,12 +60,12 @@ impl<const D: usize> Twist<D> {
 
     /// The displacement of a point at `arm` from the origin, to first order [m].
     pub(super) fn of_point(&self, arm: Vector<f64, D>) -> Vector<f64, D> {
-        self.linear + in_place(cross(self.angular, in_space(arm)))
+        self.linear + self.angular.cross(arm.in_space()).truncated()
     }
 
     /// The motion as one vector, in which a radian counts as the length `unit` [m].
     pub(super) fn stacked(&self, unit: f64) -> [f64; 6] {
-        let ([x, y, z], [a, b, c]) = (in_space(self.linear).0, (self.angular * unit).0);
+        let ([x, y, z], [a, b, c]) = (self.linear.in_space().0, (self.angular * unit).0);
         [x, y, z, a, b, c]
     }
 
@@ -77,7 +77,7 @@ impl<const D: usize> Twist<D> {
     /// The inverse of [`stacked`](Self::stacked).
     pub(super) fn unstacked([x, y, z, a, b, c]: [f64; 6], unit: f64) -> Self {
         let angular = Vector([a, b, c]) * (1.0 / unit);
-        Self { linear: in_place(Vector([x, y, z])), angular }
+        Self { linear: Vector([x, y, z]).truncated(), angular }
     }
 }
 

@@ -4,7 +4,7 @@
 //! A slide knows how the surface bends, and needs few evaluations.
 
 use crate::common::{ball, cuboid, half_space, proxy, scaled, torus};
-use palpate_field::operator::{Copies, Smooth};
+use palpate_field::operator::{Copies, Profile};
 use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{Bodies, Following, Probe, Proxy};
 
@@ -112,7 +112,7 @@ fn a_field_that_hardly_rises_is_followed_as_fast() {
 #[test]
 fn a_blend_is_followed() {
     let beside = ball(0.03).translated(Vector([0.04, 0.0, 0.0])).unwrap();
-    let blend = Shape::smooth_union([ball(0.03), beside], Smooth::Quadratic, 0.01).unwrap();
+    let blend = Shape::smooth_union([ball(0.03), beside], Profile::Quadratic, 0.01).unwrap();
     let bodies = Bodies::from(blend.clone());
     let closest = |device: Point<3>| {
         // Where a hand that waits is led to.

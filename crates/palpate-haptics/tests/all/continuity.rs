@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, direction, torus, unit, vector};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Shape, Vector};
 use palpate_haptics::{PointState, Probe, ServoOptions, Surface, UnprotectedServo};
 
@@ -54,7 +54,7 @@ fn is_continuous<const D: usize>(name: &str, shape: &Shape<D>, (radius, bend): (
 #[test]
 fn on_smooth_shapes_of_space_the_force_is_continuous() {
     let apart = ball(0.03).translated(Vector([0.035, 0.0, 0.0])).unwrap();
-    let flowing = Shape::smooth_union([ball(0.04), apart], Smooth::Cubic, 0.01).unwrap();
+    let flowing = Shape::smooth_union([ball(0.04), apart], Profile::Cubic, 0.01).unwrap();
     is_continuous("a ball", &ball::<3>(0.05), (0.0, 0.05));
     is_continuous("a ball", &ball::<3>(0.05), (0.002, 0.052));
     is_continuous("a ring", &torus(0.04, 0.015), (0.002, 0.017));

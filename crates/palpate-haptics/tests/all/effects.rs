@@ -44,7 +44,7 @@ fn hand(time: f64) -> PointState<3> {
 #[test]
 fn a_tick_with_guides_and_vibration_allocates_nothing() {
     let wood = Material::preset("wood").unwrap();
-    let impact = wood.impact.as_ref().map(Tap::from_data);
+    let impact = wood.impact.as_ref().map(Tap::from);
     let mut guides = guides();
     let mut servo = UnprotectedServo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
     let mapping = Mapping::new(MappingOptions::default()).unwrap();

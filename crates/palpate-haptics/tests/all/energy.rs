@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cases, cuboid, half_space, scaled, torus, vector};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{
     Bodies, Material, PointState, Probe, ServoOptions, Surface, UnprotectedServo,
@@ -129,7 +129,7 @@ fn shapes_of_space() -> Vec<(&'static str, Shape<3>)> {
         ("two balls", Shape::union([ball(0.04), beside.clone()]).unwrap()),
         (
             "two balls that flow together",
-            Shape::smooth_union([ball(0.04), beside], Smooth::Cubic, 0.004).unwrap(),
+            Shape::smooth_union([ball(0.04), beside], Profile::Cubic, 0.004).unwrap(),
         ),
         ("a lens", ball(0.05).stretched([1.0, 0.4, 0.8]).unwrap()),
         ("a screw", cuboid([0.03, 0.1, 0.05]).twisted(8.0).unwrap()),

@@ -223,7 +223,7 @@ fn wrong_options_are_refused_with_their_numbers() {
     let none = UnprotectedServo::new(shape.clone(), 0, ServoOptions::default()).map(|_| ());
     assert_eq!(none, Err(HapticsError::NoContactPoint));
     let error = with(ServoOptions::default().with_rate(0.0)).unwrap_err();
-    assert_eq!(error.to_string(), "rate must be positive and finite, got 0 Hz");
+    assert_eq!(error.to_string(), "rate must be from 1e-6 to 1e9, got 0 Hz");
     assert!(with(ServoOptions::default().with_max_force(f64::NAN)).is_err());
     assert!(with(ServoOptions::default().with_rise_time(-1.0)).is_err());
     assert!(Probe::new(-0.1).is_err() && Probe::new(f64::NAN).is_err());

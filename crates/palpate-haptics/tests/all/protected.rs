@@ -174,14 +174,62 @@ fn a_servo_does_not_run_with_a_device_that_bears_less_than_its_own() {
     assert_eq!(refused(own.clone().with_max_force_rate(1.0)), "max_force_rate");
     assert_eq!(refused(own.clone().with_continuous_force(1.0)), "continuous_force");
     assert_eq!(refused(own.clone().with_least_damping(0.4)), "least_damping");
+    assert_eq!(refused(own.clone().with_friction(0.1)), "friction");
     assert_eq!(refused(own.with_encoder_step(1e-5)), "encoder_step");
 }
 
+/// The end of the process came before the zero forces: the motors kept the last ones.
 #[test]
-fn a_refused_protection_leaves_nothing_half_done() {
-    // Once the map and the largest force of a servo changed before the first check failed.
-    let servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
-    let profile = Fragile::new().profile.with_max_force(1.0).with_least_damping(f64::NAN);
-    assert!(servo.clone().protected(&Protection::new(profile)).is_err());
-    assert_eq!(servo.options().max_force, 3.3);
+fn a_thread_that_is_dropped_writes_its_zero_forces_first() {
+    let device = Fragile::new();
+    let servo = Servo::for_device(floor(), &device).unwrap();
+    let (clock, mut driver) = VirtualClock::driven();
+    let options = ThreadOptions::default().with_raised_priority(false);
+    let thread =
+        ServoThread::start_on(clock, servo, Box::new(device.clone()), options).unwrap();
+    driver.advance(Duration::from_millis(250));
+    let last = || device.written.lock().unwrap().last().copied();
+    assert!(last().is_some_and(|force| force != Vector::ZERO));
+    drop(driver);
+    drop(thread);
+    assert_eq!(last(), Some(Vector::ZERO));
+}
+
+/// NaN was no limit, and a negative one a device without force.
+#[test]
+fn a_profile_whose_largest_force_is_none_is_refused() {
+    for max_force in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        let profile = Fragile::new().profile.with_max_force(max_force);
+        let servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
+        let refused = servo.protected(&Protection::new(profile)).unwrap_err();
+        assert!(refused.to_string().starts_with("max_force must be"), "{refused}");
+    }
+}
+
+/// A servo that was stopped before it was protected gave its force at the release at once.
+#[test]
+fn what_was_stopped_before_it_was_protected_is_released_gently() {
+    let mut servo = UnprotectedServo::new(floor(), 1, ServoOptions::default()).unwrap();
+    servo.stop(true);
+    let profile = Fragile::new().profile;
+    let rate = profile.max_force_rate;
+    let mut servo = servo.protected(&Protection::new(profile)).unwrap();
+    let at = |y: f64| [PointState::at_rest(Vector([0.0, y]))];
+    servo.step(&at(0.01));
+    for _ in 0..200 {
+        servo.step(&at(-0.005));
+        assert_eq!(servo.forces()[0], Vector::ZERO);
+    }
+    servo.stop(false);
+    let mut before = 0.0;
+    for _ in 0..200 {
+        servo.step(&at(-0.005));
+        let force = servo.forces()[0].norm();
+        assert!(
+            force - before <= 1e-3 * rate + 1e-9 && force - before <= 0.1,
+            "{before} {force}"
+        );
+        before = force;
+    }
+    assert!(before > 1.0, "{before}");
 }

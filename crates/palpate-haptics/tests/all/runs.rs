@@ -285,15 +285,16 @@ fn a_run_says_whether_the_device_took_the_last_zero_forces() {
     let report = run(&mut servo, &mut device, fast(1.0)).unwrap();
     assert!(device.0.written.is_some_and(|force| force != Vector::ZERO));
     assert_eq!((&report.ending, report.is_released), (&Ending::Finished, false));
-    let error = report.unless_lost().unwrap_err();
-    assert!(error.reason.contains("zero forces"), "{error}");
+    let error = report.unless_failed().unwrap_err();
+    assert!(error.to_string().contains("zero forces"), "{error}");
 
     let mut device = Watched::new();
     let mut servo = Servo::for_device(half_space([0.0, 1.0], 0.0), &device).unwrap();
     let report = run(&mut servo, &mut device, fast(1.0)).unwrap();
-    assert!(report.is_released && report.unless_lost().is_ok());
+    assert!(report.is_released && report.unless_failed().is_ok());
     let report = run(&mut servo, &mut device, fast(4.0)).unwrap();
-    assert_eq!(report.unless_lost().unwrap_err().reason, "unplugged");
+    let unplugged = DeviceLost { reason: "unplugged".to_owned() };
+    assert_eq!(report.unless_failed().unwrap_err(), unplugged.into());
 }
 
 #[test]

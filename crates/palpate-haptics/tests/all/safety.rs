@@ -182,6 +182,9 @@ fn a_millijoule_bounds_a_wall_whose_force_changes_slowly() {
             let outcome = Wall { grip, start, max_force_rate, ..TOO_STIFF }.press();
             let least = outcome.least_balance;
             assert!(least >= -1e-3, "{least} J: {max_force_rate} N/s, grip {grip}");
+            // A force that only the slew limit holds was no number for the observer.
+            let seen = outcome.report.passivity.least_balance;
+            assert!(seen >= least - 1e-12 && seen < least + 5e-5, "{seen} {least}");
         }
     }
 }

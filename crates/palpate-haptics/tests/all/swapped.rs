@@ -9,9 +9,9 @@ use crate::common::tools::smooth;
 use crate::common::{AnyServo, body, half_space};
 use palpate_field::{Pose, Vector};
 use palpate_haptics::{
-    Bodies, DeviceProfile, HandoffOptions, Material, PointState, Probe, Protection, Servo,
-    ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, TurnState, TurningProfile,
-    UnprotectedServo, handoff,
+    Bodies, DeviceProfile, HandoffOptions, HapticsError, Material, PointState, Probe,
+    Protection, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions, ToolState, TurnState,
+    TurningProfile, UnprotectedServo, handoff,
 };
 
 const DEPTH: f64 = 1.0 / 256.0;
@@ -151,6 +151,51 @@ fn a_tool_hangs_on_new_bodies_as_if_it_had_been_protected_on_them() {
     assert!(seen.iter().any(|(arms, _)| *arms < 1.0));
     assert!(seen.iter().any(|(_, stiffness)| *stiffness < 400.0));
     assert!(seen.contains(&(1.0, 500.0)), "{seen:?}");
+}
+
+/// What was given back had the stiffness that was accepted for the other bodies: a hard body was
+/// rendered with the coupling of a soft one.
+#[test]
+fn bodies_that_are_given_back_are_rendered_as_they_were() {
+    let scenes = [of_stiffness(100.0), damped(0.0), damped(0.4), damped(4.0)];
+    for before in &scenes {
+        for after in &scenes {
+            let mut servo = with_rod(before.clone());
+            let mut bodies = servo.accept(after.clone()).unwrap();
+            for now in [after, before, after] {
+                servo.replace_bodies(&mut bodies).unwrap();
+                let fresh = with_rod(now.clone());
+                assert_eq!(servo.tool().unwrap().coupling(), fresh.tool().unwrap().coupling());
+                assert_eq!(servo.accepted(), fresh.accepted());
+                assert_eq!(servo.safety(), fresh.safety());
+            }
+        }
+    }
+}
+
+/// Bodies that a stronger device renders, or that nobody checked, were rendered by any servo.
+#[test]
+fn bodies_that_were_accepted_for_another_servo_are_refused() {
+    let unlimited = Protection::new(DeviceProfile::unlimited("strong"));
+    let tool =
+        |bodies| UnprotectedServo::with_tool(bodies, rod(), ServoOptions::default()).unwrap();
+    let strong = tool(damped(0.0)).protected(&unlimited).unwrap();
+    let mut weak = with_rod(damped(0.0));
+    let accepted = weak.accepted().to_vec();
+    let mut bodies = strong.accept(damped(4.0)).unwrap();
+    assert_eq!(weak.replace_bodies(&mut bodies), Err(HapticsError::OtherServo));
+    assert_eq!(weak.accepted(), accepted);
+    assert_eq!(strong.clone().replace_bodies(&mut bodies), Ok(()));
+
+    let plain = tool(damped(0.0));
+    let (mut control, mut end) = handoff(&plain, HandoffOptions::default());
+    let mut servo = plain.protected(&Protection::new(device())).unwrap();
+    end.receive(&mut servo);
+    assert!(!servo.is_stopped());
+    control.replace_bodies(damped(4.0)).unwrap();
+    end.receive(&mut servo);
+    assert!(servo.is_stopped());
+    assert_eq!(servo.accepted(), accepted);
 }
 
 #[test]

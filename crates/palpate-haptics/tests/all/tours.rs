@@ -7,7 +7,7 @@
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
 use palpate_devices::{HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
 use palpate_haptics::{HapticsError, ServoOptions, UnprotectedServo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
@@ -40,7 +40,7 @@ fn row_of_bodies() -> Shape<3> {
 fn star() -> Shape<2> {
     let star = Shape::from_kernel(RegularStar::new(12, 0.3, 0.212).unwrap());
     let disc = ball(0.2).translated(Vector([-0.25, 0.15])).unwrap();
-    Shape::smooth_union([star, disc], Smooth::Quadratic, 0.00025).unwrap()
+    Shape::smooth_union([star, disc], Profile::Quadratic, 0.00025).unwrap()
 }
 
 fn angle() -> Shape<2> {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How deep a ball is in a field: memoir 3.1, for every field.
+//! How deep a ball is in a field.
 //!
 //! The gap between a ball about C with radius r and a shape is `d(C) − r`, with the signed
 //! distance d. Where the field is exact on C's side, `d = f(C)`, and one evaluation is all.
@@ -155,7 +155,7 @@ fn search<const D: usize>(
     (goal, budget): (Goal, u32),
     workspace: &mut BallWorkspace<D>,
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
-    QueryError::check_point("a centre", centre)?;
+    QueryError::check_point("centre", centre)?;
     QueryError::check_length(radius)?;
     QueryError::check_length(goal.tolerance)?;
     let (value, gradient) = shape.distance_gradient(centre);
@@ -300,6 +300,11 @@ impl<const D: usize> BallSearch<'_, D> {
         self.body.shape.promise().rounding.within(p.norm())
     }
 
+    /// The rounding of the field in a box [m].
+    fn slack_of(&self, aabb: &Aabb<D>) -> f64 {
+        self.body.shape.promise().rounding.within(aabb.radius_about_origin())
+    }
+
     /// Whether a value is proven not to have `sign`. A shape without interior is reached where
     /// the value is zero up to rounding.
     fn is_through(&self, sign: f64, value: f64, slack: f64) -> bool {
@@ -383,7 +388,7 @@ impl<const D: usize> BallSearch<'_, D> {
     /// From inside, the nearest point past the shape's box is outside.
     fn look_past_bounds(&mut self) {
         let Some(aabb) = self.body.aabb().filter(|_| self.sign < 0.0) else { return };
-        let grown = aabb.grown(self.slack(aabb.max) + self.geometry);
+        let grown = aabb.grown(self.slack_of(&aabb) + self.geometry);
         for k in 0..D {
             for face in [grown.min[k], grown.max[k]] {
                 if (face - self.centre[k]).abs() < self.reach {
@@ -406,7 +411,7 @@ impl<const D: usize> BallSearch<'_, D> {
         self.dropped = far;
         let cube = Aabb { min: self.centre, max: self.centre }.grown(far * (1.0 + 1e-12));
         let Some(aabb) = aabb else { return Some(cube) };
-        let mut root = aabb.grown(self.slack(aabb.max) + self.geometry);
+        let mut root = aabb.grown(self.slack_of(&aabb) + self.geometry);
         for k in 0..D {
             root.min[k] = root.min[k].max(cube.min[k]);
             root.max[k] = root.max[k].min(cube.max[k]);

@@ -72,6 +72,11 @@ impl<C: Rebound> Heap<C> {
         self.drift += by;
     }
 
+    /// By how much all bounds were lowered since the heap was empty.
+    pub(crate) fn drift(&self) -> f64 {
+        self.drift
+    }
+
     pub(crate) fn clear(&mut self) {
         self.heap.clear();
         self.cells.clear();
@@ -88,12 +93,11 @@ impl<C: Rebound> Heap<C> {
         self.len() + more <= self.room
     }
 
-    /// Takes all cells out, in no order.
-    pub(crate) fn drain(&mut self) -> impl Iterator<Item = C> {
-        let (cells, drift) = (&self.cells, self.drift);
-        self.heap
-            .drain()
-            .map(move |key| cells[key.place() as usize].with_lower(key.lower() - drift))
+    /// All cells, in no order.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = C> {
+        let cell =
+            |key: &Key| self.cells[key.place() as usize].with_lower(key.lower() - self.drift);
+        self.heap.iter().map(cell)
     }
 }
 

@@ -9,13 +9,17 @@
 //! Neighbouring candidates with like normals form a patch. The contacts of a patch are its
 //! deepest point, the corners that span it, and more points where the corners do not span
 //! all of it.
+//!
+//! `region` finds the candidates with their normals, `Touch` the normal of a point that is found
+//! otherwise, `patch` and `fill` choose the contacts; the separation and its bounds come from
+//! `pair/search.rs`.
 
 mod fill;
 pub(crate) mod grid;
 mod patch;
 mod region;
 
-use palpate_field::{Point, Vector};
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
 use crate::certified::{Certified, Limits};
 use crate::contact::Contact;
@@ -25,6 +29,7 @@ use crate::pair::body_pair::BodyPair;
 use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::placed::Placed;
+use crate::sampler::{arbitrary, normal};
 use grid::distance;
 use patch::Patches;
 use region::Region;
@@ -42,12 +47,15 @@ const SHALLOW: f64 = 1e-3;
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManifoldSettings {
-    /// The largest gap of a contact [m].
+    /// The largest gap of a contact [m]; the deepest contact may exceed it by the tolerance of the
+    /// search.
     pub margin: f64,
     /// The size of the smallest boxes searched [m]. Parts of the region that are smaller may be
-    /// missed, except for the certified deepest point; contacts are at least as far apart.
+    /// missed, except for the certified deepest point. Contacts with like normals are at least as
+    /// far apart.
     pub spacing: f64,
-    /// The largest number of contacts: the deepest is kept, and those farthest apart.
+    /// The largest number of contacts: the deepest is kept, and those farthest apart. Zero counts
+    /// as one.
     pub most: usize,
 }
 
@@ -82,7 +90,7 @@ impl ManifoldSettings {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Manifold<const D: usize> {
-    /// The contacts, by group, in each group from the deepest.
+    /// The contacts, by group; in each group the deepest comes first, by the fields' values.
     pub contacts: Vec<Contact<D>>,
     /// The number of contacts in each group. A group is one patch with like normals.
     pub groups: Vec<usize>,
@@ -223,16 +231,16 @@ impl ManifoldSettings {
 
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         QueryError::check_length(self.margin)?;
-        QueryError::check_length(self.spacing)?;
-        if self.spacing == 0.0 {
-            return Err(QueryError::Setting { what: "a spacing", value: self.spacing });
+        let is_size = self.spacing > 0.0 && self.spacing <= LARGEST_LENGTH;
+        if !is_size {
+            return Err(QueryError::Setting { what: "spacing", value: self.spacing });
         }
         Ok(())
     }
 
     /// The length of which precisions are shares [m]: the margin, or a share of the spacing if
     /// that is more.
-    fn depth(&self) -> f64 {
+    fn precision_length(&self) -> f64 {
         self.margin.max(SHALLOW * self.spacing)
     }
 }
@@ -254,12 +262,11 @@ struct Member<const D: usize> {
 
 impl<const D: usize> Touch<D> {
     /// The touch at a point. Where no gradient gives a normal, the line between the bodies'
-    /// centres does, or else the second axis.
+    /// centres does, if they differ.
     fn at(pair: &mut BodyPair<'_, D>, point: Point<D>) -> Self {
         let [(a, slope_a), (b, slope_b)] = pair.slopes(point);
-        let ways = [slope_a - slope_b, pair.between_centres(), Vector::unit(1)];
-        let way = ways.into_iter().find(|way| way.norm() > 1e-6).unwrap_or(ways[2]);
-        Self { point, normal: way * (1.0 / way.norm()), gap: 2.0 * a.max(b) }
+        let normal = normal(slope_a - slope_b).or_else(|| pair.between_centres().normalized());
+        Self { point, normal: normal.unwrap_or_else(arbitrary), gap: 2.0 * a.max(b) }
     }
 
     /// The contact in world coordinates. Points of the surfaces count only within `near` and

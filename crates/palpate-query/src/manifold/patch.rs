@@ -18,11 +18,11 @@ const NEIGHBOURS: f64 = 2.0;
 /// The cosine of how far normals of a patch may be from that of its first, 25°.
 const ALIKE: f64 = 0.906;
 
-/// By how much of [`ManifoldSettings::depth`] what is next to a patch may be less deep and still be a
-/// patch of its own; beyond it is the patch's slope.
+/// Candidates next to a patch that are less deep by more than this share of
+/// [`ManifoldSettings::precision_length`] are its slope, and no patch of their own.
 const SLOPE: f64 = 0.1;
 
-/// How precisely the deepest point of a patch is found, as a share of the same.
+/// The precision of the deepest point of a patch, as a share of the same length.
 const PRECISE: f64 = 1e-3;
 
 /// Patches smaller than this many spacings are one contact, as are corners.
@@ -62,7 +62,8 @@ impl<const D: usize> Patches<'_, '_, D> {
             is_owned[seed] = true;
             let mut is_slope = false;
             grid.taken(first.point, |i| {
-                is_slope |= candidates[i].gap < first.gap - SLOPE * self.settings.depth();
+                is_slope |=
+                    candidates[i].gap < first.gap - SLOPE * self.settings.precision_length();
             });
             if is_slope {
                 continue;
@@ -134,7 +135,7 @@ impl<const D: usize> Patches<'_, '_, D> {
 
     /// The deepest point near a candidate.
     fn deepest(&mut self, start: Touch<D>) -> Touch<D> {
-        let goal = Goal::least(PRECISE * self.settings.depth());
+        let goal = Goal::least(PRECISE * self.settings.precision_length());
         // Bodies that touch in a valley meet all along it nearly as deep: short steps find
         // no way down.
         let first = Some(self.settings.spacing);
@@ -189,12 +190,5 @@ impl<const D: usize> Patches<'_, '_, D> {
 
 /// A vector square to both, in space; in the plane there is none.
 fn square_to<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Option<Vector<f64, D>> {
-    (D == 3).then(|| {
-        let mut square = Vector::ZERO;
-        for k in 0..D {
-            let (i, j) = ((k + 1) % D, (k + 2) % D);
-            square[k] = a[i] * b[j] - a[j] * b[i];
-        }
-        square
-    })
+    (D == 3).then(|| a.in_space().cross(b.in_space()).truncated())
 }

@@ -12,13 +12,14 @@ use crate::certified::Stop;
 use crate::engine::{self, End, Frontier, Heap, Problem};
 use crate::pair::PairWorkspace;
 use crate::pair::body_pair::{BodyPair, Memory};
-use crate::pair::cell::{BoxCell, least_of_larger, reach};
+use crate::pair::cell::{BoxCell, least_of_larger};
 use crate::pair::search::ROOM;
 
 /// Steps to the surface between at most.
 const STEPS: usize = 4;
 
-/// How close to it is on it, as a share of [`ManifoldSettings::depth`].
+/// A point counts as on the surface between the bodies within this share of
+/// [`ManifoldSettings::precision_length`].
 const ON: f64 = 1e-3;
 
 /// Boxes in which the gap varies by no more than this share of the same beyond an affine
@@ -45,7 +46,7 @@ pub(super) fn find<const D: usize>(
     first: Touch<D>,
 ) -> Region<D> {
     let root = pair.root(0.5 * settings.margin);
-    let slack = pair.slack(reach(&root));
+    let slack = pair.slack(root.radius_about_origin());
     let PairWorkspace { frontier, open, memory, .. } = workspace;
     frontier.queue.clear();
     BoxCell::unknown(&root).grid(&mut frontier.pending);
@@ -188,7 +189,8 @@ fn look<const D: usize>([a, b]: &[Model; 2], settings: &ManifoldSettings, slack:
     }
     let half_margin = 0.5 * settings.margin;
     let between = across + (a.lower + b.upper).max(a.upper + b.lower);
-    let is_flat = a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.depth();
+    let is_flat =
+        a.lower.max(a.upper) + b.lower.max(b.upper) <= FLAT * settings.precision_length();
     let is_inside = a.value + along[0] + a.upper < half_margin
         && b.value + along[1] + b.upper < half_margin;
     if (a.value - b.value).abs() > between + 2.0 * slack
@@ -263,7 +265,7 @@ pub(super) fn towards<const D: usize>(
         return Towards::Nothing;
     }
     let apart = a - b;
-    if apart.abs() > ON * settings.depth() {
+    if apart.abs() > ON * settings.precision_length() {
         return Towards::Next(p - between * (apart / squared));
     }
     let gap = 2.0 * a.max(b);

@@ -24,7 +24,7 @@ use super::placed::{PlacedMesh, View};
 use crate::certified::Limits;
 use crate::contacts::level;
 use crate::element::{Element, parts_of_one};
-use crate::element_search::{Terms, Workspace, search};
+use crate::element_search::{ElementWorkspace, Terms, search};
 use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::placed::Placed;
@@ -50,7 +50,7 @@ pub struct MeshWorkspace<const N: usize, const D: usize> {
     marks: Marks,
     pub(super) hits: MeshHits,
     pub(super) contacts: MeshContacts<D>,
-    pub(crate) search: Workspace<N, D>,
+    pub(crate) search: ElementWorkspace<N, D>,
 }
 
 /// An element or a part of one, in the field's coordinates.
@@ -78,7 +78,7 @@ impl<const N: usize, const D: usize> MeshWorkspace<N, D> {
             marks: Marks::default(),
             hits: MeshHits::default(),
             contacts: MeshContacts::default(),
-            search: Workspace::new(),
+            search: ElementWorkspace::new(),
         }
     }
 }
@@ -123,7 +123,7 @@ pub struct MeshHits {
 ///
 /// The mesh is not copied: the search moves centres of its tree as it needs them. `limits`
 /// hold for each element that the tree and a few points do not decide; an element that they
-/// do not suffice for is undecided. Before that, the search evaluates the field at most 65
+/// do not suffice for is undecided. Before that, the search evaluates the field at most 72
 /// times per element, and not at all on elements in a ball that is wholly free or inside.
 ///
 /// # Errors

@@ -36,8 +36,7 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
             return Err(QueryError::Pose { index });
         }
         let [body, mesh] = poses.map(|pose| pose.translation.norm());
-        let bounds = self.mesh.bounds();
-        let reach = body + mesh + bounds.centre().norm() + bounds.half_extents().norm();
+        let reach = body + mesh + self.mesh.bounds().radius_about_origin();
         if reach > LARGEST_LENGTH {
             return Err(QueryError::Coordinate { what: "a mesh in the world", value: reach });
         }

@@ -169,11 +169,6 @@ impl<const D: usize> BoxCell<D> {
     }
 }
 
-/// No point of a box is farther from the origin [m].
-pub(crate) fn reach<const D: usize>(aabb: &Aabb<D>) -> f64 {
-    aabb.centre().norm() + aabb.half_extents().norm()
-}
-
 /// A lower bound of one field over a box, from its model.
 #[inline]
 pub(crate) fn least<const D: usize>(model: &Model) -> f64 {

@@ -7,7 +7,6 @@
 use palpate_field::scalar::Model;
 use palpate_field::{Aabb, BoundingBall, Point, Pose, Rotation, Shape, Vector};
 
-use super::cell::reach;
 use crate::error::QueryError;
 use crate::larger::larger;
 use crate::placed::{Placed, check_pose};
@@ -22,7 +21,8 @@ const LEAST_TURN: f64 = 1e-2;
 /// one: a lower bound of the distance to a shape, nowhere steeper than one, of which
 /// [`separation`](crate::separation) is made.
 ///
-/// `g` is at most u only within u of the box, which is what bounds a search. Outside of the
+/// Where `g ≤ u`, the shape's box is at most `u` away, so a search need not look farther. Outside of
+/// the
 /// region in which a field keeps its steepness, `g` has the right sign and bounds nothing
 /// around it.
 ///
@@ -92,7 +92,7 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
             None => aabb,
             Some(pose) => {
                 let placed = aabb.placed(&pose.inverse());
-                placed.grown(self.geometry(reach(&placed)))
+                placed.grown(self.geometry(placed.radius_about_origin()))
             }
         })
     }
@@ -104,7 +104,7 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
     /// so far to go.
     pub(crate) fn tightened(&self, aabb: &Aabb<D>, grown: f64) -> Option<Aabb<D>> {
         let (pose, own) = (self.body_from_frame.as_ref()?, self.aabb?);
-        let rounding = self.geometry(reach(aabb));
+        let rounding = self.geometry(aabb.radius_about_origin());
         let own = own.grown(grown + rounding);
         let mut tight = *aabb;
         for (i, row) in pose.rotation.matrix().iter().enumerate() {
@@ -221,8 +221,9 @@ impl<'a, const D: usize> DistanceBound<'a, D> {
     ) -> (f64, Vector<f64, D>) {
         let (outside, away) = self.outside_box(local);
         let inner = f * self.scale;
+        // As `larger`: a value that is no number stays one.
         let (value, slope) =
-            if inner >= outside { (inner, gradient * self.scale) } else { (outside, away) };
+            if outside > inner { (outside, away) } else { (inner, gradient * self.scale) };
         match &self.body_from_frame {
             None => (value, slope),
             Some(pose) => (value, pose.rotation.inverse().rotate(slope)),

@@ -10,6 +10,7 @@ use super::{Nearest, PairWorkspace, separation};
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
 use crate::placed::Placed;
+use crate::sampler::arbitrary;
 
 /// Directions that are tried all around.
 const AROUND: usize = 48;
@@ -18,8 +19,8 @@ const AROUND: usize = 48;
 const WIDEST: f64 = 0.3;
 const NARROWEST: f64 = 0.01;
 
-/// Directions as far apart are tried once more only where they led to a way that is
-/// shorter than this share of the best; always would be for ever without a tolerance.
+/// A round of directions is repeated at the same spread only if it made the way shorter than this
+/// share: without a tolerance the search would not end.
 const WORTH: f64 = 0.99;
 
 /// Steps along a direction at most.
@@ -102,7 +103,7 @@ pub fn escape<'a, const D: usize>(
     };
     let here = search.at(Vector::ZERO, 0.0)?;
     let at_least = (-here.upper).max(0.0);
-    let normal = here.best.normal.unwrap_or_else(|| Vector::unit(D - 1));
+    let normal = here.best.normal.unwrap_or_else(arbitrary);
     if here.lower >= 0.0 {
         search.best = Some((normal, 0.0));
     } else {

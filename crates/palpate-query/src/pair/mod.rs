@@ -51,8 +51,8 @@ pub use search::PairWorkspace;
 ///   its length.
 /// - **Overlapping**, it is minus the width of the widest ball in the overlap, where both
 ///   fields are exact inside; else it is between that and zero. It has the right sign and is
-///   continuous as the bodies move. It is not how far a body must move to leave the other,
-///   and never below minus the width of the smaller body: that is [`escape`].
+///   continuous as the bodies move. It is never below minus the width of the smaller body.
+///   How far a body must move to leave the other is bounded by [`escape`].
 ///
 /// The answer's point is where the larger `g` is least: between the bodies, or in both.
 /// [`Nearest::contact`] finds the points of both surfaces next to it.

@@ -57,7 +57,7 @@ pub fn proof<'a, const D: usize>(
     search.keeps_all = true;
     let (answer, _) = search.run_within(0.0, workspace);
     let Frontier { queue, pending, .. } = &mut workspace.frontier;
-    let known = pending.drain(..).chain(queue.drain());
+    let known = pending.drain(..).chain(queue.cells());
     let boxes = known.map(|cell| ProofBox {
         aabb: Aabb { min: cell.centre - cell.half, max: cell.centre + cell.half },
         lower: 2.0 * cell.lower,

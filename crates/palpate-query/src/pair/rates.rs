@@ -35,10 +35,11 @@ const STEPS: usize = 200;
 pub struct Rates<const D: usize> {
     /// Where the separation is found [m].
     pub point: Point<D>,
-    /// By how the matter at `point` of the first and of the second body moves.
+    /// The derivative of the separation by the motion of the matter at `point`, of the first and
+    /// of the second body; without unit.
     pub of: [Vector<f64, D>; 2],
-    /// How long the mean is that should vanish: what the rates may be off by. It is
-    /// larger where the search left the point uncertain.
+    /// The length of the mean gradient, which vanishes at the exact point: a bound of the error
+    /// of the rates. It is larger where the search left the point uncertain.
     pub residual: f64,
 }
 
@@ -66,13 +67,7 @@ impl<const D: usize> Rates<D> {
     pub fn derivative(&self, body: usize, pivot: Point<D>) -> PoseDerivative<D> {
         let translation = self.of[body];
         let arm = self.point - pivot;
-        let turn = |i: usize, k: usize| {
-            if k < D { arm[i] * translation[k] - arm[k] * translation[i] } else { 0.0 }
-        };
-        let rotation = match D {
-            2 => Vector([0.0, 0.0, turn(0, 1)]),
-            _ => Vector([turn(1, 2), -turn(0, 2), turn(0, 1)]),
-        };
+        let rotation = arm.in_space().cross(translation.in_space());
         PoseDerivative { translation, rotation }
     }
 }

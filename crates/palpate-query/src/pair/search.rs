@@ -8,7 +8,7 @@ use palpate_field::{Aabb, BLOCK, Point, Vector};
 
 use super::Nearest;
 use super::body_pair::{BodyPair, Memory};
-use super::cell::{BoxCell, least, least_of_larger, mean, reach};
+use super::cell::{BoxCell, least, least_of_larger, mean};
 use super::descent::descend;
 use crate::certified::{Certified, Limits, Stop};
 use crate::engine::{self, Frontier, Heap, Problem, Queue};
@@ -155,10 +155,10 @@ impl<'a, const D: usize> PairSearch<'a, D> {
         workspace: &mut PairWorkspace<D>,
     ) -> (Certified<Nearest<D>>, Aabb<D>) {
         let both = self.pair.root(0.0);
-        self.slack = self.pair.slack(reach(&both));
+        self.slack = self.pair.slack(both.radius_about_origin());
         self.descend(both.centre(), None);
         let root = self.root(margin);
-        self.slack = self.pair.slack(reach(&root));
+        self.slack = self.pair.slack(root.radius_about_origin());
         workspace.frontier.queue.clear();
         if self.goal.is_hit(self.upper + self.slack) {
             return (self.answer(Stop::SignKnown, f64::NEG_INFINITY), root);
@@ -172,7 +172,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
     pub(crate) fn resume(&mut self, root: &Aabb<D>, workspace: &mut PairWorkspace<D>) {
         let Frontier { queue, pending, .. } = &mut workspace.frontier;
         pending.clear();
-        self.slack = self.pair.slack(reach(root));
+        self.slack = self.pair.slack(root.radius_about_origin());
         let threshold = self.threshold();
         while queue.least() < threshold {
             queue.take_least(|cell| pending.push(*cell));

@@ -14,7 +14,7 @@ use crate::error::QueryError;
 use crate::goal::Goal;
 use crate::pair::Nearest;
 use crate::pair::body_pair::BodyPair;
-use crate::pair::cell::{BoxCell, reach};
+use crate::pair::cell::BoxCell;
 use crate::pair::distance_bound::DistanceBound;
 use crate::pair::search::{PairSearch, PairWorkspace, ROOM};
 use crate::placed::Placed;
@@ -160,13 +160,18 @@ impl<const D: usize> Cover<D> {
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
+        // Bounds are kept relative to what all were lowered by; the slack of a step covers their
+        // rounding while that is no longer than coordinates are.
+        if self.cells.drift() > self.root.radius_about_origin() {
+            return false;
+        }
         // The best point has moved as little as the bodies have.
         search.descend(self.best, Some(search.goal.tolerance));
         let root = search.root(0.0);
         if !(self.root.contains(root.min) && self.root.contains(root.max)) {
             return false;
         }
-        let slack = search.pair.slack(reach(&self.root));
+        let slack = search.pair.slack(self.root.radius_about_origin());
         let moved = self.displacement(&search.pair.second_from_frame) + slack;
         self.cells.lower_all(moved);
         search.reserve = RESERVE * moved;
@@ -186,8 +191,8 @@ impl<const D: usize> Cover<D> {
             .zip(now.rotation.matrix())
             .map(|(before, now)| (Vector(*now) - Vector(*before)).norm().powi(2));
         let moved = now.transform_point(centre) - before.transform_point(centre);
-        // A difference of two rotations stretches two directions alike, and in space no
-        // third: each by the sum of its squares, halved.
+        // A difference of two rotations stretches two directions alike, and in space no third. The
+        // stretch is the square root of half the sum of the squared entries.
         let stretch = (0.5 * turned.sum::<f64>()).sqrt();
         (moved.norm() + stretch * radius) * (1.0 + 1e-12)
     }

@@ -20,7 +20,6 @@ use crate::certified::{Limits, Stop};
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings};
-use crate::pair::cell::reach;
 use crate::placed::check_pose;
 use crate::pool::Pool;
 use crate::track::Track;
@@ -379,7 +378,7 @@ impl<const D: usize> Body<D> {
         let bounds = self.shape.promise().bounds;
         self.aabb = bounds.map(|bounds| {
             let placed = bounds.aabb.placed(&pose);
-            placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * reach(&placed))
+            placed.grown(0.5 * margin + ROUNDINGS * f64::EPSILON * placed.radius_about_origin())
         });
     }
 }

@@ -13,7 +13,7 @@ use palpate_query::{
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
@@ -78,31 +78,26 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let mut workspace = BallWorkspace::new();
-    let (mut seed, mut asked, mut spent) = (0, 0, 0);
-    cases::check(count, |u| {
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, 1 + seed % 4)?;
-        let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
-        let size = draw::size(&shape);
-        let centre = draw::point(u, &shape)?;
+    let (mut asked, mut spent) = (0, 0);
+    cases::on_trees(count, 4, |u, _, shape| {
+        let size = draw::size(shape);
+        let centre = draw::point(u, shape)?;
         let radius = size * [0.0, 0.01, 0.2, 1.0][u.choose_index(4)?] * draw::unit(u)?;
         let limits = Limits::new(0.01 * size).with_budget(200_000);
         let asks = [
-            contact_ball(&shape, centre, radius, &limits, &mut workspace),
-            touches_ball(&shape, centre, radius, &limits, &mut workspace),
+            contact_ball(shape, centre, radius, &limits, &mut workspace),
+            touches_ball(shape, centre, radius, &limits, &mut workspace),
             // Ten evaluations prove little, and nothing that is wrong.
-            contact_ball(&shape, centre, radius, &limits.with_budget(10), &mut workspace),
+            contact_ball(shape, centre, radius, &limits.with_budget(10), &mut workspace),
         ];
         let [gap, sign, hasty] = asks.map(|answer| answer.map_err(|error| error.to_string()));
         for answer in [&gap, &sign, &hasty] {
             let complaint = match answer {
-                Ok(answer) => wrong(u, &shape, (centre, radius), answer)?,
+                Ok(answer) => wrong(u, shape, (centre, radius), answer)?,
                 Err(error) => Some(error.clone()),
             };
             if let Some(complaint) = complaint {
-                return Ok(Err(format!(
-                    "{complaint}\n  {radius} m about {centre:?}, {tree:?}"
-                )));
+                return Ok(Err(format!("{complaint}\n  {radius} m about {centre:?}")));
             }
         }
         let (Ok(gap), Ok(sign)) = (gap, sign) else { return Ok(Ok(())) };
@@ -113,7 +108,7 @@ where
             return Ok(Err(format!("{sign:?} does not know")));
         }
         if sign.lower > gap.upper || gap.lower > sign.upper {
-            return Ok(Err(format!("{gap:?} and {sign:?} exclude each other: {tree:?}")));
+            return Ok(Err(format!("{gap:?} and {sign:?} exclude each other")));
         }
         asked += 1;
         spent += u64::from(gap.stop == Stop::BudgetSpent)
@@ -203,24 +198,21 @@ fn an_exact_field_is_asked_once_and_gives_the_witness() -> Outcome {
 #[test]
 fn a_ball_overlaps_as_its_shape_does() {
     let (mut workspace, mut of_pairs) = (BallWorkspace::new(), PairWorkspace::new());
-    let (mut seed, mut compared) = (0, 0);
-    cases::check(600, |u| {
-        seed += 1;
-        let tree: Tree<3> = draw::tree(u, 1 + seed % 3)?;
-        let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
-        let size = draw::size(&shape);
+    let mut compared = 0;
+    cases::on_trees::<3>(600, 3, |u, _, shape| {
+        let size = draw::size(shape);
         let radius = size * (0.02 + 0.5 * draw::unit(u)?);
         let (centre, limits) =
-            (draw::point(u, &shape)?, Limits::new(1e-3 * size).with_budget(200_000));
+            (draw::point(u, shape)?, Limits::new(1e-3 * size).with_budget(200_000));
         let Ok(body) = Ball::new(radius).map(Shape::from_kernel) else { return Ok(Ok(())) };
         let Ok(body) = body.translated(centre) else { return Ok(Ok(())) };
-        let by_ball = touches_ball(&shape, centre, radius, &limits, &mut workspace);
-        let by_pair = overlap(&shape, &body, &limits, &mut of_pairs);
+        let by_ball = touches_ball(shape, centre, radius, &limits, &mut workspace);
+        let by_pair = overlap(shape, &body, &limits, &mut of_pairs);
         let (Ok(by_ball), Ok(by_pair)) = (by_ball, by_pair) else { return Ok(Ok(())) };
         if let (Some(one), Some(other)) = (by_ball.is_hit(), by_pair.is_hit()) {
             compared += 1;
             if one != other {
-                return Ok(Err(format!("{by_ball:?} and {by_pair:?} of {tree:?}")));
+                return Ok(Err(format!("{by_ball:?} and {by_pair:?}")));
             }
         }
         Ok(Ok(()))

@@ -89,6 +89,7 @@ fn the_tiny_the_huge_and_the_far_are_as_far_apart_as_they_are() -> Result<(), Sh
         let rounding = 64.0 * f64::EPSILON * away;
         assert!(whole.lower <= truth + rounding, "{whole:?}");
         assert!(truth - rounding <= whole.upper, "{whole:?}");
+        assert!(whole.upper - whole.lower <= 1e-4 * size + 16.0 * rounding, "{whole:?}");
         assert!(sign.is_hit() != Some(true) || rounding > truth, "{sign:?}");
     }
     Ok(())

@@ -11,13 +11,13 @@ use palpate_field::scalar::Scalar;
 use palpate_field::{Point, Pose, Promise, Shape, ShapeError, Vector};
 use palpate_mesh::{Mesh, MeshError, Outline, TriangleMesh};
 use palpate_query::{
-    Contact, Element, Limits, MeshContact, MeshContacts, MeshWorkspace, Placed, PlacedMesh,
-    QueryError, Stop, Workspace, contacts, mesh_contacts, mesh_hits, minimum, touches,
+    Contact, Element, ElementWorkspace, Limits, MeshContact, MeshContacts, MeshWorkspace,
+    Placed, PlacedMesh, QueryError, Stop, contacts, mesh_contacts, mesh_hits, minimum, touches,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
-use palpate_testkit::tree::{Solid, Tree};
+use palpate_testkit::tree::Solid;
 
 /// Samples along an edge.
 const SAMPLES: u32 = 8;
@@ -54,14 +54,11 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let mut workspace = MeshWorkspace::new();
-    let mut alone = Workspace::new();
-    let (mut seed, mut seen, mut unknown) = (0, 0, 0);
-    cases::check(count, |u| {
-        seed += 1;
-        let tree: Tree<D> = draw::tree(u, 1 + (seed % 4))?;
-        let Ok(shape) = tree.shape() else { return Ok(Ok(())) };
-        let mesh: Mesh<N, D> = mesh(u, &shape)?;
-        let size = draw::size(&shape);
+    let mut alone = ElementWorkspace::new();
+    let (mut seen, mut unknown) = (0, 0);
+    cases::on_trees(count, 4, |u, _, shape| {
+        let mesh: Mesh<N, D> = mesh(u, shape)?;
+        let size = draw::size(shape);
         let pose = Pose::new(
             <Space as Turn<D>>::rotation(u)?,
             draw::direction::<D>(u)? * (0.1 * size),
@@ -70,7 +67,7 @@ where
         let level = gap * shape.promise().lipschitz.max(1.0);
         let limits = Limits::new(1e-6 * size);
         let placed = PlacedMesh::new(&mesh, pose);
-        let answer = mesh_hits(&shape, placed, gap, &limits, &mut workspace).unwrap();
+        let answer = mesh_hits(shape, placed, gap, &limits, &mut workspace).unwrap();
         let (hits, undecided) = (answer.hits.to_vec(), answer.undecided.to_vec());
         seen += mesh.elements().len();
         unknown += undecided.len();
@@ -82,33 +79,32 @@ where
             for p in draw::all_over(&corners, SAMPLES) {
                 let value = shape.distance(p) + rounding(p);
                 if !is_hit && is_open.is_none_or(|open| value < open.lower) && value < level {
-                    return Ok(Err(format!("missed {name} at {p:?}: {value}\n  {tree:?}")));
+                    return Ok(Err(format!("missed {name} at {p:?}: {value}")));
                 }
             }
             // Each by itself.
             let element = Element::new(corners).unwrap();
-            let one = minimum(&shape, &element, &limits, &mut alone).unwrap();
+            let one = minimum(shape, &element, &limits, &mut alone).unwrap();
             if is_hit && one.lower > level || !is_hit && is_open.is_none() && one.upper < level
             {
-                return Ok(Err(format!("{name} is {one:?}, hit {is_hit}\n  {tree:?}")));
+                return Ok(Err(format!("{name} is {one:?}, hit {is_hit}")));
             }
         }
         // Ten evaluations prove little, and nothing that is wrong.
         let hasty = limits.with_budget(10);
-        let answer = mesh_hits(&shape, placed, gap, &hasty, &mut workspace).unwrap();
+        let answer = mesh_hits(shape, placed, gap, &hasty, &mut workspace).unwrap();
         for hit in &answer.hits {
             if hits.binary_search(hit).is_err() && undecided.iter().all(|o| o.element != *hit) {
-                return Ok(Err(format!("{hit} touches in haste alone\n  {tree:?}")));
+                return Ok(Err(format!("{hit} touches in haste alone")));
             }
         }
         for hit in &hits {
             let is_open = answer.undecided.iter().any(|open| open.element == *hit);
             if answer.hits.binary_search(hit).is_err() && !is_open {
-                return Ok(Err(format!("{hit} is free in haste alone\n  {tree:?}")));
+                return Ok(Err(format!("{hit} is free in haste alone")));
             }
         }
-        Ok(contacts_are_right(&shape, &mesh, pose, gap, &limits)
-            .map_err(|complaint| format!("{complaint}\n  {tree:?}")))
+        Ok(contacts_are_right(shape, &mesh, pose, gap, &limits))
     });
     assert!(unknown * 1000 <= seen, "{unknown} of {seen} elements are undecided");
 }
@@ -121,7 +117,7 @@ fn contacts_are_right<const N: usize, const D: usize>(
     gap: f64,
     limits: &Limits,
 ) -> Result<(), String> {
-    let (mut workspace, mut alone) = (MeshWorkspace::new(), Workspace::new());
+    let (mut workspace, mut alone) = (MeshWorkspace::new(), ElementWorkspace::new());
     let placed = PlacedMesh::new(mesh, pose);
     let all = mesh_contacts(shape, placed, gap, limits, &mut workspace).unwrap();
     let is_named = |(i, touch): (usize, &MeshContact<D>)| touch.contact.id == i as u64;
@@ -204,7 +200,7 @@ fn segments_in_space_and_triangles_in_the_plane_are_decided_too() {
 fn on_triangle(shape: &Shape<3>, height: f64, gap: f64) -> Vec<Contact<3>> {
     let corners = [[-3.0, height, -2.0], [3.0, height, -2.0], [0.0, height, 4.0]].map(Vector);
     let limits = Limits::new(1e-5);
-    let mut workspace = Workspace::new();
+    let mut workspace = ElementWorkspace::new();
     let element = Element::new(corners).unwrap();
     contacts(shape, &element, gap, &limits, &mut workspace).unwrap().contacts.to_vec()
 }
@@ -374,7 +370,7 @@ fn a_mesh_touches_where_its_elements_do_by_themselves() -> Result<(), Box<dyn st
     let mut workspace = MeshWorkspace::new();
     let answer = mesh_hits(&shape, &strip, 0.0, &limits, &mut workspace)?;
     assert!(answer.undecided.is_empty() && answer.hits.len() > 100);
-    let mut alone = Workspace::new();
+    let mut alone = ElementWorkspace::new();
     let one_by_one: Vec<u32> = (0..strip.elements().len())
         .filter(|&name| {
             let element = Element::new(strip.corners(name)).unwrap();

@@ -176,7 +176,7 @@ fn every_question_refuses_a_tolerance_that_is_none() -> Test {
         }
     }
     let limits = Limits::new(f64::NAN);
-    let mut workspace = palpate_query::Workspace::new();
+    let mut workspace = palpate_query::ElementWorkspace::new();
     assert!(minimum(&ball, &element, &limits, &mut workspace).is_err());
     assert!(touches(&ball, &element, &limits, &mut workspace).is_err());
     Ok(())

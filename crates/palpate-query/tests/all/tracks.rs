@@ -4,7 +4,7 @@
 //! Bodies that move: what is kept of the last proof, and derivatives.
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, Torus};
-use palpate_field::operator::Smooth;
+use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Pose, Rotation, Shape, ShapeError, Vector};
 use palpate_query::{
     Limits, ManifoldSettings, PairWorkspace, Placed, Track, proof, rates, separation,
@@ -21,7 +21,7 @@ fn in_space() -> Result<Vec<Pair<3>>, ShapeError> {
     let torus = Shape::from_kernel(Torus::new(0.35, 0.15)?);
     let post = Shape::from_kernel(Cylinder::new(0.1, 0.9)?);
     let drilled = cuboid.clone().difference([post.clone()])?;
-    let blend = Shape::smooth_union([drilled.clone(), torus.clone()], Smooth::Cubic, 0.02)?;
+    let blend = Shape::smooth_union([drilled.clone(), torus.clone()], Profile::Cubic, 0.02)?;
     let stretched = torus.clone().stretched([1.0, 2.0, 0.5])?;
     Ok(vec![
         ("cuboid, torus", cuboid.clone(), torus),
@@ -35,7 +35,7 @@ fn in_the_plane() -> Result<Vec<Pair<2>>, ShapeError> {
     let cuboid = Shape::from_kernel(Cuboid::new(Vector([0.6, 0.4]))?);
     let ball = Shape::from_kernel(Ball::new(0.3)?);
     let bitten = cuboid.clone().difference([ball.clone().translated(Vector([0.3, 0.2]))?])?;
-    let blend = Shape::smooth_union([ball, cuboid.clone()], Smooth::Quadratic, 0.02)?;
+    let blend = Shape::smooth_union([ball, cuboid.clone()], Profile::Quadratic, 0.02)?;
     Ok(vec![("bitten cuboid, blend", bitten, blend.clone()), ("blend, cuboid", blend, cuboid)])
 }
 

@@ -239,11 +239,11 @@ impl<'a> Space<'a, 3> for Builder<'a> {
             object.word(REVOLVE, &["y"])?;
             flat.shape.revolved()
         };
-        let shape = shape.map_err(|error| refused(object.head, &error))?;
+        let shape = shape.map_err(|error| refused(object.head, error))?;
         Ok(Built { shape, size })
     }
 
     fn twisted(shape: Shape<3>, key: &str, rate: f64) -> Result<Shape<3>, Problem> {
-        shape.twisted(rate).map_err(|error| refused(key, &error))
+        shape.twisted(rate).map_err(|error| refused(key, error))
     }
 }

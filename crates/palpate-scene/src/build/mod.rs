@@ -108,7 +108,7 @@ where
     builder.named_shapes::<D>().map_err(|problem| problem.under("shapes"))?;
     let bodies = bodies(scene, &mut builder).map_err(|problem| problem.under("bodies"))?;
     let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
-        .map_err(|error| Problem::new(error.to_string()).under("bodies"))?;
+        .map_err(|error| Problem::of_shape(error).under("bodies"))?;
     let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
     let guides = guides(scene).map_err(|problem| problem.under("guides"))?;
     check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
@@ -136,10 +136,8 @@ where
             let (world_from_body, shape) = match &body.pose {
                 Some(pose) => {
                     let pose = pose.built().map_err(|problem| problem.under("pose"))?;
-                    let shape = shape_in_body
-                        .clone()
-                        .placed(&pose)
-                        .map_err(|error| Problem::new(error.to_string()))?;
+                    let shape =
+                        shape_in_body.clone().placed(&pose).map_err(Problem::of_shape)?;
                     (pose, shape)
                 }
                 None => (Pose::identity(), shape_in_body.clone()),

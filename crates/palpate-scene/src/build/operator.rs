@@ -17,12 +17,10 @@ use crate::pose::{self, Turning, Turns};
 use crate::problem::Problem;
 
 /// The problem of an operator whose number is under `key`.
-pub(super) fn refused(key: &str, error: &ShapeError) -> Problem {
-    let problem = Problem::new(error.to_string());
-    match error {
-        ShapeError::Number { .. } => problem.under(key),
-        _ => problem,
-    }
+pub(super) fn refused(key: &str, error: ShapeError) -> Problem {
+    let is_of_number = matches!(error, ShapeError::Number { .. });
+    let problem = Problem::of_shape(error);
+    if is_of_number { problem.under(key) } else { problem }
 }
 
 impl<'a> Builder<'a> {
@@ -81,7 +79,7 @@ impl<'a> Builder<'a> {
                 (shape, keys::WIDTH)
             }
         };
-        let shape = shape.map_err(|error| refused(number, &error))?;
+        let shape = shape.map_err(|error| refused(number, error))?;
         Ok(Built { shape, size })
     }
 
@@ -153,7 +151,7 @@ impl<'a> Builder<'a> {
             }
         };
         let number = if keys::MOVES.contains(&key) { keys::TRANSLATE } else { key };
-        let shape = shape.map_err(|error| refused(number, &error))?;
+        let shape = shape.map_err(|error| refused(number, error))?;
         Ok(Built { shape, size })
     }
 }

@@ -58,7 +58,7 @@ fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usiz
             other => other,
         });
     }
-    let shape = entry.build(&arguments).map_err(|error| refused(entry, given, &error))?;
+    let shape = entry.build(&arguments).map_err(|error| refused(entry, given, error))?;
     Ok((shape, arguments.iter().map(weight).sum::<usize>().max(1)))
 }
 
@@ -135,27 +135,32 @@ fn weight(argument: &Argument) -> usize {
 fn refused<const D: usize>(
     entry: &Entry<D>,
     given: &Map<String, Value>,
-    error: &ShapeError,
+    error: ShapeError,
 ) -> Problem {
     let (ShapeError::Number { parameter: name, .. }
-    | ShapeError::Count { parameter: name, .. }) = error
+    | ShapeError::Count { parameter: name, .. }) = &error
     else {
-        return Problem::new(error.to_string());
+        return Problem::of_shape(error);
     };
     // "points[2]" is about the parameter "points".
     let base = name.split(['[', '.']).next().unwrap_or(name);
     let parameter = entry.parameters.iter().find(|parameter| parameter.name == base);
     let in_file = |parameter| Some((parameter, given_for(given, parameter).ok()??));
     let Some((parameter, (key, _))) = parameter.and_then(in_file) else {
-        return Problem::new(error.to_string());
+        return Problem::of_shape(error);
     };
-    let message = match error {
+    let in_degrees = match &error {
         ShapeError::Number { rule, value, .. }
             if parameter.kind == ParameterKind::Angle && value.1 == Unit::Radian =>
         {
-            format!("{key} must be {rule}, got {value} ({}°)", value.0.to_degrees())
+            Some(format!("{key} must be {rule}, got {value} ({}°)", value.0.to_degrees()))
         }
-        _ => error.to_string(),
+        _ => None,
     };
-    Problem::new(message).under(key)
+    let problem = Problem::of_shape(error);
+    match in_degrees {
+        Some(message) => problem.saying(message),
+        None => problem,
+    }
+    .under(key)
 }

@@ -36,6 +36,12 @@ impl Position {
     }
 }
 
+/// How many characters the first `bytes` of a line are; serde counts bytes.
+fn characters(text: &str, line: usize, bytes: usize) -> usize {
+    let line = text.split('\n').nth(line.saturating_sub(1));
+    line.and_then(|line| line.get(..bytes)).map_or(bytes, |begin| begin.chars().count())
+}
+
 /// A JSON text, its value, and the tree that knows the places.
 pub(crate) struct Document<'a> {
     text: &'a str,
@@ -55,8 +61,9 @@ impl<'a> Document<'a> {
             return Err(SceneError {
                 path: String::new(),
                 line: error.line(),
-                column: error.column(),
+                column: characters(text, error.line(), error.column()),
                 problem: format!("not JSON: {}", full.get(..end).unwrap_or(&full)),
+                cause: None,
             });
         }
         let at = |message: String, byte| {

@@ -77,9 +77,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// If the bodies have another dimension than the scene, if a shape holds what files cannot
-    /// say (a kernel, field or closure of a user), or if a rotation deviates from orthonormal by
-    /// more than 1e-9. The error has the path to the place, and the name of the Rust type.
+    /// If the bodies have another dimension than the scene, or if a shape holds what files cannot
+    /// say (a kernel, field or closure of a user). The error has the path to the place, and the name of the Rust type.
     ///
     /// Names, poses and materials are checked by [`build`](Self::build), which also refuses a
     /// scene of more than a million nodes, or of more than 128 nested operators, with references
@@ -155,21 +154,19 @@ fn written<const D: usize>(
     body: &SceneBody<D>,
 ) -> Result<WrittenBody, Problem> {
     let shape = writer.shape(&body.shape).map_err(|problem| problem.under("shape"))?;
-    let pose = body.world_from_body.as_ref().map(pose).transpose();
     Ok(WrittenBody {
-        pose: pose.map_err(|problem| problem.under("rotation").under("pose"))?,
+        pose: body.world_from_body.as_ref().map(pose),
         material: body.material.clone().map(WrittenMaterial::from),
         ..WrittenBody::new(&body.name, shape)
     })
 }
 
-fn pose<const D: usize>(pose: &Pose<D>) -> Result<WrittenPose, Problem> {
-    let translation = translation(pose.translation);
-    Ok(WrittenPose {
-        translation,
-        rotation: rotation::written(&pose.rotation)?,
+fn pose<const D: usize>(pose: &Pose<D>) -> WrittenPose {
+    WrittenPose {
+        translation: translation(pose.translation),
+        rotation: rotation::written(&pose.rotation),
         description: None,
-    })
+    }
 }
 
 /// The numbers of a translation; `None` for none.

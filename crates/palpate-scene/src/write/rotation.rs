@@ -7,29 +7,20 @@ use palpate_field::{Rotation, Vector};
 
 use crate::angle::degrees_near;
 use crate::pose::{AxisAngle, WrittenRotation, of_rows};
-use crate::problem::Problem;
 
 /// The form of a rotation that reads back to the same bits: an angle in degrees, in space about
 /// an axis of coordinates; else in space a quaternion; else the rows of the matrix. `None` if
 /// nothing is turned.
-pub(super) fn written<const D: usize>(
-    rotation: &Rotation<D>,
-) -> Result<Option<WrittenRotation>, Problem> {
+pub(super) fn written<const D: usize>(rotation: &Rotation<D>) -> Option<WrittenRotation> {
     if bits(rotation) == bits(&Rotation::<D>::identity()) {
-        return Ok(None);
+        return None;
     }
     let rows: Vec<_> = rotation.matrix().iter().map(|row| row.to_vec()).collect();
     let short = match D {
         2 => of_rows::<2>(&rows).ok().and_then(|rotation| in_degrees(&rotation)),
         _ => of_rows::<3>(&rows).ok().and_then(|rotation| of_axis_or_quaternion(&rotation)),
     };
-    if short.is_some() {
-        return Ok(short);
-    }
-    if of_rows::<D>(&rows).is_ok_and(|again| bits(&again) == bits(rotation)) {
-        return Ok(Some(WrittenRotation::Rows(rows)));
-    }
-    Err(Problem::about("must be orthonormal within 1e-9 to be written to the bit"))
+    short.or(Some(WrittenRotation::Rows(rows)))
 }
 
 fn bits<const D: usize>(rotation: &Rotation<D>) -> Vec<u64> {

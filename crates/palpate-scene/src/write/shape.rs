@@ -159,7 +159,7 @@ impl Writer {
     /// The operators on one shape.
     fn unary<const D: usize>(&mut self, node: &Node<D>) -> Result<Value, Problem> {
         let (object, of) = match node {
-            Node::Placed { pose, of } => (placement(pose)?, of),
+            Node::Placed { pose, of } => (placement(pose), of),
             Node::Scaled { factor, of } => (json!({ keys::SCALE: factor }), of),
             Node::Stretched { factors, of } => (json!({ keys::SCALE: &factors[..] }), of),
             Node::Offset { distance, of } => (json!({ keys::OFFSET: distance }), of),
@@ -231,10 +231,8 @@ fn angle(in_degrees: &str, in_radians: &str, angle: f64) -> (String, Value) {
 }
 
 /// The keys of a placement.
-fn placement<const D: usize>(pose: &Pose<D>) -> Result<Value, Problem> {
-    let rotation =
-        rotation::written(&pose.rotation).map_err(|problem| problem.under(keys::ROTATION))?;
-    let (turn, attitude) = pose::keys(rotation);
+fn placement<const D: usize>(pose: &Pose<D>) -> Value {
+    let (turn, attitude) = pose::keys(rotation::written(&pose.rotation));
     let mut object = Map::new();
     if let Some(translation) = translation(pose.translation) {
         object.insert(keys::TRANSLATE.to_owned(), json!(translation));
@@ -245,7 +243,7 @@ fn placement<const D: usize>(pose: &Pose<D>) -> Result<Value, Problem> {
     if let Some(attitude) = attitude {
         object.insert(keys::ROTATION.to_owned(), json!(attitude));
     }
-    Ok(Value::Object(object))
+    Value::Object(object)
 }
 
 /// The name of a profile.

@@ -257,16 +257,6 @@ fn a_rotation_of_few_digits_is_made_orthonormal() {
 }
 
 #[test]
-fn a_rotation_that_is_not_orthonormal_is_not_written() {
-    let turn = Rotation::from_rows([[1.0, 1e-7], [-1e-7, 1.0 + 1e-7]]).unwrap();
-    let shape = Shape::cuboid([1.0, 2.0]).unwrap().rotated(turn).unwrap();
-    assert_eq!(
-        Scene::of_shape("it", &shape).unwrap_err().to_string(),
-        "bodies[0].shape.rotation: rotation must be orthonormal within 1e-9 to be written to the bit",
-    );
-}
-
-#[test]
 fn a_shape_that_is_shared_is_written_once() {
     let mut shape = Shape::sphere(0.1).unwrap();
     for i in 0..16 {

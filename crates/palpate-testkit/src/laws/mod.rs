@@ -33,6 +33,11 @@ pub fn rounding<const D: usize>(shape: &Shape<D>, p: Point<D>) -> f64 {
     shape.promise().rounding.within(p.norm())
 }
 
+/// `true` if `error` is larger than `allowed`, or no number.
+pub(crate) fn exceeds(error: f64, allowed: f64) -> bool {
+    error.is_nan() || error > allowed
+}
+
 /// Gradients at points `step` from `p` may differ this much from that at `p` if the
 /// field is smooth there.
 const SMOOTH: f64 = 1e-5;

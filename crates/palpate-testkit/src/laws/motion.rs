@@ -5,7 +5,7 @@
 
 use palpate_field::{Point, Pose, Shape, ShapeError, Vector};
 
-use super::{rounding, smooth_at};
+use super::{exceeds, rounding, smooth_at};
 
 /// The largest difference of corresponding gradients where the field is smooth.
 const GRADIENT: f64 = 1e-4;
@@ -62,7 +62,7 @@ fn corresponds<const D: usize>(
     let point = 8.0 * f64::EPSILON * q.norm() * shape.promise().lipschitz;
     let slack = factor * rounding(shape, p) + rounding(image, q) + point;
     let apart = (image_f - factor * f).abs();
-    if apart > slack {
+    if exceeds(apart, slack) {
         return Err(format!(
             "{image_f:e} {what}, {factor} times {f:e} before, {apart:e} apart (allowed \
              {slack:e}) at {p:?}"

@@ -5,7 +5,7 @@
 
 use palpate_field::{Aabb, Point, Quality, Shape, Vector};
 
-use super::rounding;
+use super::{exceeds, rounding};
 
 /// The rounding of points in the laws themselves, relative to coordinates.
 const POINT: f64 = 8.0 * f64::EPSILON;
@@ -49,7 +49,7 @@ pub fn never_overclaims<const D: usize>(
         let q = p - g * f;
         let landed = shape.distance(q);
         let slack = 4.0 * (slack + rounding(shape, q)) + 32.0 * f64::EPSILON * f.abs();
-        if landed.abs() > slack {
+        if exceeds(landed.abs(), slack) {
             return Err(format!(
                 "exact value {f:e} at {p:?} with gradient {g:?}, but the surface is not \
                  there: {landed:e} (allowed {slack:e})"
@@ -188,7 +188,7 @@ pub fn symmetric_where_promised<const D: usize>(
         let mut image = p;
         image[axis] = -image[axis];
         let (f, mirrored) = (shape.distance(p), shape.distance(image));
-        if symmetric && (f - mirrored).abs() > 2.0 * rounding(shape, p) {
+        if symmetric && exceeds((f - mirrored).abs(), 2.0 * rounding(shape, p)) {
             return Err(format!("axis {axis} of {p:?}: {f:e}, mirrored {mirrored:e}"));
         }
     }

@@ -6,7 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
-use crate::kernel::profile::{self, CutDisc};
+use crate::kernel::profile::{self, CutDiskProfile};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -36,7 +36,7 @@ const OPERATIONS: f64 = 6.0;
 pub struct CutDisk {
     radius: f64,
     cut_height: f64,
-    half: CutDisc,
+    half: CutDiskProfile,
 }
 
 impl CutDisk {
@@ -52,7 +52,7 @@ impl CutDisk {
             let rule = format!("less than the radius, {radius} m, above or below the centre");
             return Err(ShapeError::number("cut_height", rule, cut_height, Unit::Metre));
         }
-        Ok(Self { radius, cut_height, half: CutDisc::new(radius, cut_height) })
+        Ok(Self { radius, cut_height, half: CutDiskProfile::new(radius, cut_height) })
     }
 }
 
@@ -89,7 +89,6 @@ impl Kernel<2> for CutDisk {
 primitive! {
     CutDisk, cut_disk, 2,
     about: "What is above a line of a disc.",
-    model: Tangent,
     parameters: {
         radius: Length = "the radius of the disc",
         cut_height: Coordinate = "how far above the centre the cut is",
@@ -178,7 +177,6 @@ impl Kernel<2> for Moon {
 primitive! {
     Moon, moon, 2,
     about: "A disc without a second one above it: a crescent with its horns up.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the disc",
         cut_radius: Length = "the radius of the disc that is taken off"

@@ -110,7 +110,6 @@ impl Kernel<2> for Egg {
 primitive! {
     Egg, egg, 2,
     about: "An egg of four arcs, its thin end up.",
-    model: Tangent,
     parameters: {
         bottom_radius: Length = "the radius of the bottom, half the width",
         top_radius: Length = "the radius of the top, at most that of the bottom",

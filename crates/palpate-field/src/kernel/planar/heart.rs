@@ -101,7 +101,6 @@ impl Kernel<2> for Heart {
 primitive! {
     Heart, heart, 2,
     about: "A heart, its tip down: a square on its corner with half a disc on each upper edge.",
-    model: ClosedForm,
     parameters: { height: Length = "the full height" },
     example: (1.7),
 }

@@ -161,7 +161,6 @@ impl Kernel<2> for Hyperbola {
 primitive! {
     Hyperbola, hyperbola, 2,
     about: "What is beyond the upper branch of a hyperbola.",
-    model: Tangent,
     parameters: {
         radii: Vector = "the semi-axes along x and y" => |kernel| Vector(kernel.radii),
     },

@@ -73,7 +73,6 @@ impl Kernel<2> for Rhombus {
 primitive! {
     Rhombus, rhombus, 2,
     about: "A rhombus, its diagonals along the axes.",
-    model: Tangent,
     parameters: {
         size: Vector = "the full diagonals along x and y"
             => |kernel| Vector(kernel.0.corners()) * 2.0,
@@ -167,7 +166,6 @@ impl Kernel<2> for Parallelogram {
 primitive! {
     Parallelogram, parallelogram, 2,
     about: "A parallelogram, two of its edges along x.",
-    model: Tangent,
     parameters: {
         width: Length = "the length of the top and of the bottom",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_extents[1],
@@ -262,7 +260,6 @@ impl Kernel<2> for IsoscelesTrapezoid {
 primitive! {
     IsoscelesTrapezoid, isosceles_trapezoid, 2,
     about: "A trapezoid about the y axis.",
-    model: Tangent,
     parameters: {
         bottom_width: LengthOrZero = "the full width at the bottom"
             => |kernel| 2.0 * kernel.bottom,
@@ -307,7 +304,6 @@ answered_by_inner!(IsoscelesTriangle.0, 2);
 primitive! {
     IsoscelesTriangle, isosceles_triangle, 2,
     about: "A triangle about the y axis, its tip up.",
-    model: Tangent,
     parameters: {
         base: Length = "the length of the base" => |kernel| kernel.0.bottom_width(),
         height: Length = "the full height" => |kernel| kernel.0.height(),

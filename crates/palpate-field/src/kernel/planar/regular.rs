@@ -140,7 +140,6 @@ impl Kernel<2> for RegularPolygon {
 primitive! {
     RegularPolygon, regular_polygon, 2,
     about: "A regular polygon, one corner up.",
-    model: Tangent,
     parameters: {
         sides: Count = "how many sides, 3 to 256",
         radius: Length = "from the centre to a corner",
@@ -276,7 +275,6 @@ impl Kernel<2> for RegularStar {
 primitive! {
     RegularStar, regular_star, 2,
     about: "A regular star, one tip up.",
-    model: ClosedForm,
     parameters: {
         branches: Count = "how many branches, 3 to 256",
         outer_radius: Length = "from the centre to a tip",

@@ -79,7 +79,6 @@ impl Kernel<2> for Ring {
 primitive! {
     Ring, ring, 2,
     about: "All points between two circles.",
-    model: ClosedForm,
     parameters: {
         inner_radius: Length = "the radius of the hole",
         outer_radius: Length = "the radius of the outer circle",

@@ -78,7 +78,6 @@ impl Kernel<2> for Tunnel {
 primitive! {
     Tunnel, tunnel, 2,
     about: "A rectangle below and half a disc on top.",
-    model: ClosedForm,
     parameters: {
         width: Length = "the full width" => |kernel| 2.0 * kernel.radius,
         height: Length = "the full height, the half disc included"
@@ -173,7 +172,6 @@ impl Kernel<2> for UnevenCapsule {
 primitive! {
     UnevenCapsule, uneven_capsule, 2,
     about: "Two discs on the y axis and all between their common tangents.",
-    model: Tangent,
     parameters: {
         bottom_radius: Length = "the radius of the lower disc",
         top_radius: Length = "the radius of the upper disc",

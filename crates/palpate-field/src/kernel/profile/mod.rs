@@ -9,7 +9,7 @@
 //! point of a solid of revolution lies in the half plane of the evaluated point.
 
 mod arc;
-mod cut_disc;
+mod cut_disk;
 mod lens;
 mod moon;
 mod outline;
@@ -18,7 +18,7 @@ mod two_discs;
 mod wedge;
 
 pub(super) use arc::Curve;
-pub(super) use cut_disc::{CutDisc, bounds_of_zone};
+pub(super) use cut_disk::{CutDiskProfile, bounds_of_zone};
 pub(super) use lens::Lens;
 pub(super) use moon::Moon;
 pub(super) use outline::{beside, intersection};

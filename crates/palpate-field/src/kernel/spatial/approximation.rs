@@ -72,7 +72,6 @@ impl Kernel<3> for CubeApproximation {
 primitive! {
     CubeApproximation, cube_approximation, 3,
     about: "The article's approximate cube: a bound with sharp isolines.",
-    model: ClosedForm,
     parameters: {
         side: Length = "the edge length" => |kernel| 2.0 * kernel.half_side,
     },
@@ -128,7 +127,6 @@ impl Kernel<3> for CylinderApproximation {
 primitive! {
     CylinderApproximation, cylinder_approximation, 3,
     about: "The article's approximate cylinder: a bound with sharp isolines.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
@@ -206,7 +204,6 @@ impl Kernel<3> for ConeApproximation {
 primitive! {
     ConeApproximation, cone_approximation, 3,
     about: "The article's approximate cone, corrected to be a bound.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
@@ -261,7 +258,6 @@ impl Kernel<3> for PyramidApproximation {
 primitive! {
     PyramidApproximation, pyramid_approximation, 3,
     about: "The article's approximate pyramid, corrected to be a bound.",
-    model: ClosedForm,
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,

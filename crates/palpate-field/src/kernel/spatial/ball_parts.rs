@@ -6,7 +6,7 @@
 use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
-use crate::kernel::profile::{Curve, CutDisc, Moon, Wedge, bounds_of_zone};
+use crate::kernel::profile::{Curve, CutDiskProfile, Moon, Wedge, bounds_of_zone};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -92,7 +92,6 @@ impl Kernel<3> for SolidAngle {
 primitive! {
     SolidAngle, solid_angle, 3,
     about: "The part of a ball in a cone about the +y axis, its tip at the origin.",
-    model: Tangent,
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.outer(),
         angle: Angle = "the opening from side to side, less than a full turn"
@@ -129,7 +128,7 @@ fn height_of_cut(radius: f64, height: f64) -> Result<f64, ShapeError> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct CutBall {
-    disc: CutDisc,
+    disc: CutDiskProfile,
     radius: f64,
     cut_height: f64,
 }
@@ -144,7 +143,7 @@ impl CutBall {
     pub fn new(radius: f64, cut_height: f64) -> Result<Self, ShapeError> {
         positive("radius", radius, Unit::Metre)?;
         height_of_cut(radius, cut_height)?;
-        Ok(Self { disc: CutDisc::new(radius, cut_height), radius, cut_height })
+        Ok(Self { disc: CutDiskProfile::new(radius, cut_height), radius, cut_height })
     }
 }
 
@@ -171,7 +170,6 @@ impl Kernel<3> for CutBall {
 primitive! {
     CutBall, cut_ball, 3,
     about: "A ball about the origin, cut off below a height.",
-    model: Tangent,
     parameters: {
         radius: Length = "the radius of the ball",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
@@ -254,7 +252,6 @@ impl Kernel<3> for CutHollowSphere {
 primitive! {
     CutHollowSphere, cut_hollow_sphere, 3,
     about: "A bowl: a hollow sphere about the origin, cut off above a height, its rim round.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "from the origin to the middle of the wall",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
@@ -328,7 +325,6 @@ impl Kernel<3> for DeathStar {
 primitive! {
     DeathStar, death_star, 3,
     about: "A ball about the origin with a ball-shaped bite from above.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.radius,
         cut_radius: Length = "the radius of the bite" => |kernel| kernel.0.cut_radius,

@@ -116,7 +116,6 @@ impl Kernel<3> for CappedCone {
 primitive! {
     CappedCone, capped_cone, 3,
     about: "A cone about the y axis with its tip cut off.",
-    model: Tangent,
     parameters: {
         bottom_radius: LengthOrZero = "the radius at the bottom",
         top_radius: LengthOrZero = "the radius at the top",
@@ -159,7 +158,6 @@ answered_by_inner!(Cone.0, 3);
 primitive! {
     Cone, cone, 3,
     about: "A cone about the y axis, its tip up.",
-    model: Tangent,
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.bottom_radius,
         height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
@@ -237,7 +235,6 @@ impl Kernel<3> for InfiniteCone {
 primitive! {
     InfiniteCone, infinite_cone, 3,
     about: "A cone without a base, its tip at the origin, opening downwards.",
-    model: Tangent,
     parameters: { angle: Angle = "the opening from side to side, less than half a turn" },
     example: (0.9),
 }

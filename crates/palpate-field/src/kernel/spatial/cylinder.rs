@@ -83,7 +83,6 @@ impl Kernel<3> for Cylinder {
 primitive! {
     Cylinder, cylinder, 3,
     about: "A cylinder about the y axis.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
@@ -152,7 +151,6 @@ impl Kernel<3> for RoundedCylinder {
 primitive! {
     RoundedCylinder, rounded_cylinder, 3,
     about: "A cylinder about the y axis, its rims rounded inwards.",
-    model: ClosedForm,
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height",
@@ -202,7 +200,6 @@ impl Kernel<3> for InfiniteCylinder {
 primitive! {
     InfiniteCylinder, infinite_cylinder, 3,
     about: "A cylinder without ends about the y axis.",
-    model: ClosedForm,
     parameters: { radius: Length = "the radius" },
     example: (0.3),
 }

@@ -83,7 +83,6 @@ impl Kernel<3> for Octahedron {
 primitive! {
     Octahedron, octahedron, 3,
     about: "A regular octahedron with corners on the axes.",
-    model: Tangent,
     parameters: { radius: Length = "from the centre to a corner" },
     example: (0.8),
 }

@@ -124,7 +124,6 @@ impl Kernel<3> for Pyramid {
 primitive! {
     Pyramid, pyramid, 3,
     about: "A pyramid on a square, its tip up along y.",
-    model: Tangent,
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.half_side,
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,

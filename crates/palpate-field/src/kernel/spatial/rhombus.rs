@@ -102,7 +102,6 @@ impl Kernel<3> for RhombusPrism {
 primitive! {
     RhombusPrism, rhombus_prism, 3,
     about: "A prism along y on a rhombus, its edges rounded inwards.",
-    model: Tangent,
     parameters: {
         size: Vector = "the diagonals along x and z, and the height along y",
         rounding: LengthOrZero = "the radius of the edges",

@@ -113,12 +113,12 @@ impl Sheet<4> {
             ShapeError::number("points", rule, height, Unit::Metre)
         };
         let basis = basis(longer, left).map_err(flat)?;
-        let normal = cross(basis[0], basis[1]);
+        let normal = basis[0].cross(basis[1]);
         let apart = normal.dot(corners[1] - corners[0]).abs();
         for i in 0..4 {
             let [before, corner, after] = [0, 1, 2].map(|k| corners[(i + k) % 4]);
             let line = (after - before).normalized().unwrap_or(basis[0]);
-            let height = (corner - before).dot(cross(line, normal));
+            let height = (corner - before).dot(line.cross(normal));
             if height <= FLAT * size {
                 return Err(flat(height));
             }
@@ -143,7 +143,7 @@ impl<const N: usize> Sheet<N> {
         not_negative("radius", radius, Unit::Metre)?;
         let centre = corners.iter().fold(Vector::ZERO, |sum, c| sum + *c * (1.0 / N as f64));
         // y × x = −z: seen against y, from x to z is clockwise.
-        let rows = [along, cross(across, along), across];
+        let rows = [along, across.cross(along), across];
         let rotation = Rotation::from_matrix(rows.map(|row| row.0))?.inverse();
         let pose = Pose::new(rotation, centre);
         let flat = corners.map(|c| Vector([(c - centre).dot(along), (c - centre).dot(across)]));
@@ -192,10 +192,6 @@ fn basis(first: Vector<f64, 3>, second: Vector<f64, 3>) -> Result<[Vector<f64, 3
     Ok([along, across])
 }
 
-fn cross(a: Vector<f64, 3>, b: Vector<f64, 3>) -> Vector<f64, 3> {
-    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-}
-
 impl<const N: usize> Kernel<3> for Sheet<N> {
     #[inline(always)]
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
@@ -230,7 +226,6 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
 primitive! {
     Sheet<3>, triangle_sheet, 3,
     about: "All points within a radius of a triangle in space.",
-    model: Tangent,
     parameters: {
         points: Points = "the three corners",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",
@@ -244,7 +239,6 @@ primitive! {
 primitive! {
     Sheet<4>, quad_sheet, 3,
     about: "All points within a radius of a flat convex quadrilateral in space.",
-    model: Tangent,
     parameters: {
         points: Points = "the four corners, in their order around it, in one plane",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",

@@ -73,7 +73,6 @@ impl Kernel<3> for Torus {
 primitive! {
     Torus, torus, 3,
     about: "All points within a radius of a circle about the y axis.",
-    model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: Length = "the radius of the tube",
@@ -165,7 +164,6 @@ impl Kernel<3> for CappedTorus {
 primitive! {
     CappedTorus, capped_torus, 3,
     about: "All points within a radius of an arc of a circle about the y axis, open towards -z.",
-    model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
@@ -243,7 +241,6 @@ impl Kernel<3> for Link {
 primitive! {
     Link, link, 3,
     about: "A chain's link: a torus about the y axis with straight sides along z.",
-    model: ClosedForm,
     parameters: {
         ring_radius: Length = "the radius of the circle of each bow",
         radius: Length = "the radius of the tube",

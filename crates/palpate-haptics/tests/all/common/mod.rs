@@ -102,8 +102,8 @@ impl<const D: usize> AnyServo<D> for Servo<D> {
         self.set_pose(body, world_from_body);
     }
     fn swap_bodies(&mut self, bodies: Bodies<D>) {
-        let bodies = self.accept(bodies).unwrap();
-        drop(self.replace_bodies(bodies));
+        let mut bodies = self.accept(bodies).unwrap();
+        self.replace_bodies(&mut bodies).unwrap();
     }
 }
 

@@ -19,13 +19,13 @@ use crate::vector::Vector;
 /// +y axis is less than that of the corner, which is the end of the cut. Else the nearest point
 /// is on the cut where `p` is below it, or the corner.
 #[derive(Clone, Debug)]
-pub(in crate::kernel) struct CutDisc {
+pub(in crate::kernel) struct CutDiskProfile {
     radius: f64,
     height: f64,
     half_width: f64,
 }
 
-impl CutDisc {
+impl CutDiskProfile {
     /// The part of a disc of `radius` [m] above `height` [m], with `|height| < radius`.
     pub(in crate::kernel) fn new(radius: f64, height: f64) -> Self {
         Self { radius, height, half_width: half_chord(radius, height) }

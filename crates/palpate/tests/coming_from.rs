@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The code of `docs/guide/coming-from.md`, by its sections: it compiles, and it runs.
+
+use palpate::devices::{Hand, SimulatedDevice, profile_named};
+use palpate::field::{Kernel, Promise, scalar::Scalar};
+use palpate::prelude::*;
+
+type Outcome = Result<(), Error>;
+
+fn plate() -> Result<Shape<3>, Error> {
+    Ok(Shape::cuboid([0.2, 0.02, 0.2])?)
+}
+
+fn device() -> Result<SimulatedDevice<3>, Error> {
+    let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
+    Ok(SimulatedDevice::new(profile_named("omega")?, vec![hand])?)
+}
+
+#[test]
+fn chai3d() -> Outcome {
+    use palpate::haptics::{Bodies, Probe, Protection, Proxy};
+    let (plate, mut device) = (plate()?, device()?);
+    let bodies = Bodies::new(vec![Body::new(plate, Material::wood())?])?;
+    let profile = device.profile().clone();
+    let _ = Proxy::<3>::new(Probe::default());
+    let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
+    let _ = Material::magnet();
+    let _: Protection<3> = Protection::new(profile).with_rise_time(0.2);
+    let _ = Shape::sphere(0.05)?;
+    let mut servo = Servo::for_device(bodies, &device)?;
+    let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];
+    device.read(0.0, &mut states)?;
+    servo.step(&states);
+    device.write(servo.forces())?;
+    assert_eq!(servo.touches()[0].device, servo.touches()[0].proxy);
+    Ok(())
+}
+
+#[test]
+fn openhaptics() -> Outcome {
+    use palpate::{
+        haptics::WorkspaceMap,
+        servo_loop::{ServoThread, ThreadOptions},
+    };
+    let mut device = device()?;
+    let profile = device.profile().clone();
+    let plate = plate()?;
+    let bounds = plate.promise().bounds.ok_or_else(|| std::io::Error::other("no bounds"))?.aabb;
+    let mut servo = Servo::for_device(plate, &device)?;
+    servo.step(&[]);
+    device.write(servo.forces())?;
+    assert!(device.profile().max_force > 0.0);
+    assert!(servo.accepted()[0].factor <= 1.0);
+    let _ = WorkspaceMap::fitting(bounds, profile.workspace_radius)?;
+    assert!(servo.events().is_empty());
+    let thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;
+    thread.end().report.unless_failed()?;
+    Ok(())
+}
+
+#[test]
+fn parry_and_rapier() -> Outcome {
+    use palpate::query::{ManifoldSettings, Placed, Ray, World, WorldSettings};
+    let plate = Shape::cuboid([0.2, 0.02, 0.2])?;
+    let pose = Pose::translation([0.0, 0.0595, 0.0].into());
+    let ball = Shape::sphere(0.05)?;
+    let (a, b) = (Placed::new(&plate, Pose::identity()), Placed::new(&ball, pose));
+    let _ = Placed::new(&plate, pose);
+    let mut query = Query::new();
+    assert!(query.separation(a, b)?.lower < 0.0);
+    assert_eq!(query.overlap(a, b)?.is_hit(), Some(true));
+    let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
+    let contact = query.manifold(a, b)?.contacts[0];
+    assert_eq!(contact.id, 0);
+    let (shape, ray) = (ball.clone(), Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into(), 2.0)?);
+    assert!(query.cast_ray(&shape, &ray)?.best.is_some());
+    let mut world = World::new(WorldSettings::of_size(0.1))?;
+    world.add(plate.clone(), Pose::identity())?;
+    world.add(ball.clone(), pose)?;
+    assert_eq!(world.step().len(), 1);
+    Ok(())
+}
+
+#[test]
+fn box2d() -> Outcome {
+    use palpate::query::{Limits, PairWorkspace, Tolerance, Track};
+    let mut track =
+        Track::new(Shape::rectangle([0.2, 0.1])?.offset(0.01)?, Shape::circle(0.1)?);
+    let poses = [Pose::identity(), Pose::translation([0.0, 0.155].into())];
+    let (limits, mut workspace) = (Limits::new(1e-4), PairWorkspace::new());
+    let answer = track.separation(poses, &limits, &mut workspace)?;
+    let contact = answer.best.contact(&track.shapes()[0], &track.shapes()[1]);
+    assert!(answer.upper < 0.0 && contact.is_some_and(|contact| contact.gap <= 0.0));
+    let _: Query<2> = Query::new().with_tolerance(Tolerance::Relative(1e-4));
+    Ok(())
+}
+
+#[derive(Clone, Debug)]
+struct MyKernel {
+    radius: f64,
+}
+
+impl Kernel<3> for MyKernel {
+    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+        p.norm() - S::constant(self.radius)
+    }
+
+    fn promise(&self) -> Promise<3> {
+        Promise::lipschitz(None, 1.0)
+    }
+}
+
+#[test]
+fn mujoco() -> Outcome {
+    use palpate::query::{ManifoldSettings, Stop};
+    let a = Shape::from_kernel(MyKernel { radius: 0.5 });
+    let b = Shape::sphere(0.1)?.translated([0.0, 0.7, 0.0])?;
+    let mut query = Query::new();
+    let answer = query.separation(&a, &b)?;
+    assert_eq!(answer.stop, Stop::Converged);
+    let contact =
+        answer.best.contact(&a, &b).ok_or_else(|| std::io::Error::other("no contact"))?;
+    assert!(contact.normal[1] > 0.9);
+    let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
+    Ok(())
+}
+
+#[test]
+fn fogleman_sdf() -> Outcome {
+    use palpate::field::operator::Profile;
+    let f = Shape::sphere(1.0)?;
+    let g = Shape::cuboid([1.0, 1.0, 1.0])?.translated([0.8, 0.0, 0.0])?;
+    let _ = &f - &g;
+    let _ = f.clone().translated([0.0, 0.1, 0.0])?;
+    let _ = f.clone().offset(0.1)?;
+    let _ = Shape::smooth_union([f, g.clone()], Profile::Quadratic, 0.025)?;
+    let f = g;
+    let _ = f.twisted(1.5)?;
+    Ok(())
+}
+
+/// The code of the page without its spaces, cell by cell.
+fn cells(page: &str) -> impl Iterator<Item = String> {
+    let code = |row: &str| {
+        let last = row.trim_end_matches('|').rsplit('|').next().unwrap_or_default().to_owned();
+        let quoted: Vec<_> = last.split('`').skip(1).step_by(2).map(bare).collect();
+        quoted
+    };
+    page.lines().filter(|line| line.starts_with("| ")).flat_map(code)
+}
+
+/// Without spaces, and without what a borrow or a clone adds.
+fn bare(code: &str) -> String {
+    code.replace(".clone()", "").chars().filter(|c| !c.is_whitespace() && *c != '&').collect()
+}
+
+#[test]
+fn every_line_of_the_page_is_tried_here() {
+    let here = bare(include_str!("coming_from.rs"));
+    let missing: Vec<_> = cells(include_str!("../../../docs/guide/coming-from.md"))
+        .filter(|cell| cell.contains(['(', '.']) && !here.contains(cell.as_str()))
+        .collect();
+    assert!(missing.is_empty(), "{missing:#?}");
+}
