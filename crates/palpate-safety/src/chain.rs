@@ -179,10 +179,10 @@ impl SafetyOptions {
 ///   device's damping dissipates the energy that the wall leaks. A stiffer wall gives out
 ///   little more energy than it took in: at most 1 mJ for a wall three times as stiff, on 0.05
 ///   to 0.1 kg with 0.5 N·s/m at 1 kHz, held with 0 to 10 N·s/m and pushed with 1 N for 10 s,
-///   from up to 50 mm away and in encoder steps of up to 30 µm (measured by the tests of `palpate-haptics`). This needs
-///   a [`DeviceProfile::max_force_rate`] of at least `K v`, the rate at which the force falls
-///   when the device leaves the wall; a slower limit holds forces that the controller would
-///   remove, and impacts give out more.
+///   from up to 50 mm away and in encoder steps of up to 30 µm (the tests of `palpate-haptics`
+///   measure it). This needs a [`DeviceProfile::max_force_rate`] of at least `K v`, the rate at
+///   which the force falls when the device leaves the wall; a slower limit holds forces that the
+///   controller would remove, and impacts give out more.
 ///
 /// The promise of passivity depends on the least damping of the device's profile, which is
 /// often [assumed](DeviceProfile::assumed); the report says so.

@@ -104,8 +104,9 @@ impl<const D: usize> Channel<D> {
         }
         // The stages shorten both parts by the same share. What the slew limit holds beyond that
         // comes from the bodies: it counts as observed.
-        let share = if all == Vector::ZERO { 0.0 } else { force.dot(all) / all.dot(all) };
-        (force, force - free * share.clamp(0.0, 1.0))
+        let share = (force.dot(all) / all.dot(all)).clamp(0.0, 1.0);
+        // Written so that NaN, of no force at all, is no share.
+        (force, if share > 0.0 { force - free * share } else { force })
     }
 
     /// Lowers the force limit; never raises it.

@@ -18,6 +18,10 @@ fn device() -> Result<SimulatedDevice<3>, Error> {
     Ok(SimulatedDevice::new(profile_named("omega")?, vec![hand])?)
 }
 
+fn none() -> std::io::Error {
+    std::io::Error::other("no contact")
+}
+
 #[test]
 fn chai3d() -> Outcome {
     use palpate::haptics::{Bodies, Probe, Protection, Proxy};
@@ -74,7 +78,8 @@ fn parry_and_rapier() -> Outcome {
     let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
     let contact = query.manifold(a, b)?.contacts[0];
     assert_eq!(contact.id, 0);
-    let (shape, ray) = (ball.clone(), Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into(), 2.0)?);
+    let (shape, ray) =
+        (ball.clone(), Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into(), 2.0)?);
     assert!(query.cast_ray(&shape, &ray)?.best.is_some());
     let mut world = World::new(WorldSettings::of_size(0.1))?;
     world.add(plate.clone(), Pose::identity())?;
@@ -85,14 +90,16 @@ fn parry_and_rapier() -> Outcome {
 
 #[test]
 fn box2d() -> Outcome {
-    use palpate::query::{Limits, PairWorkspace, Tolerance, Track};
+    use palpate::query::{Limits, PairWorkspace, Placed, Tolerance, Track};
     let mut track =
         Track::new(Shape::rectangle([0.2, 0.1])?.offset(0.01)?, Shape::circle(0.1)?);
     let poses = [Pose::identity(), Pose::translation([0.0, 0.155].into())];
     let (limits, mut workspace) = (Limits::new(1e-4), PairWorkspace::new());
     let answer = track.separation(poses, &limits, &mut workspace)?;
-    let contact = answer.best.contact(&track.shapes()[0], &track.shapes()[1]);
-    assert!(answer.upper < 0.0 && contact.is_some_and(|contact| contact.gap <= 0.0));
+    let [a, b] = track.shapes();
+    let placed = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
+    let contact = answer.best.contact(placed[0], placed[1]).ok_or_else(none)?;
+    assert!(answer.upper < 0.0 && contact.gap < 0.0);
     let _: Query<2> = Query::new().with_tolerance(Tolerance::Relative(1e-4));
     Ok(())
 }
@@ -120,8 +127,7 @@ fn mujoco() -> Outcome {
     let mut query = Query::new();
     let answer = query.separation(&a, &b)?;
     assert_eq!(answer.stop, Stop::Converged);
-    let contact =
-        answer.best.contact(&a, &b).ok_or_else(|| std::io::Error::other("no contact"))?;
+    let contact = answer.best.contact(&a, &b).ok_or_else(none)?;
     assert!(contact.normal[1] > 0.9);
     let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
     Ok(())
