@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Interrupt {
     asked: Arc<AtomicBool>,
     at_once: Arc<AtomicBool>,
+    is_deaf: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -27,6 +28,7 @@ impl Interrupt {
         Self {
             asked: Arc::new(AtomicBool::new(false)),
             at_once: Arc::new(AtomicBool::new(true)),
+            is_deaf: Arc::new(AtomicBool::new(true)),
         }
     }
 
@@ -43,8 +45,15 @@ impl Interrupt {
         Arc::clone(&self.at_once)
     }
 
+    /// `true` while the command does not check whether it is asked to end.
+    #[must_use]
+    pub fn is_deaf(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_deaf)
+    }
+
     /// Promises that from now on the command checks whether it is asked to end.
     pub(crate) fn heed(&self) {
+        self.is_deaf.store(false, Ordering::Relaxed);
         self.at_once.store(self.is_asked(), Ordering::Relaxed);
     }
 

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use mimalloc::MiMalloc;
 use palpate_cli::{Interrupt, run_until};
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -25,39 +25,28 @@ fn main() -> ExitCode {
     ExitCode::from(run_until(std::env::args_os(), &interrupt))
 }
 
-/// Lets signals ask the run to end; a second signal ends the process at once.
+/// Lets Ctrl-C, SIGTERM and the end of the terminal ask the run to end.
 fn listen(interrupt: &Interrupt) -> io::Result<()> {
-    for signal in requests() {
+    let status = Interrupt::STATUS.into();
+    for signal in [SIGINT, SIGTERM] {
         // The order matters: a signal ends the process only if an earlier one asked the run to
         // end.
-        let status = Interrupt::STATUS.into();
         flag::register_conditional_shutdown(signal, status, interrupt.at_once())?;
         flag::register(signal, interrupt.at_once())?;
         flag::register(signal, interrupt.asked())?;
     }
+    // A shell and the system may both say that a terminal has ended: the second time must not cut
+    // off what the first one asked for. `nohup` starts a run that ignores it.
+    #[cfg(target_os = "linux")]
+    if !is_ignored(SIGHUP) {
+        flag::register_conditional_shutdown(SIGHUP, status, interrupt.is_deaf())?;
+        flag::register(SIGHUP, interrupt.asked())?;
+    }
     Ok(())
 }
 
-/// The signals that ask a run to end: Ctrl-C, SIGTERM, and the end of its terminal.
-#[cfg(unix)]
-fn requests() -> Vec<i32> {
-    let mut signals = vec![SIGINT, SIGTERM];
-    // `nohup` starts a run that outlives its terminal: such a run ignores the signal.
-    if !is_ignored(SIGHUP) {
-        signals.push(SIGHUP);
-    }
-    signals
-}
-
-/// The signals that ask a run to end: Ctrl-C and SIGTERM.
-#[cfg(not(unix))]
-fn requests() -> Vec<i32> {
-    vec![SIGINT, SIGTERM]
-}
-
-/// `true` if the process ignores `signal`; `false` where the system does not say it, as only
-/// Linux does.
-#[cfg(unix)]
+/// `true` if the process ignores `signal`.
+#[cfg(target_os = "linux")]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -19,8 +19,9 @@ use palpate_haptics::{
 /// the hand feel older positions; it does not make ticks late.
 ///
 /// Each side watches the other. A driver that sets nothing for longer than its
-/// [`patience`](Self::with_patience) has died: the device is lost, and the servo stops. A servo
-/// whose [`ticks`](Mailbox::ticks) no longer grow hangs: the driver sets its motors to zero.
+/// [`patience`](Self::with_patience) has died: the device is lost, and the servo stops. If
+/// [`ticks`](Mailbox::ticks) stop growing, the servo hangs, and the driver must set its motors to
+/// zero.
 ///
 /// # Examples
 ///

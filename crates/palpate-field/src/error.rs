@@ -163,7 +163,7 @@ pub const LARGEST_LENGTH: f64 = 1e15;
 /// lose the range of single precision.
 pub const SMALLEST_LENGTH: f64 = 1e-15;
 
-const FINITE: &str = "finite and at most 1e15 either way";
+const FINITE: &str = "finite and at most 1e15 in size";
 
 /// Checks that `value` is finite and positive.
 #[inline]

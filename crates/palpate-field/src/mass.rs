@@ -356,7 +356,8 @@ impl<const D: usize> Shape<D> {
     ///
     /// # Errors
     ///
-    /// If the shape has no bounds, or its steepness is known in a region alone, or the density or the tolerance is not positive.
+    /// If the shape has no bounds, or its steepness is known in a region alone, or the density or
+    /// the tolerance is not positive.
     pub fn mass(&self, density: f64, limits: MassLimits) -> Result<Mass<D>, ShapeError> {
         let density = positive("density", density, Unit::One)?;
         let tolerance = positive("tolerance", limits.tolerance, Unit::One)?;

@@ -34,7 +34,7 @@ pub enum HapticsError {
     },
     /// A time or coordinate of a hand path is not finite or exceeds 1e15.
     #[error(
-        "sample {index} of the hand path must be finite and at most 1e15 either way, got {value}"
+        "sample {index} of the hand path must be finite and at most 1e15 in size, got {value}"
     )]
     SampleNotFinite {
         /// The index of the sample, from 0.
@@ -104,7 +104,7 @@ pub enum HapticsError {
         reason: String,
     },
     /// A number of a pose is not finite or exceeds 1e15.
-    #[error("the numbers of a pose must be finite and at most 1e15 either way")]
+    #[error("the numbers of a pose must be finite and at most 1e15 in size")]
     Pose,
     /// A shape cannot carry the texture of a surface.
     #[error(transparent)]

@@ -124,7 +124,7 @@ impl<const D: usize> Protection<D> {
     }
 
     /// Accepts everything that a servo renders: its bodies, and with a tool the requested
-    /// virtual coupling.
+    /// virtual coupling. A device that gives no force takes bodies as they are.
     pub(crate) fn accepted_bodies(
         self: &Arc<Self>,
         bodies: Bodies<D>,
@@ -132,6 +132,9 @@ impl<const D: usize> Protection<D> {
         rate: f64,
     ) -> Result<AcceptedBodies<D>, HapticsError> {
         let protection = Some(self.clone());
+        if self.profile.max_force == 0.0 {
+            return Ok(AcceptedBodies { protection, ..AcceptedBodies::unchanged(bodies) });
+        }
         if let Some(coupling) = requested {
             let (bodies, coupling, accepted) = self.accept_tool(bodies, coupling, rate)?;
             return Ok(AcceptedBodies {

@@ -64,7 +64,8 @@ impl RunReport {
         match &self.ending {
             Ending::DeviceLost { reason } => lost(reason),
             Ending::Panicked { message } => {
-                Err(RunError::Panicked { message: message.clone() })
+                let (message, is_released) = (message.clone(), self.is_released);
+                Err(RunError::Panicked { message, is_released })
             }
             _ if !self.is_released => lost("it did not take the zero forces at the end"),
             _ => Ok(self),
@@ -79,11 +80,13 @@ pub enum RunError {
     /// The device was lost, or did not take the zero forces at the end.
     #[error(transparent)]
     DeviceLost(#[from] DeviceLost),
-    /// The loop panicked, which is a defect; the forces were set to zero.
+    /// The loop panicked, which is a defect; zero forces were written.
     #[error("the servo's loop panicked, which is a defect: {message}")]
     Panicked {
         /// The panic's message.
         message: String,
+        /// `true` if the device accepted the zero forces.
+        is_released: bool,
     },
 }
 
@@ -115,7 +118,7 @@ pub enum Ending {
         /// The message of the transport.
         reason: String,
     },
-    /// The loop panicked, which is a defect; the forces were set to zero.
+    /// The loop panicked, which is a defect; zero forces were written.
     Panicked {
         /// The panic's message.
         message: String,

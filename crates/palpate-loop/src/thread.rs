@@ -90,9 +90,9 @@ impl ThreadOptions {
 /// A servo that runs with its device in a thread.
 ///
 /// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`, a panic in a tick ends
-/// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the loop,
-/// and waits up to a second for those forces to be written: the end of the process would stop the
-/// thread before.
+/// the loop, and the last forces written are always zero. Dropping a `ServoThread` ends the loop
+/// and waits up to a second for those forces: a process that ends at once would stop the thread
+/// before they are written.
 ///
 /// # Examples
 ///
@@ -146,7 +146,7 @@ impl<const D: usize> Drop for Handle<D> {
         let Some(thread) = &self.0 else { return };
         let start = Instant::now();
         while !thread.is_finished() && start.elapsed() < PATIENCE {
-            std::thread::park_timeout(Duration::from_millis(1));
+            std::thread::sleep(Duration::from_millis(1));
         }
     }
 }

@@ -17,7 +17,7 @@ pub enum MeshError {
     },
     /// A coordinate is not a number, or too large to compute with.
     #[error(
-        "vertex {vertex} must be finite and at most {LARGEST_LENGTH:e} m either way, got {value:?} m"
+        "vertex {vertex} must be finite and at most {LARGEST_LENGTH:e} m in size, got {value:?} m"
     )]
     Coordinate {
         /// The vertex, counted from 0.

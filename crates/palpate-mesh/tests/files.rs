@@ -208,6 +208,6 @@ fn errors_say_which_file_and_what_to_do() {
     let nan = read(b"v 0 0 0\nv 1 nan 0\nv 1 1 1\nf 1 2 3\n", Format::Obj).unwrap_err();
     assert_eq!(
         nan.to_string(),
-        "vertex 1 must be finite and at most 1e15 m either way, got NaN m"
+        "vertex 1 must be finite and at most 1e15 m in size, got NaN m"
     );
 }

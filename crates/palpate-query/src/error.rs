@@ -10,9 +10,7 @@ use palpate_field::{LARGEST_LENGTH, Point};
 #[non_exhaustive]
 pub enum QueryError {
     /// A coordinate is not a number, or too large to compute with.
-    #[error(
-        "{what} must be finite and at most {LARGEST_LENGTH:e} m either way, got {value:?} m"
-    )]
+    #[error("{what} must be finite and at most {LARGEST_LENGTH:e} m in size, got {value:?} m")]
     Coordinate {
         /// The name of the point or vector with the coordinate.
         what: &'static str,

@@ -52,5 +52,5 @@ pub(crate) fn check_pose<const D: usize>(
         return Err(QueryError::Pose { index });
     }
     let far = pose.translation.0.into_iter().find(|x| x.abs() > LARGEST_LENGTH);
-    far.map_or(Ok(()), |value| Err(QueryError::Coordinate { what: "a translation", value }))
+    far.map_or(Ok(()), |value| Err(QueryError::Coordinate { what: "translation", value }))
 }

@@ -55,8 +55,7 @@ impl<const D: usize> Ray<D> {
             return Err(QueryError::NoDirection);
         }
         QueryError::check_length(length)?;
-        // Divided by the largest first, since squares may underflow, as may its reciprocal
-        // overflow.
+        // Divided by the largest first: squares may underflow, and its reciprocal may overflow.
         let direction = Vector(direction.0.map(|x| x / largest));
         Ok(Self { origin, direction: direction * (1.0 / direction.norm()), length })
     }

@@ -89,9 +89,12 @@ impl<const D: usize> Channel<D> {
         self.effects.ticks += 1;
         let is_sound = input.is_sound;
         let all = with_free(observed, free);
-        let force = if is_sound { self.limited(all) } else { all };
+        let slewed = if is_sound { self.slewed(all) } else { all };
+        let force = if is_sound { self.limited(slewed) } else { slewed };
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
         let force = self.faded(force, input);
+        // The share that limits, ramp, watchdog and stop leave of both parts.
+        let share = if force == slewed { 1.0 } else { force.norm() / slewed.norm() };
         if !is_sound || self.is_stopped {
             // Both exceptions to the slew limit fall to zero at once.
             self.slew.restart();
@@ -99,13 +102,11 @@ impl<const D: usize> Channel<D> {
         }
         let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
-        if force == all {
+        if force == all && share == 1.0 {
             return (force, observed);
         }
-        // The stages shorten both parts by the same share. What the slew limit holds beyond that
-        // comes from the bodies: it counts as observed.
-        let share = (force.dot(all) / all.dot(all)).clamp(0.0, 1.0);
-        // Written so that NaN, of no force at all, is no share.
+        // What the slew limit holds beyond that share comes from the bodies: it counts as observed.
+        // Written so that NaN is no share.
         (force, if share > 0.0 { force - free * share } else { force })
     }
 
@@ -149,10 +150,14 @@ impl<const D: usize> Channel<D> {
         WatchdogReport { effect: self.effects.watchdog, trips: self.watchdog.trips() }
     }
 
-    /// A force after the limits of the device.
+    /// A force after the limit on its change.
+    fn slewed(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
+        self.effects.slew.count(force, self.slew.limit(force))
+    }
+
+    /// A force after the limits on its size.
     fn limited(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
         let effects = &mut self.effects;
-        let force = effects.slew.count(force, self.slew.limit(force));
         let force = effects.force_limit.count(force, self.force_limit.limit(force));
         effects.continuous.count(force, self.continuous.limit(force))
     }

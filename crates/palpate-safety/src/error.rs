@@ -63,7 +63,7 @@ impl NumberError {
         }
     }
 
-    /// Checks that a rate [Hz] is from 1e-6 to 1e9, so that its period is one of a clock.
+    /// Checks that a rate [Hz] is from 1e-6 to 1e9, so that a clock can count its period.
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl NumberError {
     /// # Errors
     ///
     /// If it is negative or NaN.
-    pub fn check_not_negative_or_infinite(
+    pub fn check_zero_or_more(
         parameter: &'static str,
         value: f64,
         unit: &'static str,

@@ -47,8 +47,8 @@ pub enum WrittenRotation {
     AxisAngle(AxisAngle),
     /// In space: a quaternion `[x, y, z, w]` of any length but zero.
     Quaternion([f64; 4]),
-    /// The rows of a matrix, orthonormal within 1e-6: the same rotation to the bit if they are so
-    /// to rounding, as those of a [`Rotation`] are.
+    /// The rows of a matrix, orthonormal within 1e-6. Rows that are so to rounding, as those of a
+    /// [`Rotation`], keep their bits.
     Rows(Vec<Vec<f64>>),
 }
 
@@ -316,7 +316,7 @@ pub(crate) fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, 
     let accepted = |x: f64| x.abs() <= palpate_field::LARGEST_LENGTH;
     if let Some(i) = components.iter().position(|x| !accepted(*x)) {
         let quantity = palpate_field::Quantity(components[i], Unit::Metre);
-        let message = format!("must be finite and at most 1e15 either way, got {quantity}");
+        let message = format!("must be finite and at most 1e15 in size, got {quantity}");
         return Err(Problem::about(message).at(i));
     }
     Ok(Vector(components))

@@ -150,7 +150,7 @@ impl View {
         // Written so that NaN is refused.
         let accepted = |at: &f64| at.abs() <= LARGEST_LENGTH;
         if let Some(at) = self.at.filter(|at| !accepted(at)) {
-            let message = format!("must be finite and at most 1e15 either way, got {at} m");
+            let message = format!("must be finite and at most 1e15 in size, got {at} m");
             return Err(Problem::about(message).under("at"));
         }
         match (&self.plane, self.at) {

@@ -16,7 +16,8 @@ const ENTROPY: usize = 1 << 16;
 /// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
 
-/// Checks `property` for the seeds `0..count`.
+/// Checks `property` for `count` seeds, from 0 or from the number in the variable
+/// `PALPATE_FIRST_SEED` of the environment on.
 ///
 /// A property draws its input from [`Unstructured`] and returns what is wrong
 /// with it. The same seed draws the same input on every machine.
@@ -29,7 +30,8 @@ pub fn check(
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
 ) {
     let mut failures = Vec::new();
-    for seed in 0..count {
+    let first = first_seed();
+    for seed in first..first + count {
         let bytes = entropy(seed);
         let guard = Seed(seed);
         let mut input = Unstructured::new(&bytes);
@@ -106,7 +108,7 @@ macro_rules! in_both_dimensions {
     };
 }
 
-/// Checks a `property` that panics if it fails, for the seeds `0..count`. Cases that cannot be
+/// Checks a `property` that panics if it fails, for the seeds of [`check`]. Cases that cannot be
 /// drawn are skipped.
 ///
 /// # Panics
@@ -123,6 +125,19 @@ pub fn each(
         Ok(Ok(()))
     });
     assert!(2 * drawn > count, "only {drawn} of {count} cases could be drawn");
+}
+
+/// The seed to begin with: other seeds than the usual ones find what those do not.
+///
+/// # Panics
+///
+/// If the variable holds no number.
+fn first_seed() -> u64 {
+    std::env::var("PALPATE_FIRST_SEED").map_or(0, |first| {
+        first
+            .parse()
+            .unwrap_or_else(|_| panic!("PALPATE_FIRST_SEED must be a number, got {first}"))
+    })
 }
 
 /// The bytes of a seed, by SplitMix64 (Steele, Lea and Flood 2014).

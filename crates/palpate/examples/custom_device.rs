@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! A device of one's own: a plotter's carriage in the plane, driven by two voltages.
-//!
-//! A `Device` reads where its points are, writes forces, and states its limits; the safety chain
-//! keeps every force within these limits. Here the transport is two numbers.
+//! The safety chain keeps every force within the limits that the device states.
 
 use palpate::devices::{DeviceLost, DeviceProfile, PointState};
 use palpate::prelude::*;
@@ -20,9 +18,11 @@ impl Device<2> for Carriage {
     fn points(&self) -> usize {
         1
     }
+
     fn profile(&self) -> &DeviceProfile {
         &self.profile
     }
+
     fn read(&mut self, time: f64, points: &mut [PointState<2>]) -> Result<(), DeviceLost> {
         let (sin, cos) = (std::f64::consts::PI * time).sin_cos();
         let speed = 0.048 * std::f64::consts::PI;
@@ -32,6 +32,7 @@ impl Device<2> for Carriage {
         }
         Ok(())
     }
+
     fn write(&mut self, forces: &[Vector<f64, 2>]) -> Result<(), DeviceLost> {
         for force in forces {
             self.volts = [0.5 * force[0], 0.5 * force[1]];
@@ -46,7 +47,6 @@ fn main() -> Result<(), Error> {
         .with_continuous_force(0.5)
         .with_max_force_rate(3000.0)
         .with_max_stiffness(1500.0)
-        .with_max_damping(10.0)
         .with_mass(0.1)
         .with_least_damping(0.5)
         .with_friction(0.2)

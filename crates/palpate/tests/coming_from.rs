@@ -4,7 +4,7 @@
 //! The code of `docs/guide/coming-from.md`, by its sections: it compiles, and it runs.
 
 use palpate::devices::{Hand, SimulatedDevice, profile_named};
-use palpate::field::{Kernel, Promise, scalar::Scalar};
+use palpate::field::{Promise, scalar::Scalar};
 use palpate::prelude::*;
 
 type Outcome = Result<(), Error>;
@@ -24,7 +24,8 @@ fn none() -> std::io::Error {
 
 #[test]
 fn chai3d() -> Outcome {
-    use palpate::haptics::{Bodies, Probe, Protection, Proxy};
+    use palpate::haptics::Probe;
+    use palpate::haptics::{Bodies, Protection, Proxy};
     let (plate, mut device) = (plate()?, device()?);
     let bodies = Bodies::new(vec![Body::new(plate, Material::wood())?])?;
     let profile = device.profile().clone();
@@ -66,7 +67,8 @@ fn openhaptics() -> Outcome {
 
 #[test]
 fn parry_and_rapier() -> Outcome {
-    use palpate::query::{ManifoldSettings, Placed, Ray, World, WorldSettings};
+    use palpate::query::{ManifoldSettings, Placed, World};
+    use palpate::query::{Ray, WorldSettings};
     let plate = Shape::cuboid([0.2, 0.02, 0.2])?;
     let pose = Pose::translation([0.0, 0.0595, 0.0].into());
     let ball = Shape::sphere(0.05)?;
@@ -90,7 +92,8 @@ fn parry_and_rapier() -> Outcome {
 
 #[test]
 fn box2d() -> Outcome {
-    use palpate::query::{Limits, PairWorkspace, Placed, Tolerance, Track};
+    use palpate::query::Placed;
+    use palpate::query::{Limits, PairWorkspace, Tolerance, Track};
     let mut track =
         Track::new(Shape::rectangle([0.2, 0.1])?.offset(0.01)?, Shape::circle(0.1)?);
     let poses = [Pose::identity(), Pose::translation([0.0, 0.155].into())];
@@ -104,24 +107,26 @@ fn box2d() -> Outcome {
     Ok(())
 }
 
-#[derive(Clone, Debug)]
-struct MyKernel {
-    radius: f64,
-}
-
-impl Kernel<3> for MyKernel {
-    fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
-        p.norm() - S::constant(self.radius)
-    }
-
-    fn promise(&self) -> Promise<3> {
-        Promise::lipschitz(None, 1.0)
-    }
-}
-
 #[test]
 fn mujoco() -> Outcome {
-    use palpate::query::{ManifoldSettings, Stop};
+    use palpate::query::Stop;
+    use palpate::{field::Kernel, query::ManifoldSettings};
+
+    #[derive(Clone, Debug)]
+    struct MyKernel {
+        radius: f64,
+    }
+
+    impl Kernel<3> for MyKernel {
+        fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
+            p.norm() - S::constant(self.radius)
+        }
+
+        fn promise(&self) -> Promise<3> {
+            Promise::lipschitz(None, 1.0)
+        }
+    }
+
     let a = Shape::from_kernel(MyKernel { radius: 0.5 });
     let b = Shape::sphere(0.1)?.translated([0.0, 0.7, 0.0])?;
     let mut query = Query::new();
@@ -157,16 +162,24 @@ fn cells(page: &str) -> impl Iterator<Item = String> {
     page.lines().filter(|line| line.starts_with("| ")).flat_map(code)
 }
 
-/// Without spaces, and without what a borrow or a clone adds.
+/// Without spaces, and without what a borrow, a clone or the end of a list adds.
 fn bare(code: &str) -> String {
-    code.replace(".clone()", "").chars().filter(|c| !c.is_whitespace() && *c != '&').collect()
+    let code = code.replace(".clone()", "");
+    let code: String = code.chars().filter(|c| !c.is_whitespace() && *c != '&').collect();
+    code.replace(",}", "}")
 }
 
 #[test]
 fn every_line_of_the_page_is_tried_here() {
     let here = bare(include_str!("coming_from.rs"));
-    let missing: Vec<_> = cells(include_str!("../../../docs/guide/coming-from.md"))
-        .filter(|cell| cell.contains(['(', '.']) && !here.contains(cell.as_str()))
-        .collect();
+    let page = include_str!("../../../docs/guide/coming-from.md");
+    let imports = page
+        .lines()
+        .filter(|line| line.starts_with("`use "))
+        .map(|line| bare(line.trim_matches('`')));
+    let code = cells(page).filter(|cell| cell.contains(['(', '.'])).chain(imports);
+    let code: Vec<_> = code.collect();
+    assert!(code.len() > 40, "{code:#?}");
+    let missing: Vec<_> = code.iter().filter(|code| !here.contains(code.as_str())).collect();
     assert!(missing.is_empty(), "{missing:#?}");
 }

@@ -142,7 +142,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
         Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
         Ending::Panicked { message } => {
-            writeln!(out, "  the servo panicked, forces were set to zero: {message}")?;
+            writeln!(out, "  the servo panicked, zero forces were written: {message}")?;
         }
     }
     if !report.is_released {

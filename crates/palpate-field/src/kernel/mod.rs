@@ -41,7 +41,8 @@ use crate::vector::{Point, Vector, array};
 /// A closed formula for a signed distance.
 ///
 /// A kernel is one branch-free function, [`distance`](Self::distance), with its promise; all
-/// else follows. A choice between formulas is [`Scalar::select_less`]. Mark the methods `#[inline(always)]`, so that the compiler vectorises blocks.
+/// else follows. To choose between formulas, use [`Scalar::select_less`]. Mark the methods
+/// `#[inline(always)]`, so that the compiler vectorises blocks.
 ///
 /// ```
 /// use palpate_field::scalar::Scalar;

@@ -277,7 +277,7 @@ fn promise_of_tiles<const D: usize>(
         let row = &grid.rows[i];
         row.first == row.last || copy.max[i] < 0.5 * row.spacing
     });
-    let size = copy.min.norm().max(copy.max.norm());
+    let size = copy.radius_about_origin();
     let detour = Vector(std::array::from_fn::<_, D, _>(|i| grid.rows[i].detour())).norm();
     let moved = Rounding::of_operations(8.0 * grid.lipschitz, size + detour);
     Promise {

@@ -66,9 +66,9 @@ impl<const D: usize> Shape<D> {
     /// The union of `shapes` with the creases between them filled.
     ///
     /// `width` is the fill where two distances are equal [m]: the surface moves
-    /// outwards by at most that for each shape after the first. The fill begins where two distances differ by
-    /// less than the reach of the profile, a multiple of the width. More than two
-    /// shapes are folded in their order.
+    /// outwards by at most that for every shape but the first. The fill begins where two
+    /// distances differ by less than the reach of the profile, a multiple of the width. More than
+    /// two shapes are folded in their order.
     ///
     /// A bound on both sides, with Lipschitz constant 1 for exact shapes and bounds;
     /// [`Profile::CircularGeometrical`] has √2 instead, and is no bound. Shapes whose
@@ -103,7 +103,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// The intersection of `shapes` with the edges between them cut off: the surface
-    /// moves inwards by at most `width` [m] for each shape after the first.
+    /// moves inwards by at most `width` [m] for every shape but the first.
     ///
     /// Promises as of [`smooth_union`](Self::smooth_union).
     ///

@@ -133,6 +133,7 @@ pub fn handoff<const D: usize>(
         flags,
         events_lost: 0,
         is_stopped: false,
+        is_foreign: false,
     };
     (control, end)
 }

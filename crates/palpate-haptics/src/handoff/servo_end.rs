@@ -23,13 +23,16 @@ pub struct ServoEnd<const D: usize> {
     pub(super) flags: Arc<Flags>,
     pub(super) events_lost: u64,
     pub(super) is_stopped: bool,
+    /// The bodies sent last were accepted for another servo.
+    pub(super) is_foreign: bool,
 }
 
 impl<const D: usize> ServoEnd<D> {
     /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
-    /// A servo that is no clone of the one the hand-off was made for is stopped when bodies come:
-    /// they were accepted for another device.
+    /// Bodies that were accepted for another servo are not taken, nor their poses, and the servo is
+    /// stopped until [`StopSwitch::release`](crate::StopSwitch::release) ends a later stop. An
+    /// unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
@@ -41,12 +44,15 @@ impl<const D: usize> ServoEnd<D> {
         }
         let Some(mut parcel) = self.receiver.take() else { return };
         let edits = &mut parcel.content;
-        if let Some(bodies) = &mut edits.bodies
-            && !servo.adopt(bodies)
-        {
-            servo.stop(true);
+        if let Some(bodies) = &mut edits.bodies {
+            self.is_foreign = !servo.adopt(bodies);
+            if self.is_foreign {
+                servo.stop(true);
+            }
         }
-        for (body, pose) in edits.poses.iter().enumerate() {
+        // Poses are those of the bodies that were sent last.
+        let poses = edits.poses.iter().enumerate().filter(|_| !self.is_foreign);
+        for (body, pose) in poses {
             if let Some(pose) = pose {
                 servo.set_pose(body, *pose);
             }

@@ -178,7 +178,7 @@ impl<const D: usize> UnprotectedServo<D> {
     /// ```
     pub fn protected(self, protection: &Protection<D>) -> Result<Servo<D>, HapticsError> {
         let max_force = protection.profile.max_force;
-        NumberError::check_not_negative_or_infinite("max_force", max_force, "N")?;
+        NumberError::check_zero_or_more("max_force", max_force, "N")?;
         let mut renderer = self.renderer;
         let protection = Arc::new(protection.clone());
         renderer.set_map(protection.map);

@@ -72,7 +72,7 @@ impl<C: Rebound> Heap<C> {
         self.drift += by;
     }
 
-    /// By how much all bounds were lowered since the heap was empty.
+    /// By how much all bounds were lowered since the heap was cleared.
     pub(crate) fn drift(&self) -> f64 {
         self.drift
     }

@@ -38,7 +38,7 @@ impl<'a, const N: usize, const D: usize> PlacedMesh<'a, N, D> {
         let [body, mesh] = poses.map(|pose| pose.translation.norm());
         let reach = body + mesh + self.mesh.bounds().radius_about_origin();
         if reach > LARGEST_LENGTH {
-            return Err(QueryError::Coordinate { what: "a mesh in the world", value: reach });
+            return Err(QueryError::Coordinate { what: "mesh", value: reach });
         }
         let field_from_mesh = field.world_from_body.inverse() * self.world_from_mesh;
         Ok(View { mesh: self.mesh, field_from_mesh, reach })

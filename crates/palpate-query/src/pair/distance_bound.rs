@@ -21,9 +21,8 @@ const LEAST_TURN: f64 = 1e-2;
 /// one: a lower bound of the distance to a shape, nowhere steeper than one, of which
 /// [`separation`](crate::separation) is made.
 ///
-/// Where `g ≤ u`, the shape's box is at most `u` away, so a search need not look farther. Outside of
-/// the
-/// region in which a field keeps its steepness, `g` has the right sign and bounds nothing
+/// Where `g ≤ u`, the shape's box is at most `u` away, so a search need not look farther. Outside
+/// of the region in which a field keeps its steepness, `g` has the right sign and bounds nothing
 /// around it.
 ///
 /// ```

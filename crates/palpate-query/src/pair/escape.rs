@@ -19,7 +19,7 @@ const AROUND: usize = 48;
 const WIDEST: f64 = 0.3;
 const NARROWEST: f64 = 0.01;
 
-/// A round of directions is repeated at the same spread only if it made the way shorter than this
+/// A round of directions is repeated at the same spread only if it cut the way to less than this
 /// share: without a tolerance the search would not end.
 const WORTH: f64 = 0.99;
 

@@ -160,8 +160,8 @@ impl<const D: usize> Cover<D> {
         if !is_known || self.cells.len() > GROWTH * self.first + BLOCK {
             return false;
         }
-        // Bounds are kept relative to what all were lowered by; the slack of a step covers their
-        // rounding while that is no longer than coordinates are.
+        // Each step's slack covers the rounding of bounds only while the drift is no longer than
+        // the coordinates.
         if self.cells.drift() > self.root.radius_about_origin() {
             return false;
         }

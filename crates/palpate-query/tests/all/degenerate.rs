@@ -107,7 +107,7 @@ fn poses_that_are_no_numbers_are_refused() -> Result<(), ShapeError> {
     // Squares of such numbers overflowed, and the upper bound was no number.
     let there = Placed::new(&ball, Pose::translation(Vector([0.0, 1e200])));
     let answer = separation(&ball, there, &Limits::new(1e-4), &mut workspace);
-    assert_eq!(answer, Err(QueryError::Coordinate { what: "a translation", value: 1e200 }));
+    assert_eq!(answer, Err(QueryError::Coordinate { what: "translation", value: 1e200 }));
     Ok(())
 }
 

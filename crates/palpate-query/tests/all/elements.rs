@@ -229,8 +229,5 @@ fn a_coordinate_that_is_no_number_is_refused() {
     let wrong = Element::new([Vector([0.0, 1.0]), Vector([f64::NAN, 0.0])]);
     assert!(matches!(wrong, Err(QueryError::Coordinate { .. })));
     let far = Element::new([Vector([0.0, 1.0]), Vector([2e16, 0.0])]).unwrap_err();
-    assert_eq!(
-        far.to_string(),
-        "vertex must be finite and at most 1e15 m either way, got 2e16 m"
-    );
+    assert_eq!(far.to_string(), "vertex must be finite and at most 1e15 m in size, got 2e16 m");
 }

@@ -38,8 +38,8 @@ impl Position {
 
 /// How many characters the first `bytes` of a line are; serde counts bytes.
 fn characters(text: &str, line: usize, bytes: usize) -> usize {
-    let line = text.split('\n').nth(line.saturating_sub(1));
-    line.and_then(|line| line.get(..bytes)).map_or(bytes, |begin| begin.chars().count())
+    let line = text.split('\n').nth(line.saturating_sub(1)).unwrap_or_default();
+    line.char_indices().take_while(|(at, _)| *at < bytes).count()
 }
 
 /// A JSON text, its value, and the tree that knows the places.

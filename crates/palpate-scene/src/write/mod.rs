@@ -78,7 +78,8 @@ impl Scene {
     /// # Errors
     ///
     /// If the bodies have another dimension than the scene, or if a shape holds what files cannot
-    /// say (a kernel, field or closure of a user). The error has the path to the place, and the name of the Rust type.
+    /// say (a kernel, field or closure of a user). The error has the path to the place, and the
+    /// name of the Rust type.
     ///
     /// Names, poses and materials are checked by [`build`](Self::build), which also refuses a
     /// scene of more than a million nodes, or of more than 128 nested operators, with references

@@ -126,7 +126,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "ball": { "radius": 1e16 } }"#,
-                "shapes.a.ball.radius, line 4: radius must be finite and at most 1e15 either way, got 1e16 m",
+                "shapes.a.ball.radius, line 4: radius must be finite and at most 1e15 in size, got 1e16 m",
                 Accepts,
             ),
             (r#"{ "ball": { "radius": NaN } }"#, "line 4: not JSON: expected value", Refuses),
@@ -303,7 +303,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "translate": [1, 0, 1e20], "of": { "ball": { "radius": 1 } } }"#,
-                "shapes.a.translate[2], line 4: translate[2] must be finite and at most 1e15 either way, got 1e20 m",
+                "shapes.a.translate[2], line 4: translate[2] must be finite and at most 1e15 in size, got 1e20 m",
                 Accepts,
             ),
             (
