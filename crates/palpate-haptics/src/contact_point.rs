@@ -15,10 +15,7 @@ use crate::options::ServoOptions;
 use crate::protection::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::surface::{Press, Ringing};
-use palpate_safety::PointState;
-use palpate_safety::PortState;
-use palpate_safety::WorkspaceMap;
-use palpate_safety::{limited, shortening};
+use palpate_safety::{PointState, PortState, WorkspaceMap, limited, shortening};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,9 +13,7 @@ use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
 use crate::protection::TurningPort;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
-use palpate_safety::limited;
-use palpate_safety::{PointState, TurnState};
-use palpate_safety::{SpatialVector, WrenchChain, WrenchState};
+use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState, limited};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a, const D: usize> {

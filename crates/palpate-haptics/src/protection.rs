@@ -13,15 +13,11 @@ use crate::bodies::Bodies;
 use crate::energy::Energy;
 use crate::error::HapticsError;
 use crate::tool::Coupling;
-use palpate_safety::Impedance;
-use palpate_safety::VelocityEstimator;
-use palpate_safety::WorkspaceMap;
-use palpate_safety::turn_between;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, PassivityReport, PerMotion, PortState, SafetyChain,
-    SafetyOptions, SafetyReport, WrenchChain,
+    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, PassivityReport, PerMotion,
+    PointState, PortState, SafetyChain, SafetyOptions, SafetyReport, TurnState, TurningProfile,
+    VelocityEstimator, WorkspaceMap, WrenchChain, turn_between,
 };
-use palpate_safety::{DeviceProfile, PointState, TurnState, TurningProfile};
 
 /// How a servo protects a device and the hand that holds it.
 ///

@@ -17,8 +17,7 @@ use crate::event::Event;
 use crate::live::Snapshot;
 use crate::protection::Protection;
 use crate::tool::Coupling;
-use palpate_safety::Accepted;
-use palpate_safety::NumberError;
+use palpate_safety::{Accepted, NumberError};
 
 /// The end of a hand-off for an ordinary thread: edits what a running servo renders, and reads
 /// its state. Made by [`handoff`](crate::handoff) or a `ServoThread` of `palpate-loop`.

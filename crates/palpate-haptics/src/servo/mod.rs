@@ -25,8 +25,7 @@ use crate::error::HapticsError;
 use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
-use palpate_safety::Accepted;
-use palpate_safety::{Device, PointState};
+use palpate_safety::{Accepted, Device, PointState};
 
 /// Renders bodies to the contact points of a device, or to a tool, with a safety chain that
 /// keeps every force within the limits of the device.

@@ -24,10 +24,7 @@ use crate::options::ServoOptions;
 use crate::protection::{Port, Protection, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
-use palpate_safety::NumberError;
-use palpate_safety::SafetyReport;
-use palpate_safety::WorkspaceMap;
-use palpate_safety::{PointState, TurnState};
+use palpate_safety::{NumberError, PointState, SafetyReport, TurnState, WorkspaceMap};
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.
 const FEW: usize = 5;

@@ -15,9 +15,7 @@ use palpate_field::{Point, Shape, Vector};
 
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
-use palpate_safety::Impedance;
-use palpate_safety::NumberError;
-use palpate_safety::limited;
+use palpate_safety::{Impedance, NumberError, limited};
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};

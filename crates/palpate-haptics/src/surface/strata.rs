@@ -8,8 +8,7 @@
 use crate::material::Material;
 
 use crate::error::HapticsError;
-use palpate_safety::Impedance;
-use palpate_safety::NumberError;
+use palpate_safety::{Impedance, NumberError};
 
 /// The stiffness used for a layer without a spring [N/m]: too small for a hand to feel.
 const LEAST_STIFFNESS: f64 = 1e-9;

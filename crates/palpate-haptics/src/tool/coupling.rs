@@ -5,8 +5,7 @@
 
 use super::state::ToolOptions;
 use crate::error::HapticsError;
-use palpate_safety::Impedance;
-use palpate_safety::NumberError;
+use palpate_safety::{Impedance, NumberError};
 
 /// The rendered spring and damper between hand and tool: as requested in the
 /// [options](ToolOptions), or softer if the device of a [`Servo`](crate::Servo) requires it.
