@@ -9,13 +9,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// A request to end a run early.
 ///
 /// A signal handler ends the process if [`at_once`](Self::at_once) is set. Otherwise it sets
-/// both flags, and the command ends by itself: it sets forces to zero, then writes and reports
-/// what is done.
+/// that flag and [`asked`](Self::asked), and the command ends by itself: it sets forces to zero,
+/// then writes and reports what is done. A handler whose signal may come twice for one reason
+/// looks at [`unheeded`](Self::unheeded) instead, and sets `asked` alone.
 #[derive(Clone, Debug)]
 pub struct Interrupt {
     asked: Arc<AtomicBool>,
     at_once: Arc<AtomicBool>,
-    is_deaf: Arc<AtomicBool>,
+    unheeded: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -28,7 +29,7 @@ impl Interrupt {
         Self {
             asked: Arc::new(AtomicBool::new(false)),
             at_once: Arc::new(AtomicBool::new(true)),
-            is_deaf: Arc::new(AtomicBool::new(true)),
+            unheeded: Arc::new(AtomicBool::new(true)),
         }
     }
 
@@ -45,15 +46,15 @@ impl Interrupt {
         Arc::clone(&self.at_once)
     }
 
-    /// `true` while the command does not check whether it is asked to end.
+    /// `true` until the command checks whether it is asked to end.
     #[must_use]
-    pub fn is_deaf(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.is_deaf)
+    pub fn unheeded(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.unheeded)
     }
 
     /// Promises that from now on the command checks whether it is asked to end.
     pub(crate) fn heed(&self) {
-        self.is_deaf.store(false, Ordering::Relaxed);
+        self.unheeded.store(false, Ordering::Relaxed);
         self.at_once.store(self.is_asked(), Ordering::Relaxed);
     }
 

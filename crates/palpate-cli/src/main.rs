@@ -39,7 +39,7 @@ fn listen(interrupt: &Interrupt) -> io::Result<()> {
     // off what the first one asked for. `nohup` starts a run that ignores it.
     #[cfg(target_os = "linux")]
     if !is_ignored(SIGHUP) {
-        flag::register_conditional_shutdown(SIGHUP, status, interrupt.is_deaf())?;
+        flag::register_conditional_shutdown(SIGHUP, status, interrupt.unheeded())?;
         flag::register(SIGHUP, interrupt.asked())?;
     }
     Ok(())

@@ -18,6 +18,10 @@ use crate::report::RunReport;
 use crate::run::{Pace, ticks};
 use crate::servo_loop::{Schedule, ServoLoop};
 
+/// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
+/// that nobody advances lets it wait in vain.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 /// How a thread runs a servo.
 ///
 /// ```
@@ -150,10 +154,6 @@ impl<const D: usize> Drop for Handle<D> {
         }
     }
 }
-
-/// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
-/// that nobody advances lets it wait in vain.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What remains of a servo thread that has ended.
 pub struct EndedThread<const D: usize> {

@@ -7,7 +7,6 @@
 
 use std::hint::black_box;
 use std::mem::swap;
-use std::sync::Arc;
 
 use palpate_field::{Point, Pose, Vector};
 
@@ -21,7 +20,7 @@ use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::protection::{Port, Protection, TurningPort};
+use crate::protection::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{NumberError, PointState, SafetyReport, TurnState, WorkspaceMap};
@@ -239,11 +238,6 @@ impl<const D: usize> Renderer<D> {
     /// The requested coupling of the tool, before device limits; `None` for contact points.
     pub(crate) fn requested_coupling(&self) -> Option<Coupling> {
         self.coupled_tool().map(|coupled| coupled.requested)
-    }
-
-    /// Notes whose servo this is, for a device that gives no force.
-    pub(super) fn set_protection(&mut self, protection: &Arc<Protection<D>>) {
-        self.accepted.protection = Some(protection.clone());
     }
 
     /// Sets the map between device and world coordinates.

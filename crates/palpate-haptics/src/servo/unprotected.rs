@@ -187,18 +187,17 @@ impl<const D: usize> UnprotectedServo<D> {
             renderer.limit_torque(0.0);
         }
         let limit = renderer.options().max_force;
-        if limit == 0.0 {
-            renderer.limit_torque(0.0);
-            renderer.set_protection(&protection);
-            return Ok(Servo { renderer, protection });
-        }
         let rate = renderer.options().rate;
         let coupling = renderer.requested_coupling();
         let bodies = renderer.bodies().clone();
         let mut bodies = protection.accepted_bodies(bodies, coupling, rate)?;
-        let profile = protection.profile.clone().with_max_force(limit);
-        let limited = Protection { profile, ..Protection::clone(&protection) };
-        renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
+        if limit > 0.0 {
+            let profile = protection.profile.clone().with_max_force(limit);
+            let limited = Protection { profile, ..Protection::clone(&protection) };
+            renderer.set_ports(&limited.port(&bodies, rate)?, limited.turning(&bodies, rate)?);
+        } else {
+            renderer.limit_torque(0.0);
+        }
         renderer.exchange(&mut bodies);
         Ok(Servo { renderer, protection })
     }

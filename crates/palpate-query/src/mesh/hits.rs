@@ -123,8 +123,8 @@ pub struct MeshHits {
 ///
 /// The mesh is not copied: the search moves centres of its tree as it needs them. `limits`
 /// hold for each element that the tree and a few points do not decide; an element that they
-/// do not suffice for is undecided. Before that, the search evaluates the field at most 72
-/// times per element, and not at all on elements in a ball that is wholly free or inside.
+/// do not suffice for is undecided. Before that, the search evaluates the field at most 71
+/// times per element (8 in the tree, 3 for each of 21 parts), and not at all on elements in a ball that is wholly free or inside.
 ///
 /// # Errors
 ///
