@@ -100,8 +100,8 @@ impl<T: Float, const W: usize> LaneArray<T> for Lanes<T, W> {
 
     #[inline(always)]
     unsafe fn read(&self, i: usize) -> T {
-        // SAFETY: the caller promises that lane `i` was written.
-        unsafe { self.0[i].assume_init() }
+        // SAFETY: the caller promises that lane `i` was written, so there is one.
+        unsafe { self.0.get_unchecked(i).assume_init() }
     }
 
     #[inline(always)]
