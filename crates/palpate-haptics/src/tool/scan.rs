@@ -205,9 +205,10 @@ impl<const D: usize> Scan<D> {
         self.points.get(number as usize)
     }
 
-    /// Evaluates all points that could touch a body if the tool makes a motion like `path`, limited to `horizon` [m] for every point. If these points need more than
-    /// `share` of the remaining budget, fewer levels are evaluated; `false` if the budget does
-    /// not suffice for the first level.
+    /// Evaluates all points that could touch a body if the tool makes a motion like `path`,
+    /// limited to `horizon` [m] for every point. If these points need more than `share` of the
+    /// remaining budget, fewer levels are evaluated; `false` if the budget does not suffice for
+    /// the first level.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn look(
