@@ -8,7 +8,6 @@ use palpate_field::{Rotation, Vector};
 use crate::hand_path::HandPath;
 use palpate_haptics::HapticsError;
 use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
-use palpate_haptics::{turn_between, turned};
 
 /// A device whose points follow recorded hand paths.
 ///
@@ -125,9 +124,9 @@ impl<const D: usize> Device<D> for RecordedDevice<D> {
             *point = path.state_at(time);
         }
         self.turn = self.turns.as_ref().map(|turns| {
-            let at = |time| turned(&Rotation::identity(), turns.state_at(time).position);
+            let at = |time| Rotation::identity().turned(turns.state_at(time).position);
             let (before, after) = (at(time - INSTANT), at(time + INSTANT));
-            let angular_velocity = turn_between(&before, &after) * (0.5 / INSTANT);
+            let angular_velocity = before.turn_to(&after) * (0.5 / INSTANT);
             TurnState { orientation: at(time), angular_velocity }
         });
         Ok(())

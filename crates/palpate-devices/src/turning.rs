@@ -12,9 +12,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Rotation, Vector};
-use palpate_haptics::{
-    HapticsError, NumberError, TurnState, TurningProfile, limited, turn_between, turned,
-};
+use palpate_haptics::{HapticsError, NumberError, TurnState, TurningProfile, limited};
 
 use crate::hand::{Hand, Wrist};
 use crate::motion::{Axis, Body, Energies, Load, Parts};
@@ -132,8 +130,8 @@ impl<const D: usize> Turning<D> {
     pub(crate) fn advance(&mut self, last: f64, time: f64) {
         let duration = time - last;
         let target = self.wanted(time);
-        let stretch = turn_between(&self.orientation, &self.target);
-        let next = turn_between(&self.orientation, &target);
+        let stretch = self.orientation.turn_to(&self.target);
+        let next = self.orientation.turn_to(&target);
         let rates = (next - stretch) * (1.0 / duration);
         let push = about_axes::<D>(self.wrist.push);
         let loads = self.torque.0.into_iter().zip(push.0).zip(stretch.0).zip(rates.0);
@@ -145,11 +143,11 @@ impl<const D: usize> Turning<D> {
             self.energies.add(&self.body.advance(&mut axis, load, duration));
             (*way, *spin) = (axis.position, axis.velocity);
         }
-        self.orientation = turned(&self.orientation, way);
+        self.orientation = self.orientation.turned(way);
         self.target = target;
         let orientation = self.encoded();
         let angular_velocity =
-            turn_between(&self.reading.orientation, &orientation) * (1.0 / duration);
+            self.reading.orientation.turn_to(&orientation) * (1.0 / duration);
         self.reading = TurnState { orientation, angular_velocity };
     }
 
@@ -157,7 +155,7 @@ impl<const D: usize> Turning<D> {
     fn wanted(&self, time: f64) -> Rotation<D> {
         let path = self.wrist.path.as_ref();
         let turn = path.map_or(Vector::ZERO, |path| path.state_at(time).position);
-        turned(&Rotation::identity(), about_axes::<D>(turn))
+        Rotation::identity().turned(about_axes::<D>(turn))
     }
 
     /// The orientation in whole steps of the encoder.
@@ -165,8 +163,8 @@ impl<const D: usize> Turning<D> {
         let step = self.encoder_step;
         if step > 0.0 {
             let identity = Rotation::identity();
-            let turn = turn_between(&identity, &self.orientation);
-            turned(&identity, Vector(turn.0.map(|x| (x / step).round() * step)))
+            let turn = identity.turn_to(&self.orientation);
+            identity.turned(Vector(turn.0.map(|x| (x / step).round() * step)))
         } else {
             self.orientation
         }

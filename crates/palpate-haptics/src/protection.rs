@@ -16,7 +16,7 @@ use crate::tool::Coupling;
 use palpate_safety::{
     Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, PassivityReport, PerMotion,
     PointState, PortState, SafetyChain, SafetyOptions, SafetyReport, TurnState, TurningProfile,
-    VelocityEstimator, WorkspaceMap, WrenchChain, turn_between,
+    VelocityEstimator, WorkspaceMap, WrenchChain,
 };
 
 /// How a servo protects a device and the hand that holds it.
@@ -363,7 +363,7 @@ impl<const D: usize> TurningPort<D> {
     ) -> (Option<TurnState<D>>, Vector<f64, 3>) {
         let Some(mut turn) = turn else { return (None, self.angle) };
         let last = self.last.replace(turn.orientation).unwrap_or(turn.orientation);
-        self.angle += turn_between(&last, &turn.orientation);
+        self.angle += last.turn_to(&turn.orientation);
         if self.has_steps {
             turn.angular_velocity = self.estimator.update(self.angle);
         }

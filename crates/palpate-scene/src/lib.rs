@@ -14,8 +14,8 @@
 //! [`Scene::with_bodies`] and read back to the same bits.
 //!
 //! Materials are those of `palpate-haptics`; a scene makes its bodies, world and servo with
-//! [`BuiltScene::bodies`], [`BuiltScene::world`] and [`BuiltScene::servo`]. This crate reads and
-//! checks [`Motion`]s and [`View`]s; other crates interpret them.
+//! [`BuiltScene::bodies`], [`BuiltScene::world`] and [`BuiltScene::servo`], and is where its
+//! [`Motion`]s have taken it with [`BuiltScene::at`]. [`View`]s are for programs that draw.
 //!
 //! ```
 //! use palpate_scene::{Scene, AnyScene};
@@ -60,7 +60,7 @@ mod view;
 mod write;
 mod written_material;
 
-pub use build::{AnyScene, BuiltBody, BuiltScene, BuiltTool};
+pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool};
 pub use error::{SceneCause, SceneError};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};

@@ -12,7 +12,7 @@ use palpate_field::kernel::HalfSpace;
 use palpate_field::{Rotation, Shape, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Body, Protection, Servo, ServoOptions, Shell, Surface, Tool,
-    ToolOptions, UnprotectedServo, turn_between, turned,
+    ToolOptions, UnprotectedServo,
 };
 
 const PERIOD: f64 = 1e-3;
@@ -70,8 +70,8 @@ fn a_torque_turns_what_is_free_by_half_of_it_over_the_inertia_and_the_time_squar
     read(&mut device, 0.0);
     device.write_torque(axis).unwrap();
     let turn = read(&mut device, 0.5);
-    let expected = turned(&Rotation::identity(), axis * 0.25);
-    assert!(turn_between(&expected, &turn.orientation).norm() < 1e-15);
+    let expected = Rotation::identity().turned(axis * 0.25);
+    assert!(expected.turn_to(&turn.orientation).norm() < 1e-15);
     let state = device.turn().unwrap();
     assert!((state.angular_velocity - axis).norm() < 1e-15);
     assert!((device.kinetic_energy() - 0.25).abs() < 1e-15);
@@ -129,12 +129,12 @@ fn the_work_of_torques_is_seen_and_every_energy_is_accounted_for() {
     let hand = Hand::<3>::resting(Vector([0.01, -0.02, 0.03])).unwrap().with_turns(turns);
     let profile = with_turning(|turning| turning.friction = 2e-3);
     let mut device = SimulatedDevice::new(profile, vec![hand]).unwrap();
-    let (mut seen, mut last, mut torque) = (0.0, None, Vector::ZERO);
+    let (mut seen, mut last, mut torque) = (0.0, None::<Rotation<3>>, Vector::ZERO);
     for tick in 0..2000 {
         let t = f64::from(tick) * PERIOD;
         let turn = read(&mut device, t).orientation;
         if let Some(last) = last {
-            seen += turn_between(&last, &turn).dot(torque);
+            seen += last.turn_to(&turn).dot(torque);
         }
         let energies = device.energies();
         assert!((energies.servo - seen).abs() < 1e-12, "{tick}: {energies:?}, {seen} J");
@@ -155,7 +155,7 @@ fn turns_come_in_steps_and_torques_are_cut() {
     let hand = free().with_turns(held_at(Vector([0.0, 0.104, -0.003])));
     let mut device = SimulatedDevice::<3>::new(profile, vec![hand]).unwrap();
     let turn = read(&mut device, 0.0).orientation;
-    let steps = turn_between(&Rotation::identity(), &turn) * 100.0;
+    let steps = Rotation::identity().turn_to(&turn) * 100.0;
     assert!((steps - Vector([0.0, 10.0, 0.0])).norm() < 1e-12);
     for (written, expected) in [
         ([0.3, 0.0, -0.4], [0.15, 0.0, -0.2]),
@@ -232,7 +232,7 @@ impl<const D: usize> Flat<D> {
             self.servo.step(&[PointState::at_rest(Vector::unit(1) * -0.02)]);
             self.device.write_torque(self.servo.torque()).unwrap();
             self.tick += 1;
-            let angle = turn_between(&Rotation::identity(), &turn.orientation)[2];
+            let angle = Rotation::identity().turn_to(&turn.orientation)[2];
             (low, high) = (low.min(angle), high.max(angle));
         }
         high - low

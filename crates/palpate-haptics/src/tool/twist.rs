@@ -9,8 +9,6 @@
 
 use palpate_field::{Pose, Vector};
 
-use palpate_safety::{turn_between, turned};
-
 /// A change of a pose: the origin moves, then the pose rotates about it. World axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Twist<const D: usize> {
@@ -29,7 +27,7 @@ impl<const D: usize> Twist<D> {
         if from.rotation == to.rotation {
             return Self { linear, angular: Vector::ZERO };
         }
-        Self { linear, angular: turn_between(&from.rotation, &to.rotation) }
+        Self { linear, angular: from.rotation.turn_to(&to.rotation) }
     }
 
     /// A part of the motion.
@@ -48,7 +46,7 @@ impl<const D: usize> Twist<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(super) fn moved(&self, pose: &Pose<D>) -> Pose<D> {
-        let rotation = turned(&pose.rotation, self.angular);
+        let rotation = pose.rotation.turned(self.angular);
         Pose::new(rotation, pose.translation + self.linear)
     }
 

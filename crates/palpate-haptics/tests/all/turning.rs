@@ -14,7 +14,7 @@ use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState,
     Protection, Rule, SafetyError, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions,
-    TurnState, TurningProfile, UnprotectedServo, WorkspaceMap, turn_between, turned,
+    TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
@@ -68,7 +68,7 @@ fn brought<const D: usize>(
 ) -> (Vector<f64, D>, Vector<f64, 3>) {
     for tick in 0..=400 {
         let part = (f64::from(tick) / 200.0).min(1.0);
-        let orientation = turned(&Rotation::identity(), turn * part);
+        let orientation = Rotation::identity().turned(turn * part);
         servo.set_turn(Some(TurnState::at_rest(orientation)));
         servo.step(&[PointState::at_rest(from + (to - from) * part)]);
     }
@@ -144,7 +144,7 @@ fn the_workspace_turns_what_turns_and_shortens_arms() {
     // In the world turned by −0.3, so by −0.8 against the device's axes.
     for tick in 0..=400 {
         let part = (f64::from(tick) / 200.0).min(1.0);
-        let turn = turned(&Rotation::identity(), Vector([0.0, 0.0, -0.5 - 0.3 * part]));
+        let turn = Rotation::identity().turned(Vector([0.0, 0.0, -0.5 - 0.3 * part]));
         servo.set_turn(Some(TurnState::at_rest(turn)));
         servo.step(&[PointState::at_rest(at_device(0.1 - 0.09 * part))]);
     }
@@ -240,7 +240,7 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
             let swing = 0.6 * (pace * t).sin() + if tick % 500 == 499 { sudden } else { 0.0 };
             let spin = if tick % 700 == 699 { f64::NAN } else { 0.0 };
             servo.set_turn(Some(TurnState {
-                orientation: turned(&Rotation::identity(), axis * swing),
+                orientation: Rotation::identity().turned(axis * swing),
                 angular_velocity: Vector([spin, 0.0, 0.0]),
             }));
             servo.set_late((1000..1010).contains(&tick));
@@ -316,7 +316,7 @@ fn the_energy_of_force_and_torque_is_counted_together() {
             given += servo.forces()[0].dot(place - last_place)
                 + servo.torque().dot(turn - last_turn);
         }
-        servo.set_turn(Some(TurnState::at_rest(turned(&Rotation::identity(), turn))));
+        servo.set_turn(Some(TurnState::at_rest(Rotation::identity().turned(turn))));
         servo.step(&[PointState { position: place, velocity: Vector::ZERO }]);
         last = Some((place, turn));
         wanted = wanted.max(servo.touches()[0].wanted.norm());
@@ -340,7 +340,7 @@ fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     let (_, still) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let state = PointState::at_rest(up(0.01));
     let turn = TurnState {
-        orientation: turned(&Rotation::identity(), Vector([0.0, 0.0, -0.3])),
+        orientation: Rotation::identity().turned(Vector([0.0, 0.0, -0.3])),
         angular_velocity: Vector([0.0, 0.0, -0.1]),
     };
     servo.set_turn(Some(turn));
@@ -375,8 +375,8 @@ fn a_run_turns_the_tool_and_reports_the_torque() {
     let held = recorder.rows().last().unwrap().tool.unwrap();
     assert!((held.given.unwrap().norm() - 0.1).abs() < 1e-12);
     // The tool is where the hand turned it, less what the ground took back.
-    let hand = turned(&Rotation::identity(), Vector([0.1, 0.0, -0.3]));
-    assert!((turn_between(&hand, &held.pose.rotation) - held.turn).norm() < 1e-9);
+    let hand = Rotation::identity().turned(Vector([0.1, 0.0, -0.3]));
+    assert!((hand.turn_to(&held.pose.rotation) - held.turn).norm() < 1e-9);
     assert_eq!((device.torque(), device.forces()[0]), (Vector::ZERO, Vector::ZERO));
 }
 

@@ -4,6 +4,7 @@
 //! Builds a scene: from the data of a file to shapes that can be evaluated.
 
 mod builder;
+mod motion;
 mod object;
 mod operator;
 mod primitive;
@@ -11,7 +12,6 @@ mod size;
 
 use std::any::Any;
 
-use indexmap::IndexSet;
 use palpate_field::{Point, Pose, Shape};
 
 use palpate_haptics::{Guide, Material, ToolOptions, WorkspaceMap};
@@ -21,7 +21,9 @@ use crate::pose::{Turning, Turns, vector};
 use crate::problem::Problem;
 use crate::scene::{Dimension, Scene};
 use crate::shape::WrittenShape;
+use crate::view::View;
 use builder::{Builder, Space};
+pub use motion::BuiltMotion;
 pub(crate) use size::MOST;
 
 /// A built scene, in its dimension.
@@ -33,7 +35,7 @@ pub enum AnyScene {
     Spatial(BuiltScene<3>),
 }
 
-/// A built scene: its bodies, tool and guides.
+/// A built scene: its bodies, tool, guides, motions and views.
 #[derive(Clone, Debug)]
 pub struct BuiltScene<const D: usize> {
     /// The bodies, in the order of the scene.
@@ -44,6 +46,10 @@ pub struct BuiltScene<const D: usize> {
     pub tool: Option<BuiltTool<D>>,
     /// The guides of the hand in free space.
     pub guides: Vec<Guide<D>>,
+    /// The motions of its bodies, in the order of the scene.
+    pub motions: Vec<BuiltMotion<D>>,
+    /// The pictures worth making of it.
+    pub views: Vec<View>,
     /// The map from the device's space to the world; `None` if the scene gives none.
     pub workspace: Option<WorkspaceMap<D>>,
 }
@@ -111,10 +117,19 @@ where
         .map_err(|error| Problem::of_shape(error).under("bodies"))?;
     let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
     let guides = guides(scene).map_err(|problem| problem.under("guides"))?;
-    check_motions::<D>(scene).map_err(|problem| problem.under("motions"))?;
+    let motions =
+        motion::motions(scene, &bodies).map_err(|problem| problem.under("motions"))?;
     check_views(scene, D).map_err(|problem| problem.under("views"))?;
     let workspace = workspace(scene).map_err(|problem| problem.under("tool"))?;
-    Ok(BuiltScene { bodies, whole, tool, guides, workspace })
+    Ok(BuiltScene {
+        bodies,
+        whole,
+        tool,
+        guides,
+        motions,
+        views: scene.views.clone(),
+        workspace,
+    })
 }
 
 fn bodies<'a, const D: usize>(
@@ -195,30 +210,6 @@ fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problem> {
         guide.guide().map_err(|error| Problem::new(error.to_string()).at(i))
     };
     scene.guides.iter().enumerate().map(guide).collect()
-}
-
-fn check_motions<const D: usize>(scene: &Scene) -> Result<(), Problem>
-where
-    Turns: Turning<D>,
-{
-    let names: IndexSet<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    for (i, motion) in scene.motions.iter().enumerate() {
-        let check = || -> Result<(), Problem> {
-            motion.check()?;
-            if !names.contains(motion.body.as_str()) {
-                let known: Vec<_> = names.iter().copied().collect();
-                let message = crate::problem::unknown("body", &motion.body, &known);
-                return Err(Problem::new(message).under("body"));
-            }
-            if let Some(from) = &motion.from {
-                from.built::<D>().map_err(|problem| problem.under("from"))?;
-            }
-            motion.to.built::<D>().map_err(|problem| problem.under("to"))?;
-            Ok(())
-        };
-        check().map_err(|problem| problem.at(i))?;
-    }
-    Ok(())
 }
 
 fn check_views(scene: &Scene, dimension: usize) -> Result<(), Problem> {

@@ -3,52 +3,53 @@
 
 //! Rotation vectors: along the axis, with the angle as length [rad]; in the plane along z.
 
-#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-use palpate_field::{Rotation, Vector};
+use crate::pose::Rotation;
+use crate::vector::Vector;
 
 /// Below this angle [rad], sin θ / θ is one to the last bit.
 const TINY: f64 = 1e-9;
 
-/// `rotation` followed by the rotation of the vector `by`, which lies along the axis with the
-/// angle as length [rad]; in the plane along z.
-///
-/// The result is orthonormal to rounding, so that any number of rotations may be chained.
-///
-/// Real-time: allocates nothing, takes no lock, cannot panic.
-///
-/// ```
-/// use palpate_field::{Rotation, Vector};
-/// use palpate_safety::turned;
-///
-/// let quarter = turned(&Rotation::<2>::identity(), Vector([0.0, 0.0, 0.5]));
-/// assert!((turned(&quarter, Vector([0.0, 0.0, 0.25])).angle() - 0.75).abs() < 1e-15);
-/// ```
-#[must_use]
-pub fn turned<const D: usize>(rotation: &Rotation<D>, by: Vector<f64, 3>) -> Rotation<D> {
-    let turned = turn(by) * *rotation;
-    Rotation::from_matrix(*turned.matrix()).unwrap_or(*rotation)
-}
+impl<const D: usize> Rotation<D> {
+    /// This rotation, followed by that of the rotation vector `by`, which lies along the axis with
+    /// the angle as length [rad]; in the plane along z.
+    ///
+    /// The result is orthonormal to rounding, so that any number of rotations may be chained. A
+    /// vector that is not finite turns nothing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::Rotation;
+    ///
+    /// let half = Rotation::<2>::identity().turned([0.0, 0.0, 0.5]);
+    /// assert!((half.turned([0.0, 0.0, 0.25]).angle() - 0.75).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn turned(&self, by: impl Into<Vector<f64, 3>>) -> Self {
+        let turned = of_vector(by.into()) * *self;
+        Self::from_matrix(*turned.matrix()).unwrap_or(*self)
+    }
 
-/// The rotation vector from `from` to `to`, at most π long [rad]: the inverse of [`turned`].
-///
-/// Real-time: allocates nothing, takes no lock, cannot panic.
-///
-/// ```
-/// use palpate_field::{Rotation, Vector};
-/// use palpate_safety::{turn_between, turned};
-///
-/// let (from, by) = (Rotation::<3>::identity(), Vector([0.25, -0.5, 1.0]));
-/// assert!((turn_between(&from, &turned(&from, by)) - by).norm() < 1e-15);
-/// ```
-#[must_use]
-pub fn turn_between<const D: usize>(from: &Rotation<D>, to: &Rotation<D>) -> Vector<f64, 3> {
-    angle(*to * from.inverse())
+    /// The rotation vector from this rotation to another, at most π long [rad]: the inverse of
+    /// [`turned`](Self::turned).
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::{Rotation, Vector};
+    ///
+    /// let (start, by) = (Rotation::<3>::identity(), Vector([0.25, -0.5, 1.0]));
+    /// assert!((start.turn_to(&start.turned(by)) - by).norm() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn turn_to(&self, to: &Self) -> Vector<f64, 3> {
+        vector_of(*to * self.inverse())
+    }
 }
 
 /// The rotation by a vector: `R = I + (sin θ / θ) W + (2 sin²(θ/2) / θ²) W²` with `W v = w × v`
 /// and `θ = ‖w‖` (Rodrigues 1840).
-fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
+fn of_vector<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
     let angle = w.norm();
     let (first, second) = if angle > TINY {
         let half = libm::sin(0.5 * angle);
@@ -70,7 +71,7 @@ fn turn<const D: usize>(w: Vector<f64, 3>) -> Rotation<D> {
 }
 
 /// The rotation vector, at most π long: `2 atan2(‖q‖, w) q / ‖q‖` for the quaternion `(q, w)`.
-fn angle<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
+fn vector_of<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
     let rows = std::array::from_fn(|i| {
         let unit = Vector::<f64, 3>::unit(i).0;
         std::array::from_fn(|k| {
@@ -95,14 +96,13 @@ mod tests {
         cases(300, |u| {
             let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 1e-3);
             let mut vector = || Ok::<_, arbitrary::Error>(Vector([draw()?, draw()?, draw()?]));
-            let from = turned(&Rotation::<3>::identity(), vector()? * 3.0);
+            let from = Rotation::<3>::identity().turned(vector()? * 3.0);
             let by = vector()?;
-            let to = turned(&from, by);
-            assert!((turn_between(&from, &to) - by).norm() < 1e-14, "{by:?}");
+            assert!((from.turn_to(&from.turned(by)) - by).norm() < 1e-14, "{by:?}");
             let flat = Vector([0.0, 0.0, by[2]]);
-            let planar = turned(&Rotation::<2>::identity(), flat);
+            let planar = Rotation::<2>::identity().turned(flat);
             assert!((planar.angle() - by[2]).abs() < 1e-15);
-            assert!((turn_between(&Rotation::identity(), &planar) - flat).norm() < 1e-15);
+            assert!((Rotation::identity().turn_to(&planar) - flat).norm() < 1e-15);
             Ok(())
         });
     }
@@ -110,15 +110,14 @@ mod tests {
     #[test]
     fn a_quarter_about_z_takes_x_to_y_and_a_thousand_turns_keep_a_rotation_one() {
         let quarter = Vector([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
-        let turned_once = turned(&Rotation::<3>::identity(), quarter);
+        let turned_once = Rotation::<3>::identity().turned(quarter);
         let y = turned_once.rotate(Vector([1.0, 0.0, 0.0]));
         assert!((y - Vector([0.0, 1.0, 0.0])).norm() < 1e-15);
         let mut rotation = turned_once;
         for _ in 0..1000 {
-            rotation = turned(&rotation, Vector([0.3, -0.2, 0.5]));
+            rotation = rotation.turned([0.3, -0.2, 0.5]);
         }
         let there_and_back = rotation * rotation.inverse();
-        let off = turn_between(&Rotation::identity(), &there_and_back);
-        assert!(off.norm() < 1e-15, "{off:?}");
+        assert!(Rotation::identity().turn_to(&there_and_back).norm() < 1e-15);
     }
 }

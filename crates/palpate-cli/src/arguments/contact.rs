@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate contact`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  palpate contact scenes/peg_in_hole.json
+  palpate contact scenes/nut_on_bolt.json --margin 0.0002 --json
+  palpate contact scenes/gears.json --tolerance 1e-6
+
+The separation of bodies that are exact outside is their distance; that of bodies that
+overlap is minus the diameter of the largest ball inside both. It lies between the printed
+bounds, which include rounding. A pair that the budget leaves open is undecided.";
+
+/// The options of `palpate contact`.
+#[derive(Args, Debug)]
+pub(crate) struct ContactOptions {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) question: ContactQuestion,
+    /// List pairs that are apart too, with the bounds of their separation; always on for scenes
+    /// of at most 12 bodies.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What counts as touching, and how finely contacts are found.
+#[derive(Args, Debug)]
+pub(crate) struct ContactQuestion {
+    /// The largest gap at which bodies count as touching [m]; 0.2 % of the smallest body if
+    /// left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) margin: Option<f64>,
+    /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
+    /// left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) spacing: Option<f64>,
+    /// How far apart the bounds of a separation may be [m]; half the margin if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// The budget: the most evaluations of fields for each pair.
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) budget: u32,
+}
