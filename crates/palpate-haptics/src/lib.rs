@@ -92,5 +92,6 @@ pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use servo::{Renderer, Servo, UnprotectedServo};
 pub use surface::Surface;
 pub use tool::{
-    Coupling, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch,
+    Coupling, Handle, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState,
+    ToolTouch,
 };

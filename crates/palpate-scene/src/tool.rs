@@ -159,11 +159,10 @@ impl WrittenTool {
         let options = default
             .with_stiffness(coupling.stiffness.unwrap_or(default.stiffness))
             .with_damping(coupling.damping.unwrap_or(default.damping))
-            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping))
-            .with_max_force(self.max_force.unwrap_or(default.max_force));
-        match coupling.angular_stiffness {
-            Some(stiffness) => options.with_angular_stiffness(stiffness),
-            None => options,
-        }
+            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping));
+        let stiffness = coupling.angular_stiffness;
+        let options =
+            stiffness.map_or(options, |stiffness| options.with_angular_stiffness(stiffness));
+        self.max_force.map_or(options, |max_force| options.with_max_force(max_force))
     }
 }

@@ -192,7 +192,7 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         });
         tool.radius = options.radius.unwrap_or(tool.radius);
         tool.max_force = options.max_force.or(tool.max_force);
-        tool.options.max_force = options.max_force.unwrap_or(tool.options.max_force);
+        tool.options.max_force = tool.max_force;
     }
     scene
 }

@@ -103,7 +103,8 @@ impl<const D: usize> Servo<D> {
     }
 
     /// A servo that renders `bodies` to a tool held by `device`; otherwise as
-    /// [`for_device`](Self::for_device).
+    /// [`for_device`](Self::for_device). A tool with a smaller force limit than the device's, or
+    /// a longer rise time than the servo's, keeps it.
     ///
     /// # Errors
     ///
