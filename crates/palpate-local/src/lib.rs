@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | [`ProjectedGradient`] | field and element | memoir 3.2; Macklin et al. 2020 |
 //! | [`FrankWolfe`] | field and element | Macklin et al. 2020 |
-//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles, the half of it in space) |
+//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles; the spatial part of their space-time search) |
 //! | [`AlternatingProjection`] | two fields | memoir 3.3, after Liu et al. 2024 |
 //! | [`MinimaxProximal`] | two fields | the bundle method with two planes |
 //!

@@ -16,7 +16,7 @@ use crate::build::{BuiltScene, BuiltTool};
 /// and cost more; a face of 1 cm² of a tool as large as a hand has a few.
 const POINTS: usize = 500;
 
-/// How a servo renders a scene, beside what the scene says.
+/// Settings of a servo that scene files do not hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ServoSettings {

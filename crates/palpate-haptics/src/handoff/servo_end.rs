@@ -30,9 +30,9 @@ pub struct ServoEnd<const D: usize> {
 impl<const D: usize> ServoEnd<D> {
     /// Applies the edits of the other end to `servo`; call it before each tick.
     ///
-    /// Bodies that were accepted for another servo are not taken, nor their poses, and the servo is
-    /// stopped until [`StopSwitch::release`](crate::StopSwitch::release) ends a later stop. An
-    /// unprotected servo takes the bodies of any.
+    /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops;
+    /// call [`stop`](crate::StopSwitch::stop), then [`release`](crate::StopSwitch::release), to
+    /// let it go on. An unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
