@@ -32,6 +32,7 @@ use crate::shape::WrittenShape;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Tool")]
+#[non_exhaustive]
 pub struct WrittenTool {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,6 +66,7 @@ pub struct WrittenTool {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Coupling")]
+#[non_exhaustive]
 pub struct WrittenCoupling {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,6 +93,7 @@ pub struct WrittenCoupling {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Workspace")]
+#[non_exhaustive]
 pub struct WrittenWorkspace {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -236,7 +236,7 @@ impl<const D: usize> BuiltScene<D> {
         let mut options = ServoOptions::of_device(device).with_rate(rate);
         if let Some(tool) = &self.tool {
             options.probe = Probe::new(tool.radius)?;
-            options.max_force = tool.max_force.unwrap_or(options.max_force);
+            options.max_force = tool.options.max_force.unwrap_or(options.max_force);
         }
         Ok(options)
     }

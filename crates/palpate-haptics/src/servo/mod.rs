@@ -15,7 +15,8 @@ mod unprotected;
 use std::ops::Deref;
 use std::sync::Arc;
 
-pub(crate) use any::AnyServo;
+pub use any::AnyServo;
+pub(crate) use any::Key;
 pub use renderer::Renderer;
 pub use unprotected::UnprotectedServo;
 

@@ -20,7 +20,7 @@ use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::protection::{Port, TurningPort};
+use crate::ports::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{NumberError, PointState, SafetyReport, TurnState, WorkspaceMap};

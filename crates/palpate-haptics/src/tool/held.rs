@@ -11,6 +11,7 @@ use crate::options::ServoOptions;
 
 /// A tool after a tick, for traces and snapshots. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct HeldTool<const D: usize> {
     /// The pose of the tool: `world_from_tool`.
     pub pose: Pose<D>,

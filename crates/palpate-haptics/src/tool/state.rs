@@ -162,18 +162,15 @@ impl ToolOptions {
             [("max_force", self.force_limit(), "N"), ("max_torque", self.max_torque, "N·m")]
         {
             if value.is_nan() || value <= 0.0 {
-                return Err(HapticsError::Number(NumberError {
-                    parameter,
-                    rule: "positive",
-                    value,
-                    unit,
-                }));
+                return Err(HapticsError::Number(NumberError::new(
+                    parameter, "positive", value, unit,
+                )));
             }
         }
         if (self.budget as usize) < 2 * FIRST_LEVEL {
             let (parameter, rule, unit) = ("budget", "at least 32", "evaluations");
             let value = f64::from(self.budget);
-            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
         }
         Ok(())
     }
@@ -227,6 +224,7 @@ impl<const D: usize> ToolState<D> {
 
 /// A tool after a tick. World coordinates.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToolTouch<const D: usize> {
     /// The device's pose: the goal of the tool.
     pub device: Pose<D>,
