@@ -3,9 +3,9 @@
 
 //! The motion of a hand, as recorded samples.
 
+use crate::error::DeviceError;
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use palpate_haptics::HapticsError;
 use palpate_haptics::PointState;
 
 /// The interpolation between two samples of a hand path.
@@ -29,7 +29,7 @@ pub enum Interpolation {
 /// use palpate_field::Vector;
 /// use palpate_devices::{HandPath, Interpolation};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_devices::DeviceError> {
 /// let path = HandPath::new(
 ///     vec![0.0, 1.0, 3.0],
 ///     vec![Vector([0.0, 0.0]), Vector([2.0, 0.0]), Vector([2.0, 4.0])],
@@ -61,13 +61,13 @@ impl<const D: usize> HandPath<D> {
         times: Vec<f64>,
         positions: Vec<Point<D>>,
         interpolation: Interpolation,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         let (count, paired) = (times.len(), positions.len());
         if count != paired {
-            return Err(HapticsError::UnpairedSamples { times: count, positions: paired });
+            return Err(DeviceError::UnpairedSamples { times: count, positions: paired });
         }
         if count < 2 {
-            return Err(HapticsError::TooFewSamples { count });
+            return Err(DeviceError::TooFewSamples { count });
         }
         let samples = times.iter().zip(&positions);
         for (index, (&time, position)) in samples.enumerate() {
@@ -75,14 +75,14 @@ impl<const D: usize> HandPath<D> {
             // Written so that NaN fails.
             let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
             if let Some(value) = numbers.find(|x| !is_usable(x)) {
-                return Err(HapticsError::SampleNotFinite { index, value });
+                return Err(DeviceError::SampleNotFinite { index, value });
             }
         }
         for (index, pair) in times.windows(2).enumerate() {
             let (previous, time) = (pair[0], pair[1]);
             if time <= previous {
                 let index = index + 1;
-                return Err(HapticsError::TimeNotIncreasing { index, previous, time });
+                return Err(DeviceError::TimeNotIncreasing { index, previous, time });
             }
         }
         let velocities = bessel_tangents(&times, &positions);
@@ -148,8 +148,8 @@ impl<const D: usize> HandPath<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::SampleNotFinite`] if the map leads beyond any scene.
-    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::SampleNotFinite`] if the map leads beyond any scene.
+    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, DeviceError> {
         let positions = self.positions().iter().map(|point| map(*point)).collect();
         Self::new(self.times().to_vec(), positions, Interpolation::Smooth)
     }
@@ -195,20 +195,20 @@ fn bessel_tangents<const D: usize>(
 mod tests {
     use super::*;
 
-    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath<2>, HapticsError> {
+    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath<2>, DeviceError> {
         let positions = xs.iter().map(|x| Vector([*x, 0.0])).collect();
         HandPath::new(times.to_vec(), positions, Interpolation::Smooth)
     }
 
     #[test]
     fn wrong_paths_are_refused_with_their_numbers() {
-        assert_eq!(path(&[0.0], &[0.0]), Err(HapticsError::TooFewSamples { count: 1 }));
-        let unpaired = HapticsError::UnpairedSamples { times: 2, positions: 1 };
+        assert_eq!(path(&[0.0], &[0.0]), Err(DeviceError::TooFewSamples { count: 1 }));
+        let unpaired = DeviceError::UnpairedSamples { times: 2, positions: 1 };
         assert_eq!(path(&[0.0, 1.0], &[0.0]), Err(unpaired));
-        let backwards = HapticsError::TimeNotIncreasing { index: 2, previous: 1.0, time: 1.0 };
+        let backwards = DeviceError::TimeNotIncreasing { index: 2, previous: 1.0, time: 1.0 };
         assert_eq!(path(&[0.0, 1.0, 1.0], &[0.0; 3]), Err(backwards));
         let error = path(&[0.0, 1.0], &[0.0, f64::NAN]).unwrap_err();
-        assert!(matches!(error, HapticsError::SampleNotFinite { index: 1, .. }));
+        assert!(matches!(error, DeviceError::SampleNotFinite { index: 1, .. }));
         assert!(path(&[0.0, f64::INFINITY], &[0.0, 0.0]).is_err());
     }
 

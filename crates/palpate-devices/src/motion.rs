@@ -14,8 +14,9 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_haptics::NumberError;
 
+use crate::error::DeviceError;
 use crate::oscillator::{Drive, Nodes, Oscillator};
 
 /// The most pieces of motion in one call: at [`FASTEST`], a tenth of a second. A device that is
@@ -122,9 +123,9 @@ pub(crate) struct Parts {
 impl Body {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the total mass is zero, damping or friction are negative or
+    /// [`DeviceError::Number`] if the total mass is zero, damping or friction are negative or
     /// not finite, or the motion is faster than [`FASTEST`].
-    pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
+    pub(crate) fn new(parts: &Parts) -> Result<Self, DeviceError> {
         let (device, hand) = (parts.device_mass, parts.hand_mass);
         NumberError::check_not_negative("mass", device, "kg")?;
         let mass = NumberError::check_positive("mass of device and hand", device + hand, "kg")?;
@@ -136,12 +137,12 @@ impl Body {
         };
         let fastest = oscillator.fastest();
         if fastest.is_nan() || fastest > FASTEST {
-            return Err(HapticsError::Number(NumberError {
-                parameter: "the rate of damping and spring per mass",
-                rule: "at most 1e4",
-                value: fastest,
-                unit: "1/s",
-            }));
+            return Err(DeviceError::Number(NumberError::new(
+                "the rate of damping and spring per mass",
+                "at most 1e4",
+                fastest,
+                "1/s",
+            )));
         }
         Ok(Self {
             mass,

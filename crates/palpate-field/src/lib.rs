@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! Signed distance fields.
-#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod bounds;
 pub mod catalogue;
 mod convert;
 mod error;
 pub mod field;
+#[doc(hidden)]
+pub mod internal;
 pub mod kernel;
 mod machine;
 mod mass;

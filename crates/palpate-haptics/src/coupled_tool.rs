@@ -11,7 +11,7 @@ use palpate_field::{Point, Pose, Vector};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
-use crate::protection::TurningPort;
+use crate::ports::TurningPort;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
 use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState, limited};
 

@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | [`ProjectedGradient`] | field and element | memoir 3.2; Macklin et al. 2020 |
 //! | [`FrankWolfe`] | field and element | Macklin et al. 2020 |
-//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles, the half of it in space) |
+//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles; the spatial part of their space-time search) |
 //! | [`AlternatingProjection`] | two fields | memoir 3.3, after Liu et al. 2024 |
 //! | [`MinimaxProximal`] | two fields | the bundle method with two planes |
 //!
@@ -38,6 +38,7 @@
 //! let found = method.descend(&balls, &segment);
 //! let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 //! assert!(found.value > 0.02 && certified.upper < -0.032);
+//! assert!(found.to_string().starts_with(&format!("{} m at ", found.value)));
 //! # Ok(())
 //! # }
 //! ```
@@ -62,6 +63,7 @@ pub use projected_gradient::ProjectedGradient;
 
 /// What a local search found, and how it came there.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Descent<const D: usize> {
     /// The best point on the way [m].
     pub best: Point<D>,
@@ -88,6 +90,13 @@ impl<const D: usize> Descent<D> {
         if value < self.value {
             (self.best, self.value) = (p, value);
         }
+    }
+}
+
+impl<const D: usize> fmt::Display for Descent<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { best, value, steps, evaluations, .. } = self;
+        write!(f, "{value} m at {:?} m, {steps} steps, {evaluations} evaluations", best.0)
     }
 }
 

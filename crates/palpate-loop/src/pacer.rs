@@ -76,8 +76,9 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 }
 
 /// How late an idle loop wakes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Lateness {
     /// The distribution of lateness; `None` if the loop had no tick.
     pub times: Option<Distribution>,

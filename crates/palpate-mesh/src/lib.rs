@@ -20,6 +20,7 @@
 //! let report = mesh.report();
 //! assert!(report.is_watertight());
 //! assert_eq!(report.enclosed, Some(1.0)); // 1 · 2 · 3 / 6 [m³]
+//! assert_eq!(report.to_string(), "4 elements of 4 vertices, watertight");
 //! # Ok(())
 //! # }
 //! ```

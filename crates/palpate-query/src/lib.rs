@@ -27,8 +27,8 @@
 //!
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
-//!   region in which they touch; [`escape`] bounds the minimum translation from above. [`Track`] follows
-//!   a pair that moves, [`World`] many bodies.
+//!   region in which they touch; [`separating_translation`] bounds the minimum translation from
+//!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
 //!   surface along a [`Ray`].
@@ -85,8 +85,9 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    DistanceBound, Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    escape, minimax_step, overlap, proof, rates, separation,
+    DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
+    SeparatingTranslation, minimax_step, overlap, proof, rates, separating_translation,
+    separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};

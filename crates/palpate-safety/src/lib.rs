@@ -18,6 +18,7 @@ mod chain;
 mod channel;
 mod continuous;
 mod device;
+mod display;
 mod effect;
 mod error;
 mod finite;

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive, positive_if};
+use crate::error::SceneError;
 use crate::pose::{direction, position};
 use crate::problem::Problem;
 use crate::schema::VectorSchema;
@@ -35,6 +36,7 @@ use crate::schema::VectorSchema;
     { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
 ]))]
+#[non_exhaustive]
 pub struct WrittenGuide {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -307,9 +309,8 @@ impl WrittenGuide {
     ///
     /// # Errors
     ///
-    /// As the constructor of its kind; [`HapticsError::GuideTargets`] without exactly one target,
-    /// [`HapticsError::Number`] if a vector has not `D` numbers. A scene that was built has
-    /// neither.
+    /// If there is not exactly one target, a vector has not `D` numbers, or the constructor of its
+    /// kind refuses a number. A scene that was built has none of these.
     ///
     /// ```
     /// use palpate_field::Vector;
@@ -328,7 +329,12 @@ impl WrittenGuide {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, HapticsError> {
+    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, SceneError> {
+        self.built().map_err(|problem| problem.located(None))
+    }
+
+    /// The guide with these numbers.
+    pub(crate) fn built<const D: usize>(&self) -> Result<Guide<D>, Problem> {
         let options = GuideOptions::default()
             .with_stiffness(self.stiffness)
             .with_damping(self.damping)
@@ -366,10 +372,10 @@ impl WrittenGuide {
             .map(|well| Guide::well(vector("center", &well.center)?, well.reach, options));
         let mut guides = point.chain(line).chain(segment).chain(plane).chain(curve).chain(well);
         match (guides.next(), guides.count()) {
-            (Some(guide), 0) => guide,
+            (Some(guide), 0) => guide.map_err(|error| Problem::new(error.to_string())),
             (guide, more) => {
                 let count = usize::from(guide.is_some()) + more;
-                Err(HapticsError::GuideTargets { count })
+                Err(Problem::new(format!("a guide needs one target, got {count}")))
             }
         }
     }
@@ -380,12 +386,12 @@ fn vector<const D: usize>(
     numbers: &[f64],
 ) -> Result<Vector<f64, D>, HapticsError> {
     let components = numbers.try_into().map_err(|_| {
-        HapticsError::Number(NumberError {
+        HapticsError::Number(NumberError::new(
             parameter,
-            rule: "one number for each dimension",
-            value: numbers.len() as f64,
-            unit: "numbers",
-        })
+            "one number for each dimension",
+            numbers.len() as f64,
+            "numbers",
+        ))
     })?;
     Ok(Vector(components))
 }

@@ -16,7 +16,7 @@ use crate::build::{BuiltScene, BuiltTool};
 /// and cost more; a face of 1 cm² of a tool as large as a hand has a few.
 const POINTS: usize = 500;
 
-/// How a servo renders a scene, beside what the scene says.
+/// Settings of a servo that scene files do not hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ServoSettings {
@@ -236,7 +236,7 @@ impl<const D: usize> BuiltScene<D> {
         let mut options = ServoOptions::of_device(device).with_rate(rate);
         if let Some(tool) = &self.tool {
             options.probe = Probe::new(tool.radius)?;
-            options.max_force = tool.max_force.unwrap_or(options.max_force);
+            options.max_force = tool.options.max_force.unwrap_or(options.max_force);
         }
         Ok(options)
     }

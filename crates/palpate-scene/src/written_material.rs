@@ -27,6 +27,7 @@ use crate::problem::{Problem, unknown};
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WrittenMaterial {
     /// The name of a preset.
     Preset(String),

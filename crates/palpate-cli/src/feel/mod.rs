@@ -18,7 +18,7 @@ use std::time::Duration;
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::Vector;
-use palpate::haptics::{Acceptance, Probe, Progress, ToolOptions};
+use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
@@ -101,7 +101,8 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
+    let device = held::device(&choice, &paths, turns.as_ref(), &map);
+    let mut device = device.map_err(Failure::input)?;
     let acceptance = if options.strict { Acceptance::Strict } else { Acceptance::Scaled };
     let settings = ServoSettings::default().with_rate(options.rate).with_acceptance(acceptance);
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
@@ -159,7 +160,7 @@ where
         _ if !outcome.is_released => Outcome::No,
         Ending::Finished => Outcome::Yes,
         Ending::Interrupted => Outcome::Interrupted,
-        Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
+        _ => Outcome::No,
     })
 }
 
@@ -183,16 +184,10 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         material.damping = options.damping.unwrap_or(material.damping);
     }
     if options.radius.is_some() || options.max_force.is_some() {
-        let tool = scene.tool.get_or_insert_with(|| BuiltTool {
-            radius: Probe::default().radius(),
-            points: Vec::new(),
-            shape: None,
-            options: ToolOptions::default(),
-            max_force: None,
-        });
+        let radius = Probe::default().radius();
+        let tool = scene.tool.get_or_insert_with(|| BuiltTool::of_radius(radius));
         tool.radius = options.radius.unwrap_or(tool.radius);
-        tool.max_force = options.max_force.or(tool.max_force);
-        tool.options.max_force = options.max_force.unwrap_or(tool.options.max_force);
+        tool.options.max_force = options.max_force.or(tool.options.max_force);
     }
     scene
 }

@@ -140,10 +140,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         Ending::Interrupted => {
             writeln!(out, "  interrupted: this report covers the run until then")?
         }
-        Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
-        Ending::Panicked { message } => {
-            writeln!(out, "  the servo panicked, zero forces were written: {message}")?;
-        }
+        ending => writeln!(out, "  {}", shown(&ending.to_string()))?,
     }
     if !report.is_released {
         writeln!(out, "  the device did not take the zero forces at the end")?;

@@ -6,7 +6,7 @@
 mod primitive;
 
 mod ball;
-mod between;
+pub(crate) mod between;
 mod capsule;
 mod cuboid;
 mod ellipsoid;

@@ -61,17 +61,3 @@ impl<const D: usize> Shape<D> {
         Self::from_node(Node::Stretched { factors: factors.into().0, of: self })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Ball;
-
-    #[test]
-    fn moves_of_a_leaf_become_one_node() -> Result<(), ShapeError> {
-        let ball = Shape::<2>::from_kernel(Ball::new(1.0)?);
-        let moved = ball.translated(Vector([1.0, 0.0]))?.rotated(Rotation::from_angle(1.0)?)?;
-        assert_eq!(moved.depth(), 1);
-        Ok(())
-    }
-}

@@ -6,9 +6,12 @@
 
 mod bad_input;
 mod bits;
+mod bounds;
 mod catalogue;
 mod cells;
+mod conversions;
 mod errata;
+mod functions;
 mod golden;
 mod gradients;
 mod guide;
@@ -18,10 +21,15 @@ mod motion;
 mod nodes;
 mod numbers;
 mod oracles;
+mod parabolas;
+mod poses;
 mod power;
 mod promises;
 mod recorder;
 mod regressions;
+mod screws;
+mod shapes;
 mod singular;
 mod slices;
 mod space_time;
+mod special_cases;

