@@ -6,32 +6,27 @@
 use std::io::Write;
 
 use palpate::field::Shape;
-use palpate::scene::{AnyScene, Scene};
+use palpate::scene::{AnyScene, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
-use crate::input::{promise_in_words, text};
+use crate::input::{bytes, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
-    let text = text(&options.scene)?;
+    let bytes = bytes(&options.scene)?;
     let mut out = output::answer();
     let name = options.scene.display().to_string();
     let name = shown(&name);
-    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Err(error) => {
             if options.json {
-                let answer = json!({
-                    "ok": false,
-                    "path": error.path,
-                    "line": error.line,
-                    "column": error.column,
-                    "problem": error.problem,
-                });
-                out.json(&answer)?;
+                let problems: Vec<_> = error.problems().map(told).collect();
+                let more = !error.is_all();
+                out.json(&json!({ "ok": false, "problems": problems, "maybe_more": more }))?;
             } else {
-                writeln!(out, "{name}: {}", shown(&error.to_string()))?;
+                writeln!(out, "{name}: {error}")?;
             }
             Ok(Outcome::No)
         }
@@ -53,6 +48,15 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
             Ok(Outcome::Yes)
         }
     }
+}
+
+fn told(problem: &SceneProblem) -> Value {
+    json!({
+        "path": problem.path,
+        "line": problem.line,
+        "column": problem.column,
+        "problem": problem.problem,
+    })
 }
 
 fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Value> {

@@ -24,19 +24,19 @@ pub(crate) struct Named {
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
-    let (name, text) = match path {
-        None => ("the built-in gallery".to_owned(), GALLERY.to_owned()),
-        Some(path) => (path.display().to_string(), text(path)?),
+    let (name, bytes) = match path {
+        None => ("the built-in gallery".to_owned(), GALLERY.as_bytes().to_owned()),
+        Some(path) => (path.display().to_string(), bytes(path)?),
     };
-    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Ok(scene) => Ok(Named { name, scene }),
         Err(error) => Err(Failure::input(format!("{name}: {error}"))),
     }
 }
 
-/// The text of a file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| Failure::file(path, error))
+/// The bytes of a scene file.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|error| Failure::file(path, error))
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.

@@ -338,16 +338,16 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
     let plate = Shape::rectangle([1.0, 2.0]).unwrap();
     let shape = plate.clone() - wave.translated([0.1, 0.0]).unwrap();
     let error = Scene::of_shape("it", &shape).unwrap_err();
-    assert_eq!(error.path, "bodies[0].shape.difference[1].of");
+    assert_eq!(error.first().path, "bodies[0].shape.difference[1].of");
     let problem = "`all::from_code::Wave` is opaque: files hold primitives and operators";
-    assert_eq!(error.problem, problem);
-    assert_eq!((error.line, error.column), (0, 0));
+    assert_eq!(error.first().problem, problem);
+    assert_eq!((error.first().line, error.first().column), (0, 0));
 
     let closure = Shape::from_fn(promise, |p: Vector<Dual<f64, 2>, 2>| p.0[1]);
     let solid = closure.displaced(plate.clone(), 0.1).and_then(|s| (plate & s).extruded(1.0));
     let error = Scene::of_shape("it", &solid.unwrap()).unwrap_err();
-    assert_eq!(error.path, "bodies[0].shape.of.intersection[1].displace[0]");
-    assert!(error.problem.contains("from_code::an_opaque_shape_is"), "{error}");
+    assert_eq!(error.first().path, "bodies[0].shape.of.intersection[1].displace[0]");
+    assert!(error.first().problem.contains("from_code::an_opaque_shape_is"), "{error}");
 }
 
 #[test]
@@ -435,9 +435,9 @@ fn a_shape_alone_is_written_and_read_without_a_scene() {
     assert_eq!(WrittenShape::from_json(&written.to_json()).unwrap(), written);
 
     let flat = written.build::<2>().unwrap_err();
-    assert_eq!(flat.path, "union[0].of.cylinder");
+    assert_eq!(flat.first().path, "union[0].of.cylinder");
     let named = WrittenShape::reference("cup").build::<3>().unwrap_err();
     assert_eq!(named.to_string(), "unknown shape `cup`; there are none here");
     let opaque = Shape::from_fn(Promise::lipschitz(None, 1.0), |p| p.0[1]);
-    assert_eq!(WrittenShape::of(&(pair | opaque)).unwrap_err().path, "union[2]");
+    assert_eq!(WrittenShape::of(&(pair | opaque)).unwrap_err().first().path, "union[2]");
 }
