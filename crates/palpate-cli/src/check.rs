@@ -10,7 +10,7 @@ use palpate::scene::{AnyScene, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
-use crate::input::{bytes, promise_in_words};
+use crate::input::{bytes, other_than_scene, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
@@ -21,12 +21,18 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
     let name = shown(&name);
     match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Err(error) => {
+            let other = other_than_scene(&options.scene, &bytes);
             if options.json {
-                let problems: Vec<_> = error.problems().map(told).collect();
-                let more = !error.is_all();
+                let problems: Vec<_> = match &other {
+                    Some(other) => {
+                        vec![json!({ "path": "", "line": 0, "column": 0, "problem": other })]
+                    }
+                    None => error.problems().map(told).collect(),
+                };
+                let more = other.is_none() && !error.is_all();
                 out.json(&json!({ "ok": false, "problems": problems, "maybe_more": more }))?;
             } else {
-                writeln!(out, "{name}: {error}")?;
+                writeln!(out, "{name}: {}", other.unwrap_or_else(|| error.to_string()))?;
             }
             Ok(Outcome::No)
         }

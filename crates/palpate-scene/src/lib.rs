@@ -38,6 +38,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod advice;
 mod angle;
 mod attitude;
 mod build;

@@ -9,6 +9,9 @@ const LONGEST_QUOTE: usize = 60;
 /// The most names that a message lists.
 const LONGEST_LIST: usize = 16;
 
+/// The most names that a message proposes.
+const MOST_GUESSES: usize = 8;
+
 /// The beginning of `text`, fit for a message: on one line.
 pub(crate) fn shortened(text: &str) -> String {
     let mut shown = String::new();
@@ -24,15 +27,21 @@ pub(crate) fn shortened(text: &str) -> String {
 /// "unknown key `raduis`, did you mean `radius`?", or the list of `known`.
 pub(crate) fn unknown(what: &str, found: &str, known: &[&str]) -> String {
     let shown = shortened(found);
-    match nearest(found, known) {
-        Some(nearest) => format!("unknown {what} `{shown}`, did you mean `{nearest}`?"),
-        None if known.is_empty() => format!("unknown {what} `{shown}`; there are none here"),
-        None => format!("unknown {what} `{shown}`; known are {}", listed(known)),
+    match near(found, known)[..] {
+        [] if known.is_empty() => format!("unknown {what} `{shown}`; there are none here"),
+        [] => format!("unknown {what} `{shown}`; known are {}", listed(known, "and")),
+        ref near => format!("unknown {what} `{shown}`, {}", did_you_mean(near)),
     }
 }
 
-/// The name of `known` that `found` may be a slip of.
-pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+/// "did you mean `a` or `b`?", of at most eight names.
+pub(crate) fn did_you_mean(near: &[&str]) -> String {
+    let near = near.get(..MOST_GUESSES).unwrap_or(near);
+    format!("did you mean {}?", listed(near, "or"))
+}
+
+/// The names of `known` that `found` may be a slip of, the nearest first.
+pub(crate) fn near<'a>(found: &str, known: &[&'a str]) -> Vec<&'a str> {
     let found = shortened(found);
     let letters = found.chars().count();
     // A third of the letters may be wrong: more, and the guess is none.
@@ -42,19 +51,26 @@ pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
         let distance = is_near.then(|| strsim::osa_distance(&found, candidate));
         distance.filter(|distance| *distance <= allowed)
     };
-    let near = known.iter().filter_map(|c| distance(c).map(|distance| (distance, *c)));
-    near.min_by_key(|(distance, _)| *distance).map(|(_, nearest)| nearest)
+    let mut near: Vec<_> =
+        known.iter().filter_map(|name| Some((distance(name)?, *name))).collect();
+    near.sort_by_key(|(distance, _)| *distance);
+    near.into_iter().map(|(_, name)| name).collect()
 }
 
-/// "`a`, `b` and `c`".
-pub(crate) fn listed(names: &[&str]) -> String {
+/// The name of `known` that `found` is most likely a slip of.
+pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+    near(found, known).first().copied()
+}
+
+/// "`a`, `b` and `c`", with another word before the last.
+fn listed(names: &[&str], word: &str) -> String {
     let shown = names.iter().take(LONGEST_LIST);
     let mut quoted: Vec<_> = shown.map(|name| format!("`{}`", shortened(name))).collect();
     if names.len() > LONGEST_LIST {
         quoted.push(format!("{} more", names.len() - LONGEST_LIST));
     }
     match quoted.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        Some((last, rest)) if !rest.is_empty() => format!("{} {word} {last}", rest.join(", ")),
         _ => quoted.concat(),
     }
 }

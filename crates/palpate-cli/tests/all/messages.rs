@@ -67,9 +67,97 @@ fn other_encodings_are_named() {
     let latin = [before.as_bytes(), b"\xe4ll\",", after.as_bytes()].concat();
     assert_eq!(
         checked(&folder, "latin.json", &latin),
-        "latin.json: the file is not UTF-8: byte 61, in line 2, is 0xe4; save it as UTF-8\n"
+        "latin.json: the file is not UTF-8: byte 58, in line 2, is 0xe4; save it as UTF-8\n"
     );
     let marked = ["\u{feff}", BALL].concat();
     let marked = folder.write("marked.json", &marked);
     assert_eq!(status(&palpate(&["check", &marked])), 0);
+}
+
+/// What a command that cannot use its input says.
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
+    assert_eq!(status(&output), 2, "{arguments:?}: {}", text(&output));
+    assert_eq!(text(&output), "", "{arguments:?}");
+    errors(&output)
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+#[test]
+fn a_mesh_given_as_a_scene_is_recognised() {
+    let folder = Folder::new();
+    folder.write("part.obj", TRIANGLE);
+    folder.write("part.json", TRIANGLE);
+    for command in ["plot", "feel", "contact", "mass"] {
+        assert_eq!(
+            refused(&folder, &[command, "part.obj"]),
+            "palpate: part.obj: it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it\n"
+        );
+    }
+    let eval = refused(&folder, &["eval", "part.obj", "--at", "0,0,0"]);
+    assert!(eval.contains("`palpate mesh part.obj` checks it"), "{eval}");
+    assert_eq!(
+        checked(&folder, "part.json", TRIANGLE.as_bytes()),
+        "part.json: it is a mesh (OBJ), not a scene; rename it to part.obj, for `palpate mesh`\n"
+    );
+    let answer = folder.run(&["check", "part.obj", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let problem = "it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it";
+    assert_eq!(answer["problems"][0]["problem"], problem);
+}
+
+#[test]
+fn other_files_given_as_a_scene_are_recognised() {
+    let folder = Folder::new();
+    for (name, content, expected) in [
+        (
+            "points.csv",
+            &b"x_m,y_m\n0,0\n"[..],
+            "points.csv: it is a table (CSV), not a scene; `palpate eval SCENE --points points.csv` \
+             reads points, `palpate feel SCENE --path points.csv` the path of a hand\n",
+        ),
+        (
+            "star.png",
+            b"\x89PNG\r\n\x1a\n",
+            "star.png: it is a picture (PNG), not a scene; pictures are outputs alone\n",
+        ),
+        (
+            "empty.json",
+            b"",
+            "empty.json: it is an empty file; a small scene is { \"palpate\": 1, \"dimension\": 3, \
+             \"bodies\": [ { \"name\": \"bead\", \"shape\": { \"ball\": { \"radius\": 0.02 } } } ] }\n",
+        ),
+    ] {
+        assert_eq!(checked(&folder, name, content), expected);
+    }
+    let folder_name = refused(&folder, &["check", "."]);
+    assert_eq!(folder_name, "palpate: .: is a folder; name a file in it\n");
+    let small = checked(&folder, "empty.json", b"");
+    let (_, small) = small.split_once("a small scene is ").unwrap();
+    let small = folder.write("small.json", small);
+    assert_eq!(status(&palpate(&["check", &small])), 0);
+}
+
+#[test]
+fn other_files_given_as_a_mesh_are_recognised() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    folder.write("part.txt", TRIANGLE);
+    folder.write("part.stl", TRIANGLE);
+    folder.write("points.csv", "x_m,y_m\n0,0\n");
+    for (name, expected) in [
+        ("ball.json", "it is a scene (JSON), not a mesh; `palpate check ball.json` checks it"),
+        ("part.txt", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        ("part.stl", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        (
+            "points.csv",
+            "it is a table (CSV), not a mesh; `palpate eval SCENE --points points.csv` reads points, \
+             `palpate feel SCENE --path points.csv` the path of a hand",
+        ),
+        (".", "is a folder; name a file in it"),
+    ] {
+        let expected = format!("palpate: {name}: {expected}\n");
+        assert_eq!(refused(&folder, &["mesh", name]), expected);
+    }
 }

@@ -12,9 +12,10 @@ use super::object::Object;
 use super::operator::{over, refused};
 use super::primitive::primitive;
 use super::size::{Allowance, Size};
+use crate::advice;
 use crate::json::found;
 use crate::keys::{self, EXTRUDE, OF, REVOLVE};
-use crate::names::{shortened, unknown};
+use crate::names::shortened;
 use crate::pose::{Turning, Turns};
 use crate::problem::Problem;
 use crate::problems::Problems;
@@ -144,7 +145,9 @@ impl<'a> Builder<'a> {
     {
         let Some((name, _)) = self.scene.shapes.get_key_value(name) else {
             let names: Vec<_> = self.scene.shapes.keys().map(String::as_str).collect();
-            return Err(Problem::new(unknown("shape", name, &names)).into());
+            let dimension = <Self as Space<'a, D>>::DIMENSION;
+            let message = advice::unknown_shape(name, &names, dimension);
+            return Err(Problem::new(message).into());
         };
         // A cycle may pass through extrusion, so the dimension does not matter.
         if let Some(first) = self.open.iter().position(|open| open == name) {
@@ -201,7 +204,7 @@ impl<'a> Builder<'a> {
             }
         };
         let mut wrong = Problems::default();
-        match Object::new(entries, &mut wrong) {
+        match Object::new(entries, <Self as Space<'a, D>>::DIMENSION, &mut wrong) {
             Some(object) => {
                 let made = self.made(object, level);
                 wrong.end(made)

@@ -8,12 +8,14 @@ use std::borrow::Cow;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
+use crate::advice;
 use crate::catalogue;
 use crate::json;
-use crate::keys::{self, DESCRIPTION, OF, all_keys};
-use crate::names::{nearest, unknown};
+use crate::keys::{self, DESCRIPTION, OF};
+use crate::names::unknown;
 use crate::problem::Problem;
 use crate::problems::Problems;
+use crate::scene::Dimension;
 
 /// An object that makes a shape, its keys checked and its values not.
 #[derive(Clone, Debug)]
@@ -28,9 +30,13 @@ pub(super) struct Object<'a> {
 impl<'a> Object<'a> {
     /// The object, if one key decides what it makes. What is wrong with its keys is added to
     /// `wrong`.
-    pub(super) fn new(entries: &'a Map<String, Value>, wrong: &mut Problems) -> Option<Self> {
-        let meant = meant(entries, wrong);
-        let head = wrong.kept(head(entries, !meant.is_empty()))?;
+    pub(super) fn new(
+        entries: &'a Map<String, Value>,
+        dimension: Dimension,
+        wrong: &mut Problems,
+    ) -> Option<Self> {
+        let meant = meant(entries, dimension, wrong);
+        let head = wrong.kept(head(entries, wrong.is_failed()))?;
         wrong.kept(check_description(entries));
         let is_unary = keys::is_one_of(&keys::UNARY, head);
         let goes = |(key, lists): (&str, &[&str])| match key {
@@ -108,22 +114,26 @@ fn is_head(key: &str) -> bool {
 }
 
 /// Adds the unknown keys to `wrong`, and returns those that they may be slips of.
-fn meant(entries: &Map<String, Value>, wrong: &mut Problems) -> Vec<&'static str> {
-    let is_known = |key: &&str| keys::OTHERS.contains(key) || is_head(key);
+fn meant(
+    entries: &Map<String, Value>,
+    dimension: Dimension,
+    wrong: &mut Problems,
+) -> Vec<&'static str> {
+    let is_known = |key: &str| keys::OTHERS.contains(&key) || is_head(key);
     let mut meant = Vec::new();
-    for key in entries.keys().map(String::as_str).filter(|key| !is_known(key)) {
-        let known = all_keys();
-        wrong.add(Problem::new(unknown("key", key, &known)).under(key));
-        meant.extend(nearest(key, &known));
+    for (key, value) in entries.iter().filter(|(key, _)| !is_known(key)) {
+        let message = advice::unknown_key(key, value, dimension);
+        wrong.add(Problem::new(message).under(key));
+        meant.extend(advice::meant(key, dimension));
     }
     meant
 }
 
-/// The key that decides what is made; missing is told if there is no unknown key instead.
-fn head(entries: &Map<String, Value>, is_missing_told: bool) -> Result<&str, Problems> {
+/// The key that decides what is made; that there is none is told unless a key is unknown.
+fn head(entries: &Map<String, Value>, has_unknown: bool) -> Result<&str, Problems> {
     let mut heads = entries.keys().map(String::as_str).filter(|key| is_head(key));
     let Some(first) = heads.next() else {
-        if is_missing_told {
+        if has_unknown {
             return Err(Problems::told());
         }
         let message = "missing the primitive or operator that makes the shape";

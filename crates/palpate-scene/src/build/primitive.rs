@@ -9,10 +9,11 @@ use palpate_field::{Shape, ShapeError, Unit};
 use serde_json::{Map, Value};
 
 use super::object::check_description;
+use crate::advice;
 use crate::catalogue::{self, Signature, file_key};
 use crate::json::{self, found};
 use crate::keys::DESCRIPTION;
-use crate::names::{nearest, unknown};
+use crate::names::{nearest, shortened, unknown};
 use crate::pose;
 use crate::problem::Problem;
 use crate::problems::Problems;
@@ -28,9 +29,7 @@ pub(super) fn primitive<const D: usize>(
 
 fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usize), Problems> {
     let Value::Object(given) = arguments else {
-        let message =
-            format!("must be an object with its parameters, got {}", found(arguments));
-        return Err(Problem::about(message).into());
+        return Err(no_object::<D>(name, arguments).into());
     };
     let candidates = catalogue::named(name);
     let here = candidates.iter().find(|signature| signature.dimension.count() == D);
@@ -43,8 +42,8 @@ fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usiz
     let mut wrong = Problems::default();
     wrong.kept(check_description(given));
     let meant = meant(given, signature, other, &mut wrong);
-    let mut arguments = Vec::with_capacity(entry.parameters.len());
-    for parameter in entry.parameters {
+    let mut arguments = Vec::with_capacity(signature.parameters.len());
+    for parameter in signature.parameters {
         let key = file_key(parameter);
         let value = match wrong.kept(given_for(given, parameter)) {
             Some(Some(value)) => value,
@@ -56,6 +55,9 @@ fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usiz
         };
         arguments.extend(wrong.kept(argument::<D>(parameter, value)));
     }
+    if let Some(alias) = signature.alias {
+        arguments = alias.arguments(arguments);
+    }
     let built = if wrong.is_failed() {
         Err(Problems::told())
     } else {
@@ -63,6 +65,16 @@ fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usiz
     };
     let shape = wrong.end(built)?;
     Ok((shape, arguments.iter().map(weight).sum::<usize>().max(1)))
+}
+
+/// The problem of arguments that are no object.
+fn no_object<const D: usize>(name: &str, arguments: &Value) -> Problem {
+    let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
+    let such_as = advice::arguments(name, dimension)
+        .map(|example| format!(", such as {example}"))
+        .unwrap_or_default();
+    let found = found(arguments);
+    Problem::about(format!("must be an object with its parameters{such_as}, got {found}"))
 }
 
 /// The problem of a parameter that is not there; `other` is the primitive of that name in the
@@ -87,12 +99,25 @@ fn meant(
     let known: Vec<_> = known.iter().map(AsRef::as_ref).collect();
     let mut meant = Vec::new();
     for key in given.keys().filter(|key| !is_known(key)) {
-        let problem = Problem::new(unknown("key", key, &known)).under(key);
+        let problem = Problem::new(unknown_parameter(key, &known, signature)).under(key);
         let is_known_elsewhere = other.is_some_and(|other| other.parameter(key).is_some());
         wrong.add(if is_known_elsewhere { problem.of_dimension() } else { problem });
         meant.extend(nearest(key, &known).map(str::to_owned));
     }
     meant
+}
+
+/// What is wrong with a key that no parameter has: what may be meant, or what there is.
+fn unknown_parameter(key: &str, known: &[&str], signature: &Signature) -> String {
+    if nearest(key, known).is_some() {
+        return unknown("key", key, known);
+    }
+    let (key, name) = (shortened(key), signature.name);
+    let parameters = signature.parameters.iter().zip(known);
+    let parameters =
+        parameters.map(|(parameter, key)| format!("`{key}` ({})", parameter.about));
+    let parameters: Vec<_> = parameters.collect();
+    format!("unknown key `{key}`; `{name}` has {}", parameters.join(", "))
 }
 
 /// The key and value given for a parameter: for an angle in degrees, or in radians.

@@ -158,7 +158,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "ball": 3 }"#,
-                "shapes.a.ball, line 4: ball must be an object with its parameters, got 3",
+                "shapes.a.ball, line 4: ball must be an object with its parameters, such as { \"radius\": 0.7 }, got 3",
                 Refuses,
             ),
             (
@@ -466,6 +466,28 @@ fn bad_shapes_are_refused_with_their_place() {
                 r#"{ "shape": "cupp" }"#,
                 "shapes.a, line 4: unknown shape `cupp`, did you mean `cup`?",
                 Accepts,
+            ),
+            (
+                r#""ball""#,
+                "shapes.a, line 4: unknown shape `ball`; a text is the name of one of `shapes`, and what makes a shape stands in an object: { \"ball\": { \"radius\": 0.7 } }",
+                Accepts,
+            ),
+            (
+                r#"{ "shape": "union" }"#,
+                "shapes.a, line 4: unknown shape `union`; a text is the name of one of `shapes`, and what makes a shape stands in an object: { \"union\": [ …, … ] }",
+                Accepts,
+            ),
+            (
+                r#"{ "type": "torus" }"#,
+                "shapes.a.type, line 4: unknown key `type`; what makes the shape is itself the key: { \"torus\": { \"ring_radius\": 0.7, \"radius\": 0.25 } }",
+                Refuses,
+            ),
+            (
+                r#"{ "cuboid": { "half_extents": [1, 2, 3] } }"#,
+                "2 problems:\n  \
+                 shapes.a.cuboid, line 4: missing key `size`: the edge lengths\n  \
+                 shapes.a.cuboid.half_extents, line 4: unknown key `half_extents`; `cuboid` has `size` (the edge lengths)",
+                Refuses,
             ),
             (
                 r#""a""#,

@@ -381,6 +381,8 @@ fn aliases_are_read_as_their_primitives() {
     assert_eq!(solid(r#"{ "sphere": { "radius": 2 } }"#), Shape::sphere(2.0).unwrap());
     let cuboid = Shape::cuboid([1.0, 2.0, 3.0]).unwrap();
     assert_eq!(solid(r#"{ "box": { "size": [1, 2, 3] } }"#), cuboid);
+    assert_eq!(solid(r#"{ "cube": { "size": 2 } }"#), Shape::cube(2.0).unwrap());
+    assert_eq!(flat(r#"{ "square": { "size": 2 } }"#), Shape::square(2.0).unwrap());
     let extruded = solid(r#"{ "extrude": 1, "of": { "circle": { "radius": 2 } } }"#);
     assert_eq!(extruded, circle.extruded(1.0).unwrap());
     for (dimension, shape, problem) in [
@@ -393,6 +395,16 @@ fn aliases_are_read_as_their_primitives() {
             3,
             r#"{ "sphere": { "radius": -2 } }"#,
             "bodies[0].shape.sphere.radius, line 2: radius must be positive, got -2 m",
+        ),
+        (
+            3,
+            r#"{ "cube": { "size": -2 } }"#,
+            "bodies[0].shape.cube.size, line 2: size must be positive, got -2 m",
+        ),
+        (
+            3,
+            r#"{ "cube": { "size": [1, 2, 3] } }"#,
+            "bodies[0].shape.cube.size, line 2: size must be a number, got a list",
         ),
         (
             3,
@@ -414,7 +426,8 @@ fn every_alias_of_the_catalogue_is_a_key_of_the_schema() {
     for alias in palpate_field::catalogue::ALIASES {
         let place = if alias.dimension == 2 { "plane" } else { "space" };
         let keys = &schema["$defs"][place]["Shape"]["properties"];
-        assert_eq!(keys[alias.name]["properties"], keys[alias.of]["properties"]);
+        let [own, others] = [alias.name, alias.of].map(|name| &keys[name]["properties"]);
+        assert_eq!(own == others, alias.parameters.is_none(), "{alias:?}");
         assert!(keys[alias.name].is_object(), "{alias:?}");
     }
 }
