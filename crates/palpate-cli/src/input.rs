@@ -6,8 +6,9 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
-use palpate::scene::{AnyScene, BuiltScene, Scene};
+use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError};
 
+use crate::kind::Kind;
 use crate::outcome::Failure;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
@@ -24,19 +25,42 @@ pub(crate) struct Named {
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
-    let (name, text) = match path {
-        None => ("the built-in gallery".to_owned(), GALLERY.to_owned()),
-        Some(path) => (path.display().to_string(), text(path)?),
+    let (name, bytes) = match path {
+        None => ("the built-in gallery".to_owned(), GALLERY.as_bytes().to_owned()),
+        Some(path) => (path.display().to_string(), bytes(path)?),
     };
-    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Ok(scene) => Ok(Named { name, scene }),
-        Err(error) => Err(Failure::input(format!("{name}: {error}"))),
+        Err(error) => {
+            Err(Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error))))
+        }
     }
 }
 
-/// The text of a file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| Failure::file(path, error))
+/// Why a file is no scene: what it is instead, or what is wrong with it.
+fn no_scene(path: Option<&Path>, bytes: &[u8], error: &SceneError) -> String {
+    let other = path.and_then(|path| other_than_scene(path, bytes));
+    other.unwrap_or_else(|| error.to_string())
+}
+
+/// What a file holds that is no scene, and what to do with it; `None` if that is not known.
+pub(crate) fn other_than_scene(path: &Path, bytes: &[u8]) -> Option<String> {
+    match Kind::of(bytes)? {
+        Kind::Scene => None,
+        Kind::Empty => Some(format!("it is an empty file; a small scene is {SMALL}")),
+        kind => Some(format!("{kind}, not a scene; {}", kind.advice(path))),
+    }
+}
+
+/// A scene to begin with.
+const SMALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "bead", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
+
+/// The bytes of a file.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    if path.is_dir() {
+        return Err(Failure::file(path, "is a folder; name a file in it"));
+    }
+    std::fs::read(path).map_err(|error| Failure::file(path, error))
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.

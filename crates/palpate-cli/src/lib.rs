@@ -18,6 +18,7 @@ mod hand_csv;
 mod input;
 mod interrupt;
 mod jitter;
+mod kind;
 mod mass;
 mod mesh;
 mod outcome;

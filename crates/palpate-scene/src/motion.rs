@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive};
 use crate::pose::WrittenPose;
-use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// A screw motion of a body from a pose to another, at constant speed.
 ///
@@ -95,8 +95,8 @@ pub enum Repeat {
 
 impl Motion {
     /// Checks the numbers; body and poses are checked by the scene.
-    pub(crate) fn check(&self) -> Result<(), Problem> {
-        at_least("start", self.start, 0.0, "s")?;
-        positive("duration", self.duration, "s")
+    pub(crate) fn check(&self) -> Result<(), Problems> {
+        let start = at_least("start", self.start, 0.0, "s");
+        Problems::all([start, positive("duration", self.duration, "s")])
     }
 }

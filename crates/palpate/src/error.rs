@@ -16,7 +16,8 @@ use palpate_scene::SceneCause;
 /// Each error of those crates becomes one by `?`, with the same text. What an error knows is there
 /// as data: its [`kind`](Self::kind), the [`parameter`](Self::parameter) with the
 /// [`rule`](Self::rule) it breaks and its [`value`](Self::value); in a scene file the
-/// [`path`](Self::path), [`line`](Self::line) and [`column`](Self::column).
+/// [`path`](Self::path), [`line`](Self::line) and [`column`](Self::column). Of a scene with several
+/// problems these are of the first one; [`Error::Scene`] holds them all.
 ///
 /// ```
 /// use palpate::{Error, ErrorKind};
@@ -150,7 +151,7 @@ impl Error {
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,
             #[cfg(feature = "scene")]
-            Self::Scene(error) => match error.cause.as_deref() {
+            Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::File(_)) => ErrorKind::File,
                 _ => ErrorKind::Scene,
             },
@@ -256,7 +257,7 @@ impl Error {
     pub fn path(&self) -> Option<&str> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if !error.path.is_empty() => Some(&error.path),
+            Self::Scene(error) if !error.first().path.is_empty() => Some(&error.first().path),
             _ => None,
         }
     }
@@ -266,7 +267,7 @@ impl Error {
     pub fn line(&self) -> Option<usize> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if error.line > 0 => Some(error.line),
+            Self::Scene(error) if error.first().line > 0 => Some(error.first().line),
             _ => None,
         }
     }
@@ -276,7 +277,7 @@ impl Error {
     pub fn column(&self) -> Option<usize> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if error.column > 0 => Some(error.column),
+            Self::Scene(error) if error.first().column > 0 => Some(error.first().column),
             _ => None,
         }
     }
@@ -285,7 +286,7 @@ impl Error {
         match self {
             Self::Shape(error) | Self::Haptics(HapticsError::Shape(error)) => Some(error),
             #[cfg(feature = "scene")]
-            Self::Scene(error) => match error.cause.as_deref() {
+            Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::Shape(error)) => Some(error),
                 _ => None,
             },

@@ -7,6 +7,7 @@
 mod common;
 mod contact;
 mod interrupted;
+mod messages;
 mod outputs;
 mod pictures;
 mod program;

@@ -102,7 +102,7 @@ fn check_answers_yes_or_no() {
     let answer: Value =
         serde_json::from_slice(&palpate(&["check", &bad, "--json"]).stdout).unwrap();
     assert_eq!(answer["ok"], false);
-    assert_eq!(answer["line"], 2);
+    assert_eq!(answer["problems"][0]["line"], 2);
     assert_eq!(status(&palpate(&["check", "no/such/file.json"])), 2);
     assert_eq!(status(&palpate(&["plot", &bad])), 2);
 }

@@ -18,6 +18,24 @@ impl Shape<3> {
     pub fn sphere(radius: f64) -> Result<Self, ShapeError> {
         Self::ball(radius)
     }
+
+    /// A cube along the axes with edges of length `size` [m]: a [`cuboid`](Self::cuboid).
+    ///
+    /// # Errors
+    ///
+    /// If the size is not positive.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// assert_eq!(Shape::cube(0.5)?, Shape::cuboid([0.5, 0.5, 0.5])?);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn cube(size: f64) -> Result<Self, ShapeError> {
+        Self::cuboid([size; 3])
+    }
 }
 
 impl Shape<2> {
@@ -38,6 +56,15 @@ impl Shape<2> {
     /// If a length is not positive.
     pub fn rectangle(size: impl Into<Vector<f64, 2>>) -> Result<Self, ShapeError> {
         Self::cuboid(size)
+    }
+
+    /// A square along the axes with edges of length `size` [m]: a [`cuboid`](Self::cuboid).
+    ///
+    /// # Errors
+    ///
+    /// If the size is not positive.
+    pub fn square(size: f64) -> Result<Self, ShapeError> {
+        Self::cuboid([size; 2])
     }
 }
 

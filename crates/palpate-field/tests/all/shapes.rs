@@ -61,6 +61,7 @@ fn moves_of_a_leaf_become_one_node() -> Result<(), ShapeError> {
 fn operators_of_rust_build_the_nodes_of_methods() -> Result<(), ShapeError> {
     let (a, b) = (Shape::circle(0.5)?, Shape::rectangle([0.9, 0.7])?);
     let pair = || [a.clone(), b.clone()];
+    assert_eq!(Shape::square(0.5)?, Shape::rectangle([0.5, 0.5])?);
     assert_eq!(&a | &b, Shape::union(pair())?);
     assert_eq!(a.clone() & &b, Shape::intersection(pair())?);
     assert_eq!(&a ^ b.clone(), Shape::symmetric_difference(pair())?);

@@ -16,3 +16,4 @@ mod random;
 mod refusal;
 mod round_trip;
 mod schema;
+mod several;

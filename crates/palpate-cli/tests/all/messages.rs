@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What the program says of input that it cannot use.
+
+use crate::common::{Folder, errors, palpate, status, text};
+use serde_json::{Value, json};
+
+const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+  "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
+
+/// What `palpate check` says of a file.
+fn checked(folder: &Folder, name: &str, content: &[u8]) -> String {
+    std::fs::write(folder.path(name), content).unwrap();
+    let output = folder.run(&["check", name]);
+    assert_eq!(status(&output), 1, "{}", errors(&output));
+    text(&output)
+}
+
+#[test]
+fn text_that_is_no_json_is_shown_with_a_caret() {
+    let folder = Folder::new();
+    let comma = BALL.replace("0.5", "0,5");
+    assert_eq!(
+        checked(&folder, "comma.json", comma.as_bytes()),
+        "comma.json: line 2, column 65: not JSON: a decimal comma; write 0.5\n  \
+         …odies\": [ { \"name\": \"ball\", \"shape\": { \"ball\": { \"radius\": 0,5 } } } ] }\n  \
+         \u{20}                                                            ^\n"
+    );
+}
+
+#[test]
+fn every_problem_of_a_scene_is_told() {
+    let folder = Folder::new();
+    let bad = BALL.replace("\"ball\",", "\"\",").replace("0.5", "-0.5");
+    assert_eq!(
+        checked(&folder, "bad.json", bad.as_bytes()),
+        "bad.json: 2 problems:\n  \
+         bodies[0].name, line 2: name must not be empty\n  \
+         bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.5 m\n"
+    );
+    let answer = folder.run(&["check", "bad.json", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let problem = |path: &str, column: u32, problem: &str| json!({ "path": path, "line": 2, "column": column, "problem": problem });
+    let name = problem("bodies[0].name", 17, "name must not be empty");
+    let radius = "radius must be positive, got -0.5 m";
+    let radius = problem("bodies[0].shape.ball.radius", 50, radius);
+    let expected = json!({ "ok": false, "problems": [name, radius], "maybe_more": false });
+    assert_eq!(answer, expected);
+    let plot = folder.run(&["plot", "bad.json"]);
+    assert_eq!(status(&plot), 2);
+    assert!(
+        errors(&plot).starts_with("palpate: bad.json: 2 problems:\n  bodies[0].name, line 2")
+    );
+}
+
+#[test]
+fn other_encodings_are_named() {
+    let folder = Folder::new();
+    let units: Vec<u8> = BALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_eq!(
+        checked(&folder, "utf16.json", &units),
+        "utf16.json: the file is UTF-16 (little-endian); save it as UTF-8, for example with \
+         `iconv -f UTF-16LE -t UTF-8`\n"
+    );
+    let (before, after) = BALL.split_once("all\",").unwrap();
+    let latin = [before.as_bytes(), b"\xe4ll\",", after.as_bytes()].concat();
+    assert_eq!(
+        checked(&folder, "latin.json", &latin),
+        "latin.json: the file is not UTF-8: byte 58, in line 2, is 0xe4; save it as UTF-8\n"
+    );
+    let marked = ["\u{feff}", BALL].concat();
+    let marked = folder.write("marked.json", &marked);
+    assert_eq!(status(&palpate(&["check", &marked])), 0);
+}
+
+/// What a command that cannot use its input says.
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
+    assert_eq!(status(&output), 2, "{arguments:?}: {}", text(&output));
+    assert_eq!(text(&output), "", "{arguments:?}");
+    errors(&output)
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+#[test]
+fn a_mesh_given_as_a_scene_is_recognised() {
+    let folder = Folder::new();
+    folder.write("part.obj", TRIANGLE);
+    folder.write("part.json", TRIANGLE);
+    for command in ["plot", "feel", "contact", "mass"] {
+        assert_eq!(
+            refused(&folder, &[command, "part.obj"]),
+            "palpate: part.obj: it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it\n"
+        );
+    }
+    let eval = refused(&folder, &["eval", "part.obj", "--at", "0,0,0"]);
+    assert!(eval.contains("`palpate mesh part.obj` checks it"), "{eval}");
+    assert_eq!(
+        checked(&folder, "part.json", TRIANGLE.as_bytes()),
+        "part.json: it is a mesh (OBJ), not a scene; rename it to part.obj, for `palpate mesh`\n"
+    );
+    let answer = folder.run(&["check", "part.obj", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let problem = "it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it";
+    assert_eq!(answer["problems"][0]["problem"], problem);
+}
+
+#[test]
+fn other_files_given_as_a_scene_are_recognised() {
+    let folder = Folder::new();
+    for (name, content, expected) in [
+        (
+            "points.csv",
+            &b"x_m,y_m\n0,0\n"[..],
+            "points.csv: it is a table (CSV), not a scene; `palpate eval SCENE --points points.csv` \
+             reads points, `palpate feel SCENE --path points.csv` the path of a hand\n",
+        ),
+        (
+            "star.png",
+            b"\x89PNG\r\n\x1a\n",
+            "star.png: it is a picture (PNG), not a scene; pictures are outputs alone\n",
+        ),
+        (
+            "empty.json",
+            b"",
+            "empty.json: it is an empty file; a small scene is { \"palpate\": 1, \"dimension\": 3, \
+             \"bodies\": [ { \"name\": \"bead\", \"shape\": { \"ball\": { \"radius\": 0.02 } } } ] }\n",
+        ),
+    ] {
+        assert_eq!(checked(&folder, name, content), expected);
+    }
+    let folder_name = refused(&folder, &["check", "."]);
+    assert_eq!(folder_name, "palpate: .: is a folder; name a file in it\n");
+    let small = checked(&folder, "empty.json", b"");
+    let (_, small) = small.split_once("a small scene is ").unwrap();
+    let small = folder.write("small.json", small);
+    assert_eq!(status(&palpate(&["check", &small])), 0);
+}
+
+#[test]
+fn other_files_given_as_a_mesh_are_recognised() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    folder.write("part.txt", TRIANGLE);
+    folder.write("part.stl", TRIANGLE);
+    folder.write("points.csv", "x_m,y_m\n0,0\n");
+    for (name, expected) in [
+        ("ball.json", "it is a scene (JSON), not a mesh; `palpate check ball.json` checks it"),
+        ("part.txt", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        ("part.stl", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        (
+            "points.csv",
+            "it is a table (CSV), not a mesh; `palpate eval SCENE --points points.csv` reads points, \
+             `palpate feel SCENE --path points.csv` the path of a hand",
+        ),
+        (".", "is a folder; name a file in it"),
+    ] {
+        let expected = format!("palpate: {name}: {expected}\n");
+        assert_eq!(refused(&folder, &["mesh", name]), expected);
+    }
+}
