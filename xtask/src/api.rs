@@ -24,6 +24,7 @@ const CRATES: &[&str] = &[
     "palpate-mesh",
     "palpate-plot",
     "palpate-query",
+    "palpate-render",
     "palpate-safety",
     "palpate-scene",
     "palpate-vibration",

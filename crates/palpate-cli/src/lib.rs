@@ -24,9 +24,12 @@ mod mesh;
 mod outcome;
 mod output;
 mod picture;
+mod plane;
 mod plot;
+mod render;
 mod schema;
 mod shapes;
+mod threads;
 mod times;
 mod trace;
 
@@ -93,6 +96,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Contact(options) => contact::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
         Command::Plot(options) => plot::run(options),
+        Command::Render(options) => render::run(options, interrupt),
         Command::Gallery(options) => gallery::run(options, interrupt),
         Command::Check(options) => check::run(options),
         Command::Mass(options) => mass::run(options, interrupt),

@@ -17,6 +17,7 @@ use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::plane;
 
 pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
@@ -29,7 +30,7 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
-            plot.draw(&plane(options, through)?)
+            plot.draw(&plane::named("--plane", &options.plane, options.at, through)?)
         }
     }
 }
@@ -203,24 +204,4 @@ fn output(options: &PlotOptions) -> PathBuf {
 /// The scene's name as a title.
 pub(crate) fn title(scene: &Path) -> String {
     scene.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ")
-}
-
-/// The plane of `--plane`; one along two axes goes through `middle` unless `--at` is given.
-fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure> {
-    let at = |axis: usize| options.at.unwrap_or(middle[axis]);
-    match options.plane.as_str() {
-        "xy" => Slice::xy(at(2)),
-        "xz" => Slice::xz(at(1)),
-        "yz" => Slice::yz(at(0)),
-        free => {
-            let points: Vec<_> =
-                free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
-            let [origin, right, up] = points.try_into().map_err(|_| {
-                let rule = "xy, xz, yz, or origin:right:up, each of these three numbers joined by commas";
-                Failure::input(format!("--plane must be {rule}, got {free:?}"))
-            })?;
-            Slice::free(origin.0, right.0, up.0)
-        }
-    }
-    .map_err(Failure::input)
 }

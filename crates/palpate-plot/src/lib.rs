@@ -8,6 +8,8 @@
 //! time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene and [`Chart`]s
 //! and writes them with [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
 //!
+//! A [`Layer`] is a legend with points and arrows for a picture of pixels that was made elsewhere.
+//!
 //! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
 //! [`Slice::project`] takes points of space there.
 //!
@@ -49,6 +51,7 @@ mod frame;
 mod geometry;
 mod isolines;
 mod labels;
+mod layer;
 mod legend;
 mod levels;
 mod nearest;
@@ -74,6 +77,7 @@ pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
 pub use figure::Figure;
 pub use isolines::Isolines;
+pub use layer::Layer;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;

@@ -31,7 +31,7 @@
 //!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
-//!   surface along a [`Ray`].
+//!   surface along a [`Ray`], by balls that are free of it ([`free_radius`]).
 //! - [`minimum`] and [`touches`] ask a field, in two or three dimensions, over an [`Element`]: a
 //!   segment or a triangle; [`contacts`] finds all places where the element touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
@@ -93,6 +93,7 @@ pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
+pub use sampler::free_radius;
 pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

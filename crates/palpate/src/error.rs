@@ -68,6 +68,9 @@ pub enum Error {
     /// A picture cannot be drawn.
     #[cfg(feature = "plot")]
     Plot(#[from] palpate_plot::PlotError),
+    /// A picture cannot be rendered.
+    #[cfg(feature = "render")]
+    Render(#[from] palpate_render::RenderError),
     /// There is no device of that name.
     UnknownDevice(#[from] UnknownDevice),
     /// There is no material of that name.
@@ -157,6 +160,8 @@ impl Error {
             },
             #[cfg(feature = "plot")]
             Self::Plot(_) => ErrorKind::Plot,
+            #[cfg(feature = "render")]
+            Self::Render(_) => ErrorKind::Plot,
             Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]

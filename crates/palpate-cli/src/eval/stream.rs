@@ -6,7 +6,6 @@
 use std::fmt;
 use std::fs::File;
 use std::io::Write;
-use std::num::NonZero;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -21,6 +20,7 @@ use crate::hand_csv::columns;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination};
+use crate::threads;
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
 /// enough to stay in their caches.
@@ -33,8 +33,7 @@ pub(crate) fn run<const D: usize>(
     destination: &Destination,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options.threads)).build();
-    let pool = pool.map_err(Failure::input)?;
+    let pool = threads::pool(options.threads)?;
     let stream = Stream { shape, points, as_json: options.json, pool, interrupt };
     let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
     let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
@@ -45,17 +44,6 @@ pub(crate) fn run<const D: usize>(
         output::remark(format_args!("interrupted after {done} points{place}"));
     }
     Ok(outcome)
-}
-
-/// The requested number of threads, but no more than the machine runs at once: further ones
-/// would wait, each with a batch in memory. Zero means as many as the machine runs.
-fn threads(asked: Option<usize>) -> usize {
-    let asked = asked.unwrap_or(0);
-    let most = std::thread::available_parallelism().map_or(1, NonZero::get);
-    if asked > most {
-        output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
-    }
-    asked.min(most)
 }
 
 /// A file of points, and how they are evaluated.
