@@ -342,7 +342,7 @@ impl WrittenGuide {
     /// # }
     /// ```
     pub fn guide<const D: usize>(&self) -> Result<Guide<D>, SceneError> {
-        self.built().map_err(|problem| problem.located(None))
+        self.built().map_err(|problem| problem.located(None).into())
     }
 
     /// The guide with these numbers.
