@@ -10,6 +10,7 @@ use palpate::scene::{AnyScene, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
+use crate::emptiness::is_empty;
 use crate::input::{bytes, other_than_scene, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
@@ -48,7 +49,12 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 writeln!(out, "{name}: good, {dimension}D, {} bodies", bodies.len())?;
                 for body in &bodies {
                     let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
-                    writeln!(out, "  {}: {}", shown(&text("name")), text("promise"))?;
+                    let empty = match body["empty"].as_bool() {
+                        Some(false) => "",
+                        Some(true) => "; empty: no point is in it, which is proven",
+                        None => "; may be empty: no point was found in it",
+                    };
+                    writeln!(out, "  {}: {}{empty}", shown(&text("name")), text("promise"))?;
                 }
             }
             Ok(Outcome::Yes)
@@ -75,6 +81,7 @@ fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Val
                 "lipschitz": body.shape.promise().lipschitz,
                 "bounds": bounds(&body.shape),
                 "depth": body.shape.depth(),
+                "empty": is_empty(&body.shape_in_body),
             })
         })
         .collect()

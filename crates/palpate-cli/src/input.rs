@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
-use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError};
+use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name};
 
 use crate::kind::Kind;
 use crate::outcome::Failure;
@@ -61,6 +61,33 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
         return Err(Failure::file(path, "is a folder; name a file in it"));
     }
     std::fs::read(path).map_err(|error| Failure::file(path, error))
+}
+
+/// The numbers of the bodies with these names, each once.
+pub(crate) fn bodies(asked: &[String], names: &[&str]) -> Result<Vec<usize>, Failure> {
+    let number = |name: &String| {
+        let found = names.iter().position(|known| known == name);
+        found.ok_or_else(|| {
+            Failure::input(format!("--body: {}", unknown_name("body", name, names)))
+        })
+    };
+    let mut bodies = asked.iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    bodies.sort_unstable();
+    bodies.dedup();
+    Ok(bodies)
+}
+
+/// The scene at a time [s].
+pub(crate) fn at<const D: usize>(
+    scene: &BuiltScene<D>,
+    time: f64,
+) -> Result<BuiltScene<D>, Failure> {
+    // Written so that NaN is refused.
+    if !(time >= 0.0 && time.is_finite()) {
+        let rule = "--time must be finite and zero or more";
+        return Err(Failure::input(format!("{rule}, got {time} s")));
+    }
+    scene.at(time).map_err(Failure::input)
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.

@@ -11,6 +11,7 @@ mod check;
 mod contact;
 mod descend;
 mod devices;
+mod emptiness;
 mod eval;
 mod feel;
 mod gallery;

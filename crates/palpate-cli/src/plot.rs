@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::{Map, PlotOptions};
 use crate::contact::Touched;
+use crate::emptiness;
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
@@ -95,6 +96,7 @@ where
                 "--step is only for --map distance: other maps have no isolines",
             ));
         }
+        emptiness::warn(scene);
         let window = Window::of(options, scene)?;
         let touched = touched(options, scene)?;
         Ok(Self { options, picture, scene, window, touched })

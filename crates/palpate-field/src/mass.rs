@@ -100,6 +100,12 @@ pub struct Mass<const D: usize> {
 }
 
 impl<const D: usize> Mass<D> {
+    /// `true` if the volume is proven to be zero: the shape is empty.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.volume + self.volume_error <= 0.0
+    }
+
     /// The mass [kg].
     #[must_use]
     pub fn mass(&self) -> f64 {
@@ -481,8 +487,12 @@ impl<const D: usize> Total<D> {
             f64::INFINITY
         };
         // S − V c cᵀ: the errors of S, of V and of both factors c.
-        let shift = volume_error * offset * offset
-            + volume * centroid_error * (2.0 * offset + centroid_error);
+        let shift = if volume + volume_error > 0.0 {
+            volume_error * offset * offset
+                + volume * centroid_error * (2.0 * offset + centroid_error)
+        } else {
+            0.0
+        };
         Mass {
             volume,
             volume_error,

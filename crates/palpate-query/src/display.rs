@@ -19,6 +19,8 @@ impl Display for Stop {
             Self::Converged => "converged",
             Self::SignKnown => "sign known",
             Self::BudgetSpent => "budget spent",
+            Self::MemoryFull => "memory full",
+            Self::RoundingReached => "rounding reached",
         })
     }
 }

@@ -29,6 +29,7 @@
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
 //!   region in which they touch; [`separating_translation`] bounds the minimum translation from
 //!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
+//! - [`any_point`] decides whether a shape has any point.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
 //!   surface along a [`Ray`], by balls that are free of it ([`free_radius`]).
@@ -46,6 +47,7 @@
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].
 
+mod any_point;
 mod ball;
 mod certified;
 mod contact;
@@ -72,6 +74,7 @@ mod track;
 #[cfg(feature = "world")]
 mod world;
 
+pub use any_point::any_point;
 pub use ball::{BallWorkspace, contact_ball, touches_ball};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;

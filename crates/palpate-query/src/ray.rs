@@ -179,7 +179,7 @@ impl<const D: usize> Advance<'_, D> {
             if ahead <= free {
                 // The surface is within rounding.
                 let upper = self.witness.unwrap_or(f64::INFINITY);
-                return self.hit(free, upper, Stop::BudgetSpent);
+                return self.hit(free, upper, Stop::RoundingReached);
             }
             free = ahead;
         }

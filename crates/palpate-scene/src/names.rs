@@ -24,8 +24,18 @@ pub(crate) fn shortened(text: &str) -> String {
     shown
 }
 
-/// "unknown key `raduis`, did you mean `radius`?", or the list of `known`.
-pub(crate) fn unknown(what: &str, found: &str, known: &[&str]) -> String {
+/// The message of a name that there is none of: those of `known` that it may be a slip of, or the
+/// list of them.
+///
+/// ```
+/// use palpate_scene::unknown_name;
+///
+/// let known = ["peg", "block"];
+/// assert_eq!(unknown_name("body", "pag", &known), "unknown body `pag`, did you mean `peg`?");
+/// assert_eq!(unknown_name("body", "it", &known), "unknown body `it`; known are `peg` and `block`");
+/// ```
+#[must_use]
+pub fn unknown(what: &str, found: &str, known: &[&str]) -> String {
     let shown = shortened(found);
     match near(found, known)[..] {
         [] if known.is_empty() => format!("unknown {what} `{shown}`; there are none here"),

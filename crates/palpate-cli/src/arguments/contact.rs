@@ -12,10 +12,13 @@ Examples:
   palpate contact scenes/peg_in_hole.json
   palpate contact scenes/nut_on_bolt.json --margin 0.0002 --json
   palpate contact scenes/gears.json --tolerance 1e-6
+  palpate contact scenes/peg_in_hole.json --body peg --every-pair
+  palpate contact scenes/peg_in_hole.json --time 0.5
 
 The separation of bodies that are exact outside is their distance; that of bodies that
 overlap is minus the diameter of the largest ball inside both. It lies between the printed
-bounds, which include rounding. A pair that the budget leaves open is undecided.";
+bounds, which include rounding. A pair touches if the upper bound is at most the margin, is
+apart if the lower bound is more than the margin, and is undecided otherwise.";
 
 /// The options of `palpate contact`.
 #[derive(Args, Debug)]
@@ -24,10 +27,17 @@ pub(crate) struct ContactOptions {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) question: ContactQuestion,
-    /// List pairs that are apart too, with the bounds of their separation; always on for scenes
-    /// of at most 12 bodies.
+    /// List pairs that are apart too, with the bounds of their separation; always on where at
+    /// most 66 pairs are asked about, those of 12 bodies.
     #[arg(long)]
-    pub(crate) all: bool,
+    pub(crate) every_pair: bool,
+    /// Only pairs with this body; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Vec<String>,
+    /// The time at which the bodies are where their motions have taken them [s]; before all
+    /// motions if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) time: Option<f64>,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
-    Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, ManifoldSettings, Nearest, Neighbours, PairWorkspace, Placed,
+    Proof, QueryError, Stop, Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -34,8 +34,23 @@ pub(crate) struct Pair<const D: usize> {
     pub(crate) groups: Vec<usize>,
     /// The number of dropped contacts.
     pub(crate) dropped: usize,
-    /// `false` if the budget was spent before the whole region was searched.
-    pub(crate) is_whole: bool,
+    /// Why the search of the region ended; `Converged` if the region is whole.
+    pub(crate) region_stop: Stop,
+}
+
+/// The pairs of a scene that are asked about.
+pub(crate) struct Asked<'a> {
+    /// Those with one of these bodies; all if there are none.
+    pub(crate) bodies: &'a [usize],
+    /// Whether pairs that are apart are searched too.
+    pub(crate) is_every: bool,
+}
+
+impl Asked<'_> {
+    /// `true` if a pair of bodies is asked about.
+    fn has(&self, pair: [usize; 2]) -> bool {
+        self.bodies.is_empty() || pair.iter().any(|body| self.bodies.contains(body))
+    }
 }
 
 impl Question {
@@ -54,59 +69,68 @@ impl Question {
         Ok(Self { settings: WorldSettings::new(manifold, limits) })
     }
 
-    /// All pairs that touch or are undecided.
-    pub(crate) fn near<const D: usize>(
+    /// The pairs that touch or are undecided; and, if asked for, those that are apart: fewer of
+    /// them if interrupted.
+    pub(crate) fn pairs<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-    ) -> Result<Vec<Pair<D>>, Failure> {
-        let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
-        let margin = self.settings.manifold.margin;
-        let pairs = world.step().into_iter().map(|found| {
-            let manifold = found.manifold.as_ref();
-            Pair {
-                bodies: found.bodies.map(|body| body.index()),
-                verdict: found.verdict(margin),
-                separation: manifold.map(|manifold| manifold.separation),
-                contacts: found.contacts().to_vec(),
-                groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
-                dropped: manifold.map_or(0, |manifold| manifold.dropped),
-                is_whole: manifold.is_none_or(|manifold| manifold.is_whole),
-            }
-        });
-        Ok(pairs.collect())
-    }
-
-    /// All pairs but those in `near`, each with the separation that proves it apart; fewer if
-    /// interrupted.
-    pub(crate) fn apart<const D: usize>(
-        &self,
-        scene: &BuiltScene<D>,
-        near: &[Pair<D>],
+        asked: &Asked<'_>,
         interrupt: &Interrupt,
     ) -> Result<Vec<Pair<D>>, Failure> {
-        let mut workspace = PairWorkspace::new();
-        let near: BTreeSet<[usize; 2]> = near.iter().map(|pair| pair.bodies).collect();
-        let mut apart = Vec::new();
-        for k in 0..scene.bodies.len() {
-            for i in (0..k).filter(|i| !near.contains(&[*i, k])) {
-                if interrupt.is_asked() {
-                    return Ok(apart);
-                }
-                let [a, b] = [i, k].map(|i| placed(&scene.bodies[i]));
-                let found = separation(a, b, &self.settings.limits, &mut workspace)
-                    .map_err(Failure::input)?;
-                apart.push(Pair {
-                    bodies: [i, k],
-                    verdict: Verdict::Apart,
-                    separation: Some(found),
-                    contacts: found.best.contact(a, b).into_iter().collect(),
-                    groups: Vec::new(),
-                    dropped: 0,
-                    is_whole: true,
-                });
+        let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
+        let ids = world.bodies().collect::<Vec<_>>();
+        if !asked.bodies.is_empty() {
+            for (i, id) in ids.iter().enumerate() {
+                // Bodies of the second group touch those of the first alone.
+                let (groups, mask) =
+                    if asked.bodies.contains(&i) { (1, u32::MAX) } else { (2, 1) };
+                world.set_groups(*id, groups, mask).map_err(Failure::input)?;
             }
         }
-        Ok(apart)
+        let margin = self.settings.manifold.margin;
+        let mut pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
+        if asked.is_every {
+            interrupt.heed();
+            let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
+            self.add_apart(scene, asked, lower, interrupt, &mut pairs)?;
+        }
+        Ok(pairs)
+    }
+
+    /// Adds the pairs that are not there yet, each with its separation and a `lower` bound of it
+    /// that is known.
+    fn add_apart<const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+        asked: &Asked<'_>,
+        lower: impl Fn([usize; 2]) -> Result<f64, QueryError>,
+        interrupt: &Interrupt,
+        pairs: &mut Vec<Pair<D>>,
+    ) -> Result<(), Failure> {
+        let mut workspace = PairWorkspace::new();
+        let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
+        let all = (0..scene.bodies.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
+        for bodies in all.filter(|pair| asked.has(*pair) && !known.contains(pair)) {
+            if interrupt.is_asked() {
+                return Ok(());
+            }
+            let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
+            let mut found = separation(a, b, &self.settings.limits, &mut workspace)
+                .map_err(Failure::input)?;
+            // What is proven stays proven, whatever the budget allowed now.
+            found.lower = found.lower.max(lower(bodies).map_err(Failure::input)?);
+            let margin = self.settings.manifold.margin;
+            pairs.push(Pair {
+                bodies,
+                verdict: Verdict::of_bounds([found.lower, found.upper], margin),
+                contacts: found.best.contact(a, b).into_iter().collect(),
+                separation: Some(found),
+                groups: Vec::new(),
+                dropped: 0,
+                region_stop: Stop::Converged,
+            });
+        }
+        Ok(())
     }
 
     /// The separation of two bodies with its proof.
@@ -117,6 +141,20 @@ impl Question {
     ) -> Result<Proof<D>, Failure> {
         let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
         proof(a, b, &self.settings.limits, &mut PairWorkspace::new()).map_err(Failure::input)
+    }
+}
+
+/// A pair that the world found.
+fn near<const D: usize>(found: &Neighbours<D>, margin: f64) -> Pair<D> {
+    let manifold = found.manifold.as_ref();
+    Pair {
+        bodies: found.bodies.map(|body| body.index()),
+        verdict: found.verdict(margin),
+        separation: manifold.map(|manifold| manifold.separation),
+        contacts: found.contacts().to_vec(),
+        groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
+        dropped: manifold.map_or(0, |manifold| manifold.dropped),
+        region_stop: manifold.map_or(Stop::Converged, |manifold| manifold.region_stop),
     }
 }
 

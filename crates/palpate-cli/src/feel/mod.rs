@@ -23,6 +23,7 @@ use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
+use crate::emptiness;
 use crate::hand_csv;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
@@ -75,6 +76,7 @@ fn feel<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
+    emptiness::warn(scene);
     let name = named.name.as_str();
     let choice = match (&options.device, &options.scene) {
         (Some(choice), _) => choice.clone(),

@@ -161,3 +161,48 @@ fn other_files_given_as_a_mesh_are_recognised() {
         assert_eq!(refused(&folder, &["mesh", name]), expected);
     }
 }
+
+/// A small ball minus a large one, a ball minus itself, and a ball.
+const HOLLOW: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+  { "name": "none", "shape": { "difference": [ { "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.03 } } ] } },
+  { "name": "skin", "shape": { "difference": [ { "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.02 } } ] } },
+  { "name": "ball", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
+
+#[test]
+fn a_body_without_any_point_is_told_of() {
+    let folder = Folder::new();
+    folder.write("hollow.json", HOLLOW);
+    let check = folder.run(&["check", "hollow.json"]);
+    assert_eq!(
+        text(&check),
+        "hollow.json: good, 3D, 3 bodies\n  \
+         none: bound outside, exact inside; empty: no point is in it, which is proven\n  \
+         skin: bound outside, exact inside; may be empty: no point was found in it\n  \
+         ball: exact outside, exact inside\n"
+    );
+    let answer = folder.run(&["check", "hollow.json", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["empty"].clone()).collect();
+    assert_eq!(empty, [json!(true), Value::Null, json!(false)]);
+    let mass = folder.run(&["mass", "hollow.json", "--cells", "1000"]);
+    assert_eq!(status(&mass), 1);
+    let said = text(&mass);
+    let empty = "none, at 1000 kg/m³ (329 cells)\n  \
+                 empty: no point is in it, its volume is proven to be 0 m³\nskin, ";
+    assert!(said.starts_with(empty), "{said}");
+    assert!(said.contains("\n  may be empty: no point was found in it\n"), "{said}");
+    let answer = folder.run(&["mass", "hollow.json", "--cells", "1000", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let none = &answer["bodies"][0];
+    assert_eq!(
+        (&none["empty"], &none["volume"], &none["volume_error"]),
+        (&json!(true), &json!(0.0), &json!(0.0))
+    );
+    assert_eq!(none["centroid_m"], Value::Null);
+    let warning = "warning: body \"none\" is empty: no point is in it, which is proven\n";
+    for arguments in [&["plot"][..], &["contact"], &["feel", "--fast", "--duration", "0.01"]] {
+        let command = [&arguments[..1], &["hollow.json"], &arguments[1..]].concat();
+        let output = folder.run(&command);
+        assert!(errors(&output).starts_with(warning), "{command:?}: {}", errors(&output));
+    }
+}

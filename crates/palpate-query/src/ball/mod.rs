@@ -272,7 +272,7 @@ impl<const D: usize> BallSearch<'_, D> {
         best: Option<Contact<D>>,
         (lower, upper): (f64, f64),
     ) -> Certified<Option<Contact<D>>> {
-        let stop = self.goal.reached(lower, upper).unwrap_or(Stop::BudgetSpent);
+        let stop = self.goal.reached(lower, upper).unwrap_or(Stop::RoundingReached);
         Certified { best, lower, upper, stop, evaluations: self.evaluations }
     }
 

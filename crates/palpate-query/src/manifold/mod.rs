@@ -21,7 +21,7 @@ mod region;
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use crate::certified::{Certified, Limits};
+use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -99,8 +99,10 @@ pub struct Manifold<const D: usize> {
     pub separation: Certified<Nearest<D>>,
     /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,
-    /// `false` if the budget ended before the whole region was searched.
+    /// `false` if the search ended before it had seen the whole region.
     pub is_whole: bool,
+    /// Why the search of the region ended: [`Stop::Converged`] if it is whole.
+    pub region_stop: Stop,
 }
 
 /// Contacts that span the region in which two bodies touch, up to a gap of
@@ -166,14 +168,15 @@ pub(crate) fn spanning<const D: usize>(
         separation,
         dropped: 0,
         is_whole: true,
+        region_stop: Stop::Converged,
     };
     if separation.lower > settings.margin {
         return found;
     }
     let first = Touch::at(&mut pair, best);
-    let Region { candidates, mut middles, is_whole } =
+    let Region { candidates, mut middles, stop } =
         region::find(&mut pair, settings, budget, workspace, first);
-    found.is_whole = is_whole;
+    (found.is_whole, found.region_stop) = (!stop.is_early(), stop);
     let mut patches = Patches { pair, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     patches.fill(&mut middles, &mut touches);

@@ -7,7 +7,7 @@
 use arbitrary::Unstructured;
 use palpate_field::{Point, Pose, Shape};
 use palpate_query::{
-    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Stop, Track, overlap,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, overlap,
     separating_translation, separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
@@ -256,7 +256,7 @@ fn hasty<const D: usize>(
             return Ok(Err(complaint));
         }
         // A round may end beyond the budget, and so may a descent.
-        if answer.stop == Stop::BudgetSpent && answer.evaluations > budget + 1000 {
+        if answer.stop.is_early() && answer.evaluations > budget + 1000 {
             return Ok(Err(format!("{answer:?} of {budget}")));
         }
     }

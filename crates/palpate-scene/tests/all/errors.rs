@@ -479,7 +479,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "type": "torus" }"#,
-                "shapes.a.type, line 4: unknown key `type`; what makes the shape is itself the key: { \"torus\": { \"ring_radius\": 0.7, \"radius\": 0.25 } }",
+                "shapes.a.type, line 4: unknown key `type`; what makes the shape is itself the key: { \"torus\": { \"ring_radius\": 0.6, \"radius\": 0.2 } }",
                 Refuses,
             ),
             (
