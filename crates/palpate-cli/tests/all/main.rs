@@ -7,6 +7,7 @@
 mod common;
 mod contact;
 mod interrupted;
+mod motions;
 mod outputs;
 mod pictures;
 mod program;
