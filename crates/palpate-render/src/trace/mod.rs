@@ -10,6 +10,8 @@
 
 mod balls;
 mod models;
+#[cfg(test)]
+mod tests;
 
 use palpate_field::{BLOCK, Block, Column, Quality, Shape};
 use palpate_query::{Limits, Ray, Stop, cast_ray};
