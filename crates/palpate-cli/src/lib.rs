@@ -33,6 +33,7 @@ mod shapes;
 mod threads;
 mod times;
 mod trace;
+mod views;
 
 use std::ffi::OsString;
 

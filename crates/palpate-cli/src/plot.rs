@@ -7,8 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
-use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
-use palpate::scene::{AnyScene, BuiltScene};
+use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice, View};
+use palpate::scene::{AnyScene, BuiltScene, View as SceneView};
 use serde_json::{Value, json};
 
 use crate::arguments::{Map, PlotOptions};
@@ -18,16 +18,23 @@ use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
-use crate::plane;
+use crate::{plane, views};
 
 pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
     let picture = Picture::new(&mut files, &output(options))?;
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
-        AnyScene::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
+        AnyScene::Planar(scene) => {
+            let scene = views::at(scene, options.time)?;
+            Plot::of(options, &picture, &scene)?.draw(&Slice::planar())
+        }
         AnyScene::Spatial(scene) => {
-            let plot = Plot::of(options, &picture, scene)?;
+            let scene = views::at(scene, options.time)?;
+            let plot = Plot::of(options, &picture, &scene)?;
+            if let Some(view) = plot.named {
+                return plot.draw(&views::plane(view)?);
+            }
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
@@ -78,6 +85,8 @@ struct Plot<'a, const D: usize> {
     picture: &'a Picture,
     scene: &'a BuiltScene<D>,
     window: Window<D>,
+    /// The view of the scene that was asked for.
+    named: Option<&'a SceneView>,
     touched: Option<Touched<D>>,
 }
 
@@ -98,18 +107,36 @@ where
         }
         emptiness::warn(scene);
         let window = Window::of(options, scene)?;
+        let named =
+            options.view.as_deref().map(|name| views::named(scene, name)).transpose()?;
         let touched = touched(options, scene)?;
-        Ok(Self { options, picture, scene, window, touched })
+        Ok(Self { options, picture, scene, window, named, touched })
+    }
+
+    /// The window of the picture; what a view of the scene leaves out shows the whole scene.
+    fn view(&self, plane: &Slice) -> Result<View, Failure> {
+        let whole = Dimensions::view(plane, &self.window.bounds, self.window.margin);
+        let whole = whole.map_err(Failure::input)?;
+        let Some(named) = self.named else { return Ok(whole) };
+        let centre = named.center.unwrap_or(whole.center());
+        let width = named.width.unwrap_or(whole.width());
+        let height = named.height.unwrap_or(whole.height());
+        View::new(centre, width, height).map_err(Failure::input)
+    }
+
+    /// The distance between isolines, if one is asked for [m].
+    fn step(&self) -> Option<f64> {
+        let of_view = self.named.and_then(|view| view.spacing);
+        self.options.step.or(of_view.filter(|_| self.options.map == Map::Distance))
     }
 
     /// Draws the scene on `plane`, and reports the picture.
     fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
-        let Self { options, scene, window, .. } = self;
-        let view = Dimensions::view(plane, &window.bounds, window.margin);
-        let view = view.map_err(Failure::input)?;
+        let Self { options, scene, .. } = self;
+        let view = self.view(plane)?;
         let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
             .map_err(Failure::input)?;
-        let isolines = match options.step {
+        let isolines = match self.step() {
             Some(step) => isolines.with_step(step).map_err(Failure::input)?,
             None => picture::mapped(&scene.whole, plane, isolines, options.map)
                 .map_err(Failure::input)?,

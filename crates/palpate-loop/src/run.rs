@@ -3,6 +3,7 @@
 
 //! Running a servo with a device for a time.
 
+use palpate_field::Pose;
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, NumberError, Progress, Servo, handoff,
 };
@@ -28,6 +29,15 @@ pub enum Pace {
 /// A closure that receives the progress of a run.
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) + Send);
 
+/// A closure that moves bodies before each tick: it gets the time of the tick [s] and a function
+/// that sets the pose of a body by its index, as [`Servo::set_pose`] does.
+///
+/// Set the poses of moving bodies at every tick: the velocity of a body is its motion since the
+/// tick before.
+///
+/// Real-time: the closure runs in the loop, and should not allocate, wait or panic.
+pub type Motion<'a, const D: usize> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>));
+
 /// Options of a run.
 ///
 /// ```
@@ -50,6 +60,8 @@ pub struct RunOptions<'a, const D: usize> {
     pub recorder: Option<&'a mut Recorder<D>>,
     /// A closure that a separate thread calls at this interval, and once at the end.
     pub watch: Option<(Duration, Watch<'a>)>,
+    /// Moves bodies before each tick.
+    pub motion: Option<Motion<'a, D>>,
     /// Ends the run before its next tick once the flag is `true`; a signal handler may set it.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -64,6 +76,7 @@ impl<'a, const D: usize> RunOptions<'a, D> {
             rehearses: false,
             recorder: None,
             watch: None,
+            motion: None,
             interrupt: None,
         }
     }
@@ -90,6 +103,38 @@ impl<'a, const D: usize> RunOptions<'a, D> {
     #[must_use]
     pub const fn with_watch(self, interval: Duration, watch: Watch<'a>) -> Self {
         Self { watch: Some((interval, watch)), ..self }
+    }
+
+    /// The same options with a closure that moves bodies before each tick.
+    ///
+    /// # Examples
+    ///
+    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it, and pushes:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{Pace, RunOptions, run};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Smooth)?;
+    /// let mut device = RecordedDevice::new(vec![hand])?;
+    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
+    /// let mut servo = Servo::for_device(floor, &device)?; // with a probe of 2 mm
+    /// let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
+    /// };
+    /// let options = RunOptions::new(0.01).with_pace(Pace::AsFastAsPossible);
+    /// let report = run(&mut servo, &mut device, options.with_motion(&mut rise))?;
+    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_motion(self, motion: Motion<'a, D>) -> Self {
+        Self { motion: Some(motion), ..self }
     }
 
     /// The same options with a flag that ends the run.
@@ -166,6 +211,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("rehearses", &self.rehearses)
             .field("recorder", &self.recorder.is_some())
             .field("watch", &self.watch.as_ref().map(|(every, _)| every))
+            .field("motion", &self.motion.is_some())
             .field("interrupt", &self.interrupt)
             .finish()
     }
@@ -252,8 +298,11 @@ pub fn run_on<const D: usize>(
     let room = HandoffOptions::default().with_events(0).with_bodies(0);
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
+    // Within an option the closure's lifetime would have to be that of the loop.
+    let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let servo_loop = ServoLoop::new(servo, device)
         .recording(options.recorder)
+        .moving(motion)
         .interrupted_by(options.interrupt)
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);

@@ -39,6 +39,19 @@ impl Beam {
         self.radius + self.spread * distance
     }
 
+    /// Two unit vectors at right angles to the direction and to each other (Frisvad 2012, with the
+    /// sign of Duff and others 2017).
+    pub(crate) fn across(&self) -> [Vector<f64, 3>; 2] {
+        let Vector([x, y, z]) = self.direction;
+        let sign = 1.0_f64.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        [
+            Vector([1.0 + sign * x * x * a, sign * b, -sign * x]),
+            Vector([b, sign + y * y * a, -y]),
+        ]
+    }
+
     /// The side of the square that its cone covers, at a distance from the origin [m].
     pub(crate) fn side(&self, distance: f64) -> f64 {
         self.radius(distance) / COVER
@@ -133,6 +146,25 @@ mod tests {
         assert_eq!(cone.step_through(0.0, 5.0), 4.0);
         let step = Beam { spread: 0.1, ..ray }.step_through(0.2, 1.0);
         assert!((step.hypot(0.2 + 0.1 * step) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_is_across_a_beam_is_at_right_angles() {
+        for direction in
+            [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [0.48, -0.64, 0.6], [0.6, 0.8, 0.0]]
+        {
+            let beam = Beam::ray(Vector::ZERO, Vector(direction));
+            let [a, b] = beam.across();
+            for (u, v, product) in [
+                (a, b, 0.0),
+                (a, beam.direction, 0.0),
+                (b, beam.direction, 0.0),
+                (a, a, 1.0),
+                (b, b, 1.0),
+            ] {
+                assert!((u.dot(v) - product).abs() < 1e-15, "{direction:?}");
+            }
+        }
     }
 
     #[test]

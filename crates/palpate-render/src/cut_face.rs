@@ -6,7 +6,7 @@
 use crate::color::Light;
 
 /// How much of the bands is white, one after the other.
-const PALE: [f64; 2] = [0.62, 0.50];
+const PALE: [f64; 2] = [0.58, 0.42];
 
 /// How dark the lines between bands are, and the outline of the body.
 const LINE: f64 = 0.38;

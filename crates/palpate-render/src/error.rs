@@ -57,6 +57,20 @@ pub enum RenderError {
         /// The number that was asked for.
         samples: u32,
     },
+    /// An animation without pictures.
+    #[error("an animation must have at least 1 picture, got 0")]
+    NoPicture,
+    /// Pictures of an animation that differ in size.
+    #[error(
+        "the pictures of an animation must be alike in size, got {} x {} and {} x {} pixels",
+        first[0], first[1], other[0], other[1]
+    )]
+    OtherSize {
+        /// The size of the first [pixels].
+        first: [u32; 2],
+        /// The size of another [pixels].
+        other: [u32; 2],
+    },
     /// A body cannot be cut or thickened.
     #[error(transparent)]
     Shape(#[from] ShapeError),

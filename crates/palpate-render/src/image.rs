@@ -35,6 +35,11 @@ impl Image {
         (self.pixels.len() / self.width as usize) as u32
     }
 
+    /// Width and height [pixels].
+    fn size(&self) -> [u32; 2] {
+        [self.width, self.height()]
+    }
+
     /// The pixels.
     #[must_use]
     pub fn pixels(&self) -> &[Color] {
@@ -68,8 +73,8 @@ impl Image {
 ///
 /// # Errors
 ///
-/// [`RenderError::NoBody`] if there is no picture, [`RenderError::Png`] if sizes differ or `out`
-/// cannot be written.
+/// [`RenderError::NoPicture`], [`RenderError::OtherSize`]; [`RenderError::Png`] if `out` cannot be
+/// written.
 pub fn write_animation(
     frames: &[Image],
     delay_ms: u16,
@@ -80,7 +85,10 @@ pub fn write_animation(
 
 fn write(frames: &[Image], delay_ms: Option<u16>, out: impl Write) -> Result<(), RenderError> {
     let failed = |error: EncodingError| RenderError::Png { reason: error.to_string() };
-    let first = frames.first().ok_or(RenderError::NoBody)?;
+    let first = frames.first().ok_or(RenderError::NoPicture)?;
+    if let Some(other) = frames.iter().find(|frame| frame.size() != first.size()) {
+        return Err(RenderError::OtherSize { first: first.size(), other: other.size() });
+    }
     let mut encoder = Encoder::new(out, first.width, first.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);

@@ -42,7 +42,7 @@ struct Spot {
     place: Place,
     /// The unit vector towards the viewer.
     view: Vector<f64, 3>,
-    /// The size of a pixel there [m].
+    /// The size of a pixel on a body there [m].
     pixel: f64,
 }
 
@@ -109,13 +109,14 @@ impl<'a> Painter<'a> {
             is_edge: met.is_beside,
         }));
         self.spots.clear();
-        self.find_bodies();
+        self.find_bodies(side);
         self.find_ground();
         self.light(dabs);
     }
 
-    /// Finds the bodies that rays meet, and their normals.
-    fn find_bodies(&mut self) {
+    /// Finds the bodies that rays meet, and their normals; each ray is for a square with `side`
+    /// [pixels].
+    fn find_bodies(&mut self, side: f64) {
         let Self { studio, beams, met, points, owners, block, slopes, spots, .. } = self;
         let is_seen = |(ray, met): (usize, &Met)| (met.end == End::Surface).then_some(ray);
         let rays: Vec<usize> = met.iter().enumerate().filter_map(is_seen).collect();
@@ -138,7 +139,7 @@ impl<'a> Painter<'a> {
             // Where a field is flat, as between two bodies, no direction is right.
             let normal = slopes.gradient.get(i).normalized().unwrap_or(view);
             let place = Place { point: *point, normal };
-            let pixel = beams[ray].side(met[ray].distance);
+            let pixel = beams[ray].side(met[ray].distance) / side;
             spots.push(Spot { ray, matter, place, view, pixel });
         }
     }
@@ -155,9 +156,8 @@ impl<'a> Painter<'a> {
             }
             self.spots.retain(|spot| spot.ray != ray);
             let place = Place { point: beam.at(distance), normal: Vector::unit(1) };
-            let pixel = beam.side(distance);
-            let view = -beam.direction;
-            self.spots.push(Spot { ray, matter: Matter::Ground, place, view, pixel });
+            let (matter, view) = (Matter::Ground, -beam.direction);
+            self.spots.push(Spot { ray, matter, place, view, pixel: 0.0 });
         }
     }
 

@@ -15,6 +15,8 @@ Examples:
   palpate plot scenes/s3.json --plane xz --at 0.1 --output s3.png
   palpate plot scenes/s3.json --plane 0,0,0:1,0,0:0,1,1 --step 0.05
   palpate plot scenes/gears.json --centre 0.033,0 --size 0.02 --output mesh.png
+  palpate plot scenes/nut_on_bolt.json --view thread
+  palpate plot scenes/bayonet.json --time 1.4
   palpate plot scenes/memoir_star.json --map gradient --output gradient.png
   palpate plot scenes/memoir_star.json --map promise --output promise.png
   palpate plot scenes/peg_in_hole.json --contacts --proof --output proof.png";
@@ -24,6 +26,9 @@ Examples:
 pub(crate) struct PlotOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
+    /// A view of the scene: its plane, its window and its isolines.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["plane", "at", "centre", "size"])]
+    pub(crate) view: Option<String>,
     /// The plane in space: xy, xz, yz, or three points as origin:right:up, each
     /// x,y,z.
     #[arg(long, default_value = "xy", allow_hyphen_values = true)]
@@ -38,10 +43,13 @@ pub(crate) struct PlotOptions {
     /// Width and height of the part of the scene that is shown [m].
     #[arg(long, requires = "centre", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
+    /// Where bodies are at this time [s], if the scene has motions.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(crate) time: f64,
     /// What colours show.
     #[arg(long, value_enum, default_value_t = Map::Distance)]
     pub(crate) map: Map,
-    /// The distance between isolines [m]; only for --map distance.
+    /// The distance between isolines [m], instead of that of the view; only for --map distance.
     #[arg(long)]
     pub(crate) step: Option<f64>,
     /// Draw contacts, normals, and the shortest segments between bodies that are apart. A plane

@@ -48,8 +48,9 @@ pub(crate) struct RenderOptions {
     /// Where bodies are at this time [s], if the scene has motions.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) time: f64,
-    /// Cut away what is on the viewer's side of a plane: xy, xz, yz, or three points as
-    /// origin:right:up, each x,y,z. The cut face shows the depth below the surface.
+    /// Cut away what is on the viewer's side of a plane: xy, xz, yz, view (the plane of --view),
+    /// or three points as origin:right:up, each x,y,z. The cut face shows the depth below the
+    /// surface.
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
     pub(crate) slice: Option<String>,
     /// The third coordinate of a slice along two axes [m]; the middle of the scene if left out.

@@ -5,6 +5,7 @@
 
 mod figure;
 mod held;
+mod moved;
 mod nearness;
 mod outputs;
 mod report;
@@ -17,7 +18,7 @@ use std::time::Duration;
 
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
-use palpate::field::Vector;
+use palpate::field::{Pose, Vector};
 use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
@@ -85,7 +86,7 @@ where
             DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
         }
     };
-    let scene = &asked(scene, options);
+    let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     // Checked before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let tool = tool::of_scene(scene, options)?;
@@ -130,6 +131,12 @@ where
         .with_interrupt(interrupt.flag());
     if keeps_rows {
         run_options = run_options.with_recorder(&mut recorder);
+    }
+    let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<D>)| {
+        scene.moving().for_each(|body| set_pose(body, scene.pose_at(body, time)));
+    };
+    if !scene.motions.is_empty() {
+        run_options = run_options.with_motion(&mut motion);
     }
     if shows_line {
         run_options = run_options.with_watch(LIVE_EVERY, &mut show);

@@ -3,6 +3,7 @@
 
 //! `palpate render`: draws a scene in space, lit.
 
+mod camera;
 mod frames;
 mod overlay;
 mod report;

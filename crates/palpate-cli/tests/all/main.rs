@@ -8,6 +8,7 @@ mod common;
 mod contact;
 mod interrupted;
 mod messages;
+mod motions;
 mod outputs;
 mod pictures;
 mod program;

@@ -77,6 +77,8 @@ impl<const D: usize> BuiltScene<D> {
     /// # }
     /// ```
     ///
+    /// Real-time: allocates nothing, takes no lock.
+    ///
     /// # Panics
     ///
     /// If there is no such body.
@@ -89,6 +91,17 @@ impl<const D: usize> BuiltScene<D> {
         last.map_or(self.bodies[body].world_from_body, |(_, pose)| pose)
     }
 
+    /// The numbers of the bodies that have motions, each once.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn moving(&self) -> impl Iterator<Item = usize> {
+        let bodies = self.motions.iter().map(|motion| motion.body).enumerate();
+        bodies.filter_map(|(i, body)| {
+            let mut before = self.motions.iter().take(i);
+            before.all(|motion| motion.body != body).then_some(body)
+        })
+    }
+
     /// The scene at a time [s]: its bodies where their motions have taken them.
     ///
     /// # Errors
@@ -96,9 +109,9 @@ impl<const D: usize> BuiltScene<D> {
     /// If a body cannot be placed there, as its shape says.
     pub fn at(&self, time: f64) -> Result<Self, ShapeError> {
         let mut scene = self.clone();
-        for motion in &self.motions {
-            let pose = self.pose_at(motion.body, time);
-            let body = &mut scene.bodies[motion.body];
+        for number in self.moving() {
+            let pose = self.pose_at(number, time);
+            let body = &mut scene.bodies[number];
             *body = BuiltBody {
                 shape: body.shape_in_body.clone().placed(&pose)?,
                 world_from_body: pose,
