@@ -40,11 +40,13 @@
 //! ```
 
 mod axis;
+mod chain;
 mod chart;
 mod contours;
 mod drawing;
 mod error;
 mod figure;
+mod follow;
 mod frame;
 mod geometry;
 mod isolines;
@@ -53,6 +55,7 @@ mod legend;
 mod levels;
 mod nearest;
 mod numbers;
+mod outline;
 mod overlay;
 mod overlay_picture;
 mod palette;
@@ -73,7 +76,9 @@ mod wheel;
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
 pub use figure::Figure;
+pub use follow::{BoundedField, Cell};
 pub use isolines::Isolines;
+pub use outline::Outline;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;
