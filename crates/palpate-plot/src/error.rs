@@ -128,6 +128,14 @@ pub enum PlotError {
     },
 }
 
+impl PlotError {
+    /// Refuses the value of a field at a point of the plane if it is not a length.
+    pub(crate) fn check_sample(at: [f64; 2], value: f64) -> Result<(), Self> {
+        let is_length = value.abs() <= LARGEST;
+        if is_length { Ok(()) } else { Err(Self::Sample { at, value }) }
+    }
+}
+
 /// `value`, or an error that names `what` it was for.
 pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, PlotError> {
     if value.is_finite() { Ok(value) } else { Err(PlotError::NotFinite { what, value }) }

@@ -13,6 +13,7 @@ use crate::labels::Occupied;
 use crate::legend::{self, Entry, Key};
 use crate::levels::Levels;
 use crate::numbers::write;
+use crate::outline::Outline;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
 use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
@@ -70,6 +71,7 @@ pub struct Isolines {
     slice: Slice,
     view: View,
     samples: Samples,
+    outline: Outline,
     levels: Levels,
     sampling: Sampling,
     ground: Ground,
@@ -110,12 +112,20 @@ impl Isolines {
             slice: slice.clone(),
             view: *view,
             levels: Levels::choose(low, high, view.width().min(view.height())),
+            outline: Outline::of_samples(&samples),
             samples,
             sampling,
             ground: Ground::Distance,
             title: String::new(),
             overlays: Vec::new(),
         })
+    }
+
+    /// With this surface, [followed](Outline::follow) in the same window, instead of the one that
+    /// the samples show.
+    #[must_use]
+    pub fn with_outline(self, outline: Outline) -> Self {
+        Self { outline, ..self }
     }
 
     /// With isolines at multiples of `step` \[m\] instead of a round step that gives about ten.
@@ -334,7 +344,8 @@ impl Isolines {
         let plot = self.plot(area, gutter, top);
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
-        let picture = Picture { samples: &self.samples, levels: &levels, frame };
+        let picture =
+            Picture { samples: &self.samples, outline: &self.outline, levels: &levels, frame };
         let overlays = Overlays::new(frame, &self.overlays);
         let lines = picture.lines();
         let mut occupied = Occupied::default();
@@ -357,7 +368,8 @@ impl Isolines {
     pub(crate) fn draw_tile(&self, drawing: &mut Drawing, plot: Rect) {
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
-        let picture = Picture { samples: &self.samples, levels: &levels, frame };
+        let picture =
+            Picture { samples: &self.samples, outline: &self.outline, levels: &levels, frame };
         let lines = picture.lines();
         self.draw_ground(drawing, &picture, &lines);
         let [x, y] = frame.pixel([0.0; 2]);
@@ -432,8 +444,8 @@ impl Isolines {
     }
 
     fn surface_entry(&self) -> Entry {
-        let (low, high) = self.samples.range();
-        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
+        let window = Rect { min: self.view.min(), max: self.view.max() };
+        if self.outline.bounds(&window).is_some() {
             Entry::new(Key::Line(surface_stroke()), "surface")
         } else {
             Entry::new(Key::None, "no surface in view")

@@ -42,11 +42,13 @@
 //! ```
 
 mod axis;
+mod chain;
 mod chart;
 mod contours;
 mod drawing;
 mod error;
 mod figure;
+mod follow;
 mod frame;
 mod geometry;
 mod isolines;
@@ -56,6 +58,7 @@ mod legend;
 mod levels;
 mod nearest;
 mod numbers;
+mod outline;
 mod overlay;
 mod overlay_picture;
 mod palette;
@@ -76,8 +79,10 @@ mod wheel;
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
 pub use figure::Figure;
+pub use follow::{BoundedField, Cell};
 pub use isolines::Isolines;
 pub use layer::Layer;
+pub use outline::Outline;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;

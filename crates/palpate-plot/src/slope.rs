@@ -27,6 +27,20 @@ impl Slope {
         let [x, y, z] = self.gradient;
         x.hypot(y).hypot(z)
     }
+
+    /// Refuses a slope at the point `at` that is not a number, or beyond all numbers drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Sample`] or [`PlotError::Gradient`].
+    pub(crate) fn check(&self, at: Point) -> Result<(), PlotError> {
+        let Self { value, gradient } = *self;
+        PlotError::check_sample(at, value)?;
+        if gradient.iter().any(|x| x.is_nan() || x.abs() > LARGEST) {
+            return Err(PlotError::Gradient { at, gradient });
+        }
+        Ok(())
+    }
 }
 
 /// Pixels for each cell of the grid of isolines. Lines are interpolated between samples but
@@ -74,23 +88,12 @@ impl Pixels {
             }
             field(&points, &mut slopes);
             for (&at, slope) in points.iter().zip(&slopes) {
-                check(at, slope)?;
+                slope.check(at)?;
                 pixels.push(color(at, slope));
             }
         }
         Ok(Image { width, pixels })
     }
-}
-
-fn check(at: Point, slope: &Slope) -> Result<(), PlotError> {
-    let Slope { value, gradient } = *slope;
-    if value.is_nan() || value.abs() > LARGEST {
-        return Err(PlotError::Sample { at, value });
-    }
-    if gradient.iter().any(|x| x.is_nan() || x.abs() > LARGEST) {
-        return Err(PlotError::Gradient { at, gradient });
-    }
-    Ok(())
 }
 
 #[cfg(test)]
