@@ -10,7 +10,6 @@ mod catalogue;
 mod cells;
 mod errata;
 mod golden;
-mod gradients;
 mod guide;
 mod mass;
 mod models;
