@@ -10,6 +10,8 @@ use palpate::plot::{
     Figure, Gauge, Isolines, PlotError, Promised, Sampling, Slice, Slope, View,
 };
 
+use palpate::scene::{AnyScene, BuiltScene};
+
 use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
@@ -34,6 +36,9 @@ pub(crate) trait Drawable<const D: usize> {
 
     /// The parts of a gradient to the right, up, and towards the viewer.
     fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
+
+    /// The scene, if it is of this dimension.
+    fn scene(scene: AnyScene) -> Option<BuiltScene<D>>;
 }
 
 /// Marks the dimension of a shape.
@@ -53,6 +58,13 @@ impl Drawable<2> for Dimensions {
     fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
         [x, y, 0.0]
     }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<2>> {
+        match scene {
+            AnyScene::Planar(scene) => Some(scene),
+            AnyScene::Spatial(_) => None,
+        }
+    }
 }
 
 impl Drawable<3> for Dimensions {
@@ -69,6 +81,13 @@ impl Drawable<3> for Dimensions {
 
     fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
         plane.project_gradient(gradient.0)
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<3>> {
+        match scene {
+            AnyScene::Spatial(scene) => Some(scene),
+            AnyScene::Planar(_) => None,
+        }
     }
 }
 
@@ -87,12 +106,23 @@ pub(crate) fn isolines<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
+    Isolines::sample(plane, view, sampling, values(shape, plane))
+}
+
+/// A function of plane coordinates that gives values of `shape` on `plane`.
+pub(crate) fn values<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+) -> impl FnMut(&[[f64; 2]], &mut [f64])
+where
+    Dimensions: Drawable<D>,
+{
     let mut points = Vec::new();
-    Isolines::sample(plane, view, sampling, |st, distances| {
+    move |st, distances| {
         points.clear();
         points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
         shape.distances(&points, distances);
-    })
+    }
 }
 
 /// A function of plane coordinates that gives values and gradients of `shape` on `plane`.
