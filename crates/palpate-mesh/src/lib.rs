@@ -36,7 +36,7 @@ mod read;
 mod report;
 mod tree;
 
-pub use ball::{centre_weights, smallest_ball};
+pub use ball::{centre_weights, circumscribed_ball, smallest_ball};
 pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
 #[cfg(feature = "files")]

@@ -24,6 +24,7 @@ use crate::slope::{Pixels, Slope};
 use crate::surface::Surface;
 use crate::text::{Anchor, CAP_HEIGHT};
 use crate::trust::{Gauge, Measured, Promised, Trust};
+use crate::values::Values;
 use crate::view::View;
 use crate::wheel::{self, AxisArrow};
 
@@ -69,25 +70,27 @@ fn axis_stroke() -> Stroke {
 #[derive(Debug, Clone)]
 pub struct Isolines {
     slice: Slice,
-    view: View,
+    pub(crate) view: View,
     samples: Samples,
     outline: Outline,
     levels: Levels,
-    sampling: Sampling,
-    ground: Ground,
+    pub(crate) sampling: Sampling,
+    pub(crate) ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
 }
 
 /// The ground below the lines.
 #[derive(Debug, Clone)]
-enum Ground {
+pub(crate) enum Ground {
     /// Bands of distance, with isolines.
     Distance,
     /// The direction of the gradient.
     Gradient(Image),
     /// Promises, and how values compare with them.
     Promise(Box<Trust>),
+    /// Other numbers.
+    Values(Box<Values>),
 }
 
 impl Isolines {
@@ -245,11 +248,13 @@ impl Isolines {
         Ok(Self { ground: Ground::Promise(Box::new(trust)), ..self })
     }
 
-    /// The extremes of what [`with_promise`](Self::with_promise) measured.
+    /// The extremes of what [`with_promise`](Self::with_promise) measured, or of the numbers of
+    /// [`with_values`](Self::with_values).
     #[must_use]
     pub fn measured(&self) -> Option<Measured> {
         match &self.ground {
             Ground::Promise(trust) => trust.measured,
+            Ground::Values(values) => values.measured,
             _ => None,
         }
     }
@@ -410,6 +415,10 @@ impl Isolines {
                 drawing.image(frame.plot, image.clone());
                 picture.draw_casing(drawing, lines);
             }
+            Ground::Values(values) => {
+                drawing.image(frame.plot, values.image.clone());
+                picture.draw_casing(drawing, lines);
+            }
             Ground::Promise(trust) => {
                 drawing.image(frame.plot, trust.image.clone());
                 trust.hatch(drawing, &frame.plot, |p| self.samples.value_near(frame.point(p)));
@@ -456,6 +465,11 @@ impl Isolines {
         match &self.ground {
             Ground::Distance => self.distance_legend(),
             Ground::Gradient(_) => self.gradient_legend(),
+            Ground::Values(values) => {
+                let mut entries = values.entries();
+                entries.push(self.surface_entry());
+                entries
+            }
             Ground::Promise(trust) => {
                 let (low, high) = self.samples.range();
                 let mut entries = trust.entries([high > 0.0, low < 0.0]);

@@ -86,6 +86,9 @@ pub enum Error {
     /// There is no local search of that name.
     #[cfg(feature = "local")]
     UnknownMethod(#[from] palpate_local::UnknownMethod),
+    /// Numbers are no barycentric weights.
+    #[cfg(feature = "local")]
+    Weights(#[from] palpate_local::WeightsError),
     /// A file cannot be read or written.
     File(#[from] std::io::Error),
 }
@@ -172,6 +175,8 @@ impl Error {
             Self::Run(_) => ErrorKind::Panicked,
             #[cfg(feature = "local")]
             Self::UnknownMethod(_) => ErrorKind::UnknownName,
+            #[cfg(feature = "local")]
+            Self::Weights(_) => ErrorKind::Query,
             Self::File(_) => ErrorKind::File,
         }
     }

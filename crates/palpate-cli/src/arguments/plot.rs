@@ -19,6 +19,8 @@ Examples:
   palpate plot scenes/bayonet.json --time 1.4
   palpate plot scenes/memoir_star.json --map gradient --output gradient.png
   palpate plot scenes/memoir_star.json --map promise --output promise.png
+  palpate plot scenes/memoir_star.json --map error --gradient dichotomy --output error.png
+  palpate plot scenes/s2.json --map error --against scenes/s3.json --output difference.png
   palpate plot scenes/peg_in_hole.json --contacts --proof --output proof.png";
 
 /// The options of `palpate plot`.
@@ -47,8 +49,22 @@ pub(crate) struct PlotOptions {
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) time: f64,
     /// What colours show.
-    #[arg(long, value_enum, default_value_t = Map::Distance)]
-    pub(crate) map: Map,
+    #[arg(long, value_enum, default_value_t = PlotMap::Distance)]
+    pub(crate) map: PlotMap,
+    /// The other scene of --map error, whose field is compared with this one.
+    #[arg(long, value_name = "SCENE")]
+    pub(crate) against: Option<PathBuf>,
+    /// How gradients are found, for --map gradient and --map error: closest_vector, differences,
+    /// dichotomy or adaptive_dichotomy (in the plane), exact.
+    #[arg(long, value_name = "METHOD")]
+    pub(crate) gradient: Option<String>,
+    /// How far from a point --gradient compares values [m]; five millionths of the longest edge of
+    /// the scene's box if left out.
+    #[arg(long, requires = "gradient", allow_negative_numbers = true)]
+    pub(crate) offset: Option<f64>,
+    /// Round the values that --gradient compares to single precision.
+    #[arg(long, requires = "gradient")]
+    pub(crate) single: bool,
     /// The distance between isolines [m], instead of that of the view; only for --map distance.
     #[arg(long)]
     pub(crate) step: Option<f64>,
@@ -72,7 +88,7 @@ pub(crate) struct PlotOptions {
     pub(crate) json: bool,
 }
 
-/// What the colours of a picture show.
+/// What the colours of a picture of a field show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Map {
     /// Bands of distance with isolines.
@@ -92,5 +108,37 @@ impl Map {
             Self::Gradient => "gradient",
             Self::Promise => "promise",
         }
+    }
+}
+
+/// What the colours of a picture show, also beside something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PlotMap {
+    /// Bands of distance with isolines.
+    Distance,
+    /// The direction of the gradient, and where its length is not one.
+    Gradient,
+    /// The promise of each side, and how values compare with it: in the plane, the value over
+    /// the true distance; in space, the length of the gradient.
+    Promise,
+    /// The difference of two fields (--against), or the angle between a gradient (--gradient) and
+    /// the exact one.
+    Error,
+}
+
+impl PlotMap {
+    /// The map of a field alone; `None` of an error.
+    pub(crate) fn of_one_field(self) -> Option<Map> {
+        match self {
+            Self::Distance => Some(Map::Distance),
+            Self::Gradient => Some(Map::Gradient),
+            Self::Promise => Some(Map::Promise),
+            Self::Error => None,
+        }
+    }
+
+    /// The name in commands and answers.
+    pub(crate) fn name(self) -> &'static str {
+        self.of_one_field().map_or("error", Map::name)
     }
 }

@@ -12,11 +12,13 @@ use std::path::Path;
 use palpate::field::{Aabb, Quality, Rotation, Shape, Vector};
 use palpate::plot::{Figure, Gauge, Isolines, PlotError, Promised, Slice, View};
 
+use palpate::scene::{AnyScene, BuiltScene};
+
 use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
 
-pub(crate) use flat::{isolines, slopes};
+pub(crate) use flat::{isolines, slopes, values};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
@@ -42,6 +44,9 @@ pub(crate) trait Drawable<const D: usize> {
     /// How cells of the picture lie in space: the rotation from the picture's axes, `None` if
     /// these run along axes of space, and half the edges of a cell for which they are one.
     fn cells(plane: &Slice) -> (Option<Rotation<D>>, Vector<f64, D>);
+
+    /// The scene, if it is of this dimension.
+    fn scene(scene: AnyScene) -> Option<BuiltScene<D>>;
 }
 
 /// Marks the dimension of a shape.
@@ -64,6 +69,13 @@ impl Drawable<2> for Dimensions {
 
     fn cells(_: &Slice) -> (Option<Rotation<2>>, Vector<f64, 2>) {
         (None, Vector::constant(1.0))
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<2>> {
+        match scene {
+            AnyScene::Planar(scene) => Some(scene),
+            AnyScene::Spatial(_) => None,
+        }
     }
 }
 
@@ -92,6 +104,13 @@ impl Drawable<3> for Dimensions {
             Ok(turn) => (Some(turn), Vector([1.0, 1.0, 0.0])),
             // The axes of a slice are orthonormal; a box that holds any cell is right too.
             Err(_) => (None, Vector::constant(std::f64::consts::SQRT_2)),
+        }
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<3>> {
+        match scene {
+            AnyScene::Spatial(scene) => Some(scene),
+            AnyScene::Planar(_) => None,
         }
     }
 }

@@ -13,7 +13,6 @@ mod conversions;
 mod errata;
 mod functions;
 mod golden;
-mod gradients;
 mod guide;
 mod mass;
 mod models;
