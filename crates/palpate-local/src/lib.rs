@@ -61,6 +61,8 @@ mod oscillation;
 mod projected_gradient;
 mod weights;
 
+use std::fmt;
+
 use palpate_field::{Point, Shape};
 use palpate_query::{Element, Placed, QueryError};
 

@@ -4,7 +4,6 @@
 //! The picture of a field in a plane: bands, isolines and overlays.
 
 use crate::axis::{Axis, BELOW};
-use crate::contours::rings;
 use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
 use crate::error::PlotError;
 use crate::frame::Frame;
@@ -296,14 +295,6 @@ impl Isolines {
     #[must_use]
     pub fn levels(&self) -> &[f64] {
         &self.levels.values
-    }
-
-    /// Lines along the surface, in plane coordinates \[m\], for a [`Polyline`] of another
-    /// picture: where a body was before. Those that leave the window go on along its edge,
-    /// outside.
-    #[must_use]
-    pub fn outline(&self) -> Vec<Vec<[f64; 2]>> {
-        rings(&self.samples, 0.0)
     }
 
     /// Smallest and largest value sampled \[m\].

@@ -18,7 +18,7 @@ use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
 
-pub(crate) use flat::{isolines, slopes, values};
+pub(crate) use flat::{isolines, outline, slopes, values};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
