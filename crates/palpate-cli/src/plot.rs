@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
+use palpate::field::{Aabb, Vector};
 use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
@@ -22,9 +22,22 @@ use crate::picture::{self, Dimensions, Drawable, Picture};
 pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
     let picture = Picture::new(&mut files, &output(options))?;
+    picture.check_width(options.width)?;
+    check_contacts(options)?;
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
-        AnyScene::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
+        AnyScene::Planar(scene) => {
+            let in_space = [
+                ("--plane", options.plane.as_deref().is_some_and(|plane| plane != "xy")),
+                ("--at", options.at.is_some()),
+            ];
+            if let Some((option, _)) = in_space.iter().find(|(_, is_given)| *is_given) {
+                let problem =
+                    "is for scenes in space; this scene is in the plane, and drawn whole";
+                return Err(Failure::input(format!("{option} {problem}")));
+            }
+            Plot::of(options, &picture, scene)?.draw(&Slice::planar())
+        }
         AnyScene::Spatial(scene) => {
             let plot = Plot::of(options, &picture, scene)?;
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
@@ -32,6 +45,23 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
             plot.draw(&plane(options, through)?)
         }
+    }
+}
+
+/// Refuses options of a search for contacts where none is made.
+fn check_contacts(options: &PlotOptions) -> Result<(), Failure> {
+    let asked = &options.question;
+    let given = [
+        ("--margin", asked.margin.is_some()),
+        ("--spacing", asked.spacing.is_some()),
+        ("--tolerance", asked.tolerance.is_some()),
+        ("--budget", asked.budget.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given && !options.contacts) {
+        Some((option, _)) => {
+            Err(Failure::input(format!("{option} is about contacts, and needs --contacts")))
+        }
+        None => Ok(()),
     }
 }
 
@@ -56,10 +86,6 @@ impl<const D: usize> Window<D> {
     /// has bounds.
     fn of(options: &PlotOptions, scene: &BuiltScene<D>) -> Result<Self, Failure> {
         if let (Some(centre), Some(size)) = (&options.centre, options.size) {
-            if !(size > 0.0 && size <= LARGEST_LENGTH) {
-                let rule = format!("positive and at most {LARGEST_LENGTH:e} m, got {size:?} m");
-                return Err(Failure::input(format!("--size must be {rule}")));
-            }
             let centre = input::point::<D>(centre)?;
             let half = Vector::constant(0.5 * size);
             let bounds = Aabb { min: centre - half, max: centre + half };
@@ -125,7 +151,7 @@ where
         let figure = Figure::new(title(&options.scene))
             .with_caption(promise_in_words(scene.whole.promise()))
             .with_isolines(isolines);
-        self.picture.save(&figure, options.width)?;
+        self.picture.save(&figure, options.width.unwrap_or(picture::WIDTH))?;
         if options.json {
             output::answer().json(&self.described(&drawn, plane))?;
         } else {
@@ -209,8 +235,14 @@ pub(crate) fn title(scene: &Path) -> String {
 
 /// The plane of `--plane`; one along two axes goes through `middle` unless `--at` is given.
 fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure> {
+    let plane = options.plane.as_deref().unwrap_or("xy");
+    if options.at.is_some() && (options.centre.is_some() || plane.contains(':')) {
+        let other = if options.centre.is_some() { "--centre" } else { "--plane" };
+        let problem = "both say where the plane is; leave out --at";
+        return Err(Failure::input(format!("--at and the point of {other} {problem}")));
+    }
     let at = |axis: usize| options.at.unwrap_or(middle[axis]);
-    match options.plane.as_str() {
+    match plane {
         "xy" => Slice::xy(at(2)),
         "xz" => Slice::xz(at(1)),
         "yz" => Slice::yz(at(0)),

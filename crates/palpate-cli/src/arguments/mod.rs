@@ -13,6 +13,7 @@ mod gallery;
 mod jitter;
 mod mass;
 mod mesh;
+mod numbers;
 mod plot;
 mod shapes;
 

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use palpate::field::{Point, Shape, Vector};
+use palpate::field::{Aabb, Point, Shape, Vector};
 use palpate::local::{Descent, ElementMethod, UnknownMethod};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
 use palpate::query::{Certified, Element, ElementWorkspace, Limits, minimum};
@@ -48,13 +48,29 @@ fn over_points<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    if !options.start.is_empty() {
+    if options.start.is_empty() && options.triangle.is_empty() && options.segment.is_empty() {
+        Err(nothing_asked(scene, &options.scene))
+    } else if !options.start.is_empty() {
         pair::between(options, scene, picture)
     } else if options.triangle.is_empty() {
         descend(options, scene, picture, &element::<2, D>(&options.segment)?)
     } else {
         descend(options, scene, picture, &element::<3, D>(&options.triangle)?)
     }
+}
+
+/// What to ask instead of nothing, with an example from the scene.
+fn nothing_asked<const D: usize>(scene: &BuiltScene<D>, path: &Path) -> Failure {
+    let around = Aabb::centred(Vector::constant(0.5));
+    let bounds = scene.bounds().unwrap_or(around);
+    let mut ends = [bounds.centre(); 2];
+    (ends[0][0], ends[1][0]) = (bounds.min[0], bounds.max[0]);
+    let [from, to] = ends.map(input::written_point);
+    let path = path.display();
+    Failure::input(format!(
+        "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start \
+         with 1; for example: palpate descend {path} --segment {from} {to}"
+    ))
 }
 
 fn element<const N: usize, const D: usize>(
@@ -86,7 +102,7 @@ where
     let edges = element.vertices().iter().zip(element.vertices().iter().skip(1));
     let last = (element.vertices()[0] - element.vertices()[N - 1]).norm();
     let longest = edges.fold(last, |longest, (a, b)| longest.max((*a - *b).norm()));
-    let limits = limits(options.tolerance, longest)?;
+    let limits = limits(options.tolerance, longest);
     let method = method(options, ElementMethod::ProjectedGradient)?;
     let answer = Answer {
         method,
@@ -113,15 +129,8 @@ fn method<T: FromStr<Err = UnknownMethod>>(
 }
 
 /// The limits of the search with a proof, over something of this size [m].
-fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
-    let tolerance = tolerance.unwrap_or(TOLERANCE * size);
-    // Written so that NaN is refused.
-    if tolerance >= 0.0 && tolerance.is_finite() {
-        Ok(Limits::new(tolerance))
-    } else {
-        let rule = "--tolerance must be finite and zero or more";
-        Err(Failure::input(format!("{rule}, got {tolerance:?} m")))
-    }
+fn limits(tolerance: Option<f64>, size: f64) -> Limits {
+    Limits::new(tolerance.unwrap_or(TOLERANCE * size))
 }
 
 /// The result of a local search, as JSON.

@@ -47,7 +47,7 @@ where
     let bounds = input::bounds(scene)?;
     let half = bounds.half_extents().0;
     let limits =
-        limits(options.tolerance, half.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x)))?;
+        limits(options.tolerance, half.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x)));
     let method = method(options, PairMethod::AlternatingProjection)?;
     let mut found = Vec::new();
     for start in &options.start {

@@ -45,7 +45,13 @@ fn evaluate<const D: usize>(
     if let Some(points) = &options.points {
         return stream::run(&scene.whole, points, options, destination, interrupt);
     }
-    let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
+    let Some(at) = &options.at else {
+        let example = input::example_point(scene);
+        return Err(Failure::input(format!(
+            "eval needs a point, as with --at {example}, or many with --points FILE"
+        )));
+    };
+    let point = input::point::<D>(at)?;
     let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
     let mut out = output::answer();
     let promise = promise_in_words(scene.whole.promise());

@@ -48,10 +48,10 @@ pub(crate) fn run<const D: usize>(
 }
 
 /// The requested number of threads, but no more than the machine runs at once: further ones
-/// would wait, each with a batch in memory. Zero means as many as the machine runs.
+/// would wait, each with a batch in memory.
 fn threads(asked: Option<usize>) -> usize {
-    let asked = asked.unwrap_or(0);
     let most = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let asked = asked.unwrap_or(most);
     if asked > most {
         output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
     }
