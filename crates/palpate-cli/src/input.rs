@@ -83,26 +83,54 @@ pub(crate) fn at<const D: usize>(
     scene: &BuiltScene<D>,
     time: f64,
 ) -> Result<BuiltScene<D>, Failure> {
-    // Written so that NaN is refused.
-    if !(time >= 0.0 && time.is_finite()) {
-        let rule = "--time must be finite and zero or more";
-        return Err(Failure::input(format!("{rule}, got {time} s")));
-    }
     scene.at(time).map_err(Failure::input)
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.
 pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failure> {
-    let numbers: [f64; D] = numbers(text).ok_or_else(|| {
-        Failure::input(format!("a point needs {D} numbers joined by commas, got {text:?}"))
-    })?;
-    for x in numbers {
-        if x.is_nan() || x.abs() > LARGEST_LENGTH {
-            let rule = format!("a coordinate must be at most {LARGEST_LENGTH:e} m, got {x}");
-            return Err(Failure::input(rule));
+    let axes = AXES[..D].join(",");
+    let wrong = |got: String| {
+        Failure::input(format!(
+            "the scene is {D}D: a point is {D} numbers {axes} joined by commas, got {got}"
+        ))
+    };
+    let parts: Vec<_> = text.split(',').collect();
+    let number = |part: &str| part.trim().parse::<f64>().ok();
+    let numbers: Option<Vec<f64>> = parts.iter().copied().map(number).collect();
+    let numbers: [f64; D] = match numbers.map(TryInto::try_into) {
+        Some(Ok(numbers)) => numbers,
+        Some(Err(numbers)) if numbers.len() == 2 * D => {
+            let got = format!("{} in {text:?}", numbers.len());
+            return Err(wrong(format!("{got}; a decimal comma is written as a point")));
         }
+        Some(Err(numbers)) => return Err(wrong(format!("{} in {text:?}", numbers.len()))),
+        None if text.contains([';', ' ']) && !text.contains(',') => {
+            return Err(wrong(format!("{text:?}; numbers are joined by commas alone")));
+        }
+        None => return Err(wrong(format!("{text:?}"))),
+    };
+    // Written so that NaN is refused.
+    let is_good = |x: &f64| x.abs() <= LARGEST_LENGTH;
+    match numbers.iter().position(|x| !is_good(x)) {
+        None => Ok(Vector(numbers)),
+        Some(axis) => Err(Failure::input(format!(
+            "{} must be finite and at most {LARGEST_LENGTH:e} m in size, got {} m",
+            AXES[axis], numbers[axis]
+        ))),
     }
-    Ok(Vector(numbers))
+}
+
+/// A point of a scene as the command line writes it, for an example: the middle of its box.
+pub(crate) fn example_point<const D: usize>(scene: &BuiltScene<D>) -> String {
+    let middle = scene.bounds().map_or(Vector::ZERO, |bounds| bounds.centre());
+    written_point(middle)
+}
+
+/// A point as the command line writes it, to three digits.
+pub(crate) fn written_point<const D: usize>(point: Vector<f64, D>) -> String {
+    // Adding zero turns −0 into 0.
+    let rounded = point.0.map(|x| format!("{x:.2e}").parse::<f64>().unwrap_or(x) + 0.0);
+    rounded.map(|x| x.to_string()).join(",")
 }
 
 /// The numbers that `text` lists, joined by commas, if there are `N`.

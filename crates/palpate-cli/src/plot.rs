@@ -25,9 +25,20 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
     let mut files = Files::reading(inputs.into_iter().flatten());
     let picture = Picture::new(&mut files, &output(options))?;
+    picture.check_width(options.width)?;
+    check_contacts(options)?;
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
         AnyScene::Planar(scene) => {
+            let in_space = [
+                ("--plane", options.plane.as_deref().is_some_and(|plane| plane != "xy")),
+                ("--at", options.at.is_some()),
+            ];
+            if let Some((option, _)) = in_space.iter().find(|(_, is_given)| *is_given) {
+                let problem =
+                    "is for scenes in space; this scene is in the plane, and drawn whole";
+                return Err(Failure::input(format!("{option} {problem}")));
+            }
             let scene = views::at(scene, options.time)?;
             Plot::of(options, &picture, &scene)?.draw(&Slice::planar())
         }
@@ -40,8 +51,25 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
-            plot.draw(&plane::named("--plane", &options.plane, options.at, through)?)
+            plot.draw(&plane(options, through)?)
         }
+    }
+}
+
+/// Refuses options of a search for contacts where none is made.
+fn check_contacts(options: &PlotOptions) -> Result<(), Failure> {
+    let asked = &options.question;
+    let given = [
+        ("--margin", asked.margin.is_some()),
+        ("--spacing", asked.spacing.is_some()),
+        ("--tolerance", asked.tolerance.is_some()),
+        ("--budget", asked.budget.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given && !options.contacts) {
+        Some((option, _)) => {
+            Err(Failure::input(format!("{option} is about contacts, and needs --contacts")))
+        }
+        None => Ok(()),
     }
 }
 
@@ -164,7 +192,7 @@ where
         let figure = Figure::new(title(&options.scene))
             .with_caption(self.caption())
             .with_isolines(isolines);
-        self.picture.save(&figure, options.width)?;
+        self.picture.save(&figure, options.width.unwrap_or(picture::WIDTH))?;
         if options.json {
             output::answer().json(&self.described(&drawn, plane))?;
         } else {
@@ -276,4 +304,15 @@ fn output(options: &PlotOptions) -> PathBuf {
 /// The scene's name as a title.
 pub(crate) fn title(scene: &Path) -> String {
     scene.file_stem().unwrap_or_default().to_string_lossy().replace('_', " ")
+}
+
+/// The plane of `--plane`; one along two axes goes through `middle` unless `--at` is given.
+fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure> {
+    let plane = options.plane.as_deref().unwrap_or("xy");
+    if options.at.is_some() && (options.centre.is_some() || plane.contains(':')) {
+        let other = if options.centre.is_some() { "--centre" } else { "--plane" };
+        let problem = "both say where the plane is; leave out --at";
+        return Err(Failure::input(format!("--at and the point of {other} {problem}")));
+    }
+    plane::named("--plane", plane, options.at, middle)
 }

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::{at_least, length, length_or_zero, zero_or_more};
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate contact scenes/peg_in_hole.json
@@ -36,7 +38,7 @@ pub(crate) struct ContactOptions {
     pub(crate) body: Vec<String>,
     /// The time at which the bodies are where their motions have taken them [s]; before all
     /// motions if left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("s"))]
     pub(crate) time: Option<f64>,
     /// Print JSON.
     #[arg(long)]
@@ -48,16 +50,17 @@ pub(crate) struct ContactOptions {
 pub(crate) struct ContactQuestion {
     /// The largest gap at which bodies count as touching [m]; 0.2 % of the smallest body if
     /// left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) margin: Option<f64>,
     /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
     /// left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) spacing: Option<f64>,
     /// How far apart the bounds of a separation may be [m]; half the margin if left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) tolerance: Option<f64>,
-    /// The budget: the most evaluations of fields for each pair.
-    #[arg(long, default_value_t = 200_000)]
-    pub(crate) budget: u32,
+    /// The budget: the most evaluations of fields for each pair; 200000 if left out. The round
+    /// that reaches it is finished.
+    #[arg(long, allow_negative_numbers = true, value_parser = at_least(1_u32))]
+    pub(crate) budget: Option<u32>,
 }

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::length_or_zero;
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99
@@ -26,13 +28,7 @@ pub(crate) struct DescendOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     /// The corners of a triangle, each with its coordinates joined by commas [m].
-    #[arg(
-        long,
-        value_name = "POINT",
-        num_args = 3,
-        required_unless_present_any = ["segment", "start"],
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "POINT", num_args = 3, allow_hyphen_values = true)]
     pub(crate) triangle: Vec<String>,
     /// The ends of a segment [m].
     #[arg(
@@ -69,7 +65,7 @@ pub(crate) struct DescendOptions {
     pub(crate) gradient: Option<String>,
     /// How far apart the proven bounds may be [m]; a ten-thousandth of the longest edge of the
     /// element or of the scene's box if left out.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) tolerance: Option<f64>,
     /// Draw the path over the isolines, on the element's plane: .svg or .png.
     #[arg(long, value_name = "PICTURE")]

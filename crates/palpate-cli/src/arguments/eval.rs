@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::at_least;
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate eval scenes/s3.json --at 0.1,0.5,-0.2
@@ -23,12 +25,7 @@ pub(crate) struct EvalOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     /// One point, its coordinates joined by commas [m].
-    #[arg(
-        long,
-        value_name = "X,Y[,Z]",
-        required_unless_present = "points",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
     /// Many points, from a CSV file.
     #[arg(long, value_name = "CSV", conflicts_with = "at")]
@@ -41,7 +38,7 @@ pub(crate) struct EvalOptions {
     pub(crate) output: Option<PathBuf>,
     /// The number of threads; as many as the machine has if left out. Answers have the same
     /// bits for any number.
-    #[arg(long, requires = "points")]
+    #[arg(long, requires = "points", allow_negative_numbers = true, value_parser = at_least(1_usize))]
     pub(crate) threads: Option<usize>,
     /// Print JSON: one object, or one per line for many points.
     #[arg(long)]

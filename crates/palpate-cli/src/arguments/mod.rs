@@ -14,6 +14,7 @@ mod gradients;
 mod jitter;
 mod mass;
 mod mesh;
+mod numbers;
 mod plot;
 mod render;
 mod shapes;

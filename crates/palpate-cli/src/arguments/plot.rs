@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::ContactQuestion;
+use super::numbers::{coordinate, count, length};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -32,18 +33,18 @@ pub(crate) struct PlotOptions {
     #[arg(long, value_name = "NAME", conflicts_with_all = ["plane", "at", "centre", "size"])]
     pub(crate) view: Option<String>,
     /// The plane in space: xy, xz, yz, or three points as origin:right:up, each
-    /// x,y,z.
-    #[arg(long, default_value = "xy", allow_hyphen_values = true)]
-    pub(crate) plane: String,
-    /// The third coordinate of a plane along two axes [m].
+    /// x,y,z; xy if left out.
     #[arg(long, allow_hyphen_values = true)]
+    pub(crate) plane: Option<String>,
+    /// The third coordinate of a plane along two axes [m].
+    #[arg(long, allow_negative_numbers = true, value_parser = coordinate)]
     pub(crate) at: Option<f64>,
     /// The point in the middle of the picture, x,y or x,y,z [m]; the picture shows the whole
     /// scene if left out. A plane along two axes goes through this point.
     #[arg(long, requires = "size", allow_hyphen_values = true)]
     pub(crate) centre: Option<String>,
     /// Width and height of the part of the scene that is shown [m].
-    #[arg(long, requires = "centre", allow_negative_numbers = true)]
+    #[arg(long, requires = "centre", allow_negative_numbers = true, value_parser = length)]
     pub(crate) size: Option<f64>,
     /// Where bodies are at this time [s], if the scene has motions.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -66,7 +67,7 @@ pub(crate) struct PlotOptions {
     #[arg(long, requires = "gradient")]
     pub(crate) single: bool,
     /// The distance between isolines [m], instead of that of the view; only for --map distance.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) step: Option<f64>,
     /// Draw contacts, normals, and the shortest segments between bodies that are apart. A plane
     /// along two axes goes through the deepest contact unless --at or --centre says where.
@@ -80,9 +81,9 @@ pub(crate) struct PlotOptions {
     /// The picture, .svg or .png; the scene's name with .svg if left out.
     #[arg(long)]
     pub(crate) output: Option<PathBuf>,
-    /// The width of a PNG [pixels].
-    #[arg(long, default_value_t = 1200)]
-    pub(crate) width: u32,
+    /// The width of a PNG [pixels]; 1200 if left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = count(64, 16384_u32))]
+    pub(crate) width: Option<u32>,
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -49,7 +49,7 @@ fn answer<const D: usize>(
         )));
     }
     emptiness::warn(scene);
-    let question = Question::of(&options.question, scene)?;
+    let question = Question::of(&options.question, scene);
     let bodies = input::bodies(&options.body, &names)?;
     let moved = options.time.map(|time| input::at(scene, time)).transpose()?;
     let scene = moved.as_ref().unwrap_or(scene);

@@ -30,7 +30,7 @@ impl<const D: usize> Touched<D> {
         scene: &BuiltScene<D>,
         with_proof: bool,
     ) -> Result<Self, Failure> {
-        let question = Question::of(asked, scene)?;
+        let question = Question::of(asked, scene);
         let asked = Asked { bodies: &[], is_every: scene.bodies.len() <= FEW };
         // Not interruptible: a picture of some pairs would be taken for one of all pairs.
         let pairs = question.pairs(scene, &asked, &Interrupt::new())?;

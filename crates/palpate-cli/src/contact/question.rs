@@ -5,7 +5,6 @@
 
 use std::collections::BTreeSet;
 
-use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
     Certified, Contact, Limits, ManifoldSettings, Nearest, Neighbours, PairWorkspace, Placed,
     Proof, QueryError, Stop, Verdict, WorldSettings, proof, separation,
@@ -55,18 +54,14 @@ impl Asked<'_> {
 
 impl Question {
     /// Lengths that the command line leaves out are shares of the smallest body.
-    pub(crate) fn of<const D: usize>(
-        asked: &ContactQuestion,
-        scene: &BuiltScene<D>,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn of<const D: usize>(asked: &ContactQuestion, scene: &BuiltScene<D>) -> Self {
         let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
-        let margin = length("--margin", asked.margin.unwrap_or(usual.margin), 0.0)?;
+        let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
-        let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;
-        let tolerance = length("--tolerance", asked.tolerance.unwrap_or(0.5 * margin), 0.0)?;
+        let tolerance = asked.tolerance.unwrap_or(0.5 * margin);
         let manifold = usual.with_margin(margin).with_spacing(spacing);
-        let limits = Limits::new(tolerance).with_budget(asked.budget);
-        Ok(Self { settings: WorldSettings::new(manifold, limits) })
+        let limits = Limits::new(tolerance).with_budget(asked.budget.unwrap_or(Limits::BUDGET));
+        Self { settings: WorldSettings::new(manifold, limits) }
     }
 
     /// The pairs that touch or are undecided; and, if asked for, those that are apart: fewer of
@@ -160,14 +155,4 @@ fn near<const D: usize>(found: &Neighbours<D>, margin: f64) -> Pair<D> {
 
 fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
     Placed::new(&body.shape_in_body, body.world_from_body)
-}
-
-/// A length on the command line, at least `least`.
-fn length(option: &str, value: f64, least: f64) -> Result<f64, Failure> {
-    if (least..=LARGEST_LENGTH).contains(&value) {
-        return Ok(value);
-    }
-    let rule = if least > 0.0 { "positive" } else { "not negative" };
-    let rule = format!("{rule} and at most {LARGEST_LENGTH:e} m, got {value:?} m");
-    Err(Failure::input(format!("{option} must be {rule}")))
 }

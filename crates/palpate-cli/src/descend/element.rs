@@ -73,7 +73,7 @@ where
     let element = element::<N, D>(vertices)?;
     let search = Search::of::<D>(options)?;
     let longest = element.longest_edge();
-    let limits = limits(options.tolerance, longest)?;
+    let limits = limits(options.tolerance, longest);
     let shape = &scene.whole;
     let mut workspace = ElementWorkspace::new();
     let proof = Timed::of(|| minimum(shape, &element, &limits, &mut workspace));

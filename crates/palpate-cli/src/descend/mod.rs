@@ -11,8 +11,10 @@ mod figure;
 mod pair;
 mod search;
 
+use std::path::Path;
 use std::str::FromStr;
 
+use palpate::field::{Aabb, Vector};
 use palpate::local::{Descent, UnknownMethod};
 use palpate::query::Limits;
 use palpate::scene::{AnyScene, BuiltScene};
@@ -45,13 +47,29 @@ fn over_points<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
-    if !options.triangle.is_empty() {
+    if options.start.is_empty() && options.triangle.is_empty() && options.segment.is_empty() {
+        Err(nothing_asked(scene, &options.scene))
+    } else if !options.triangle.is_empty() {
         element::descend::<3, D>(options, scene, picture, &options.triangle)
     } else if !options.segment.is_empty() {
         element::descend::<2, D>(options, scene, picture, &options.segment)
     } else {
         pair::between(options, scene, picture)
     }
+}
+
+/// What to ask instead of nothing, with an example from the scene.
+fn nothing_asked<const D: usize>(scene: &BuiltScene<D>, path: &Path) -> Failure {
+    let around = Aabb::centred(Vector::constant(0.5));
+    let bounds = scene.bounds().unwrap_or(around);
+    let mut ends = [bounds.centre(); 2];
+    (ends[0][0], ends[1][0]) = (bounds.min[0], bounds.max[0]);
+    let [from, to] = ends.map(input::written_point);
+    let path = path.display();
+    Failure::input(format!(
+        "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start \
+         with 1; for example: palpate descend {path} --segment {from} {to}"
+    ))
 }
 
 /// The requested method, or `first`. A method of the `Other` kind is named with what it needs.
@@ -68,15 +86,8 @@ where
 }
 
 /// The limits of the search with a proof, over something of this size [m].
-fn limits(tolerance: Option<f64>, size: f64) -> Result<Limits, Failure> {
-    let tolerance = tolerance.unwrap_or(TOLERANCE * size);
-    // Written so that NaN is refused.
-    if tolerance >= 0.0 && tolerance.is_finite() {
-        Ok(Limits::new(tolerance))
-    } else {
-        let rule = "--tolerance must be finite and zero or more";
-        Err(Failure::input(format!("{rule}, got {tolerance:?} m")))
-    }
+fn limits(tolerance: Option<f64>, size: f64) -> Limits {
+    Limits::new(tolerance.unwrap_or(TOLERANCE * size))
 }
 
 /// The result of a local search, as JSON.

@@ -46,7 +46,7 @@ where
         return Err(Failure::input(problem));
     };
     let bounds = input::bounds(scene)?;
-    let limits = limits(options.tolerance, longest_edge(&bounds))?;
+    let limits = limits(options.tolerance, longest_edge(&bounds));
     refuse_naive(options)?;
     let needs = "searches over an element: give --triangle or --segment";
     let first = PairMethod::AlternatingProjection;

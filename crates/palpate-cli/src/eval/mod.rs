@@ -49,7 +49,13 @@ fn evaluate<const D: usize>(
         let job = stream::Job { shape: &scene.whole, points, balls };
         return job.run(options, destination, interrupt);
     }
-    let point = input::point::<D>(options.at.as_deref().unwrap_or_default())?;
+    let Some(at) = &options.at else {
+        let example = input::example_point(scene);
+        return Err(Failure::input(format!(
+            "eval needs a point, as with --at {example}, or many with --points FILE"
+        )));
+    };
+    let point = input::point::<D>(at)?;
     let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
     let ball = balls.map(|balls| balls.ask(&answer, &mut BallWorkspace::new())).transpose()?;
     let mut out = output::answer();

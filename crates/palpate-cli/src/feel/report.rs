@@ -298,6 +298,9 @@ fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
 
 /// A number with four significant digits.
 fn rounded(number: f64) -> String {
+    if number.abs() < f64::MIN_POSITIVE {
+        return "0".to_owned();
+    }
     let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
     let unit = 10.0_f64.powi(-digits);
     let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);

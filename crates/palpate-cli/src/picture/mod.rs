@@ -146,6 +146,16 @@ where
     }
 }
 
+/// Refuses a width in pixels for a format without pixels.
+pub(crate) fn check_width(format: Format, width: Option<u32>) -> Result<(), Failure> {
+    match (format, width) {
+        (Format::Svg, Some(_)) => {
+            Err(Failure::input("--width is for PNG pictures; an SVG is drawn at any width"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A picture file to be written.
 #[derive(Debug)]
 pub(crate) struct Picture {
@@ -171,6 +181,11 @@ impl Picture {
     /// The path that the command line gave.
     pub(crate) fn path(&self) -> &Path {
         self.destination.name()
+    }
+
+    /// Refuses a width in pixels for a picture without pixels.
+    pub(crate) fn check_width(&self, width: Option<u32>) -> Result<(), Failure> {
+        check_width(self.format, width)
     }
 
     /// Writes `figure`; as a PNG, `width` pixels wide.

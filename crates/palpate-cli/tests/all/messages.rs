@@ -206,3 +206,235 @@ fn a_body_without_any_point_is_told_of() {
         assert!(errors(&output).starts_with(warning), "{command:?}: {}", errors(&output));
     }
 }
+
+/// What clap says of a value that breaks the rule of its option.
+fn invalid(value: &str, option: &str, rule: &str) -> String {
+    format!(
+        "error: invalid value '{value}' for '{option}': {rule}\n\nFor more information, try '--help'.\n"
+    )
+}
+
+#[test]
+fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    let length = "must be positive and at most 1e15 m";
+    let length_or_zero = "must be zero or more and at most 1e15 m";
+    let positive = "must be positive and finite";
+    let zero_or_more = "must be zero or more and finite";
+    for (command, option, value, rule) in [
+        ("feel", "--duration <DURATION>", "-1", format!("{positive}, got -1 s")),
+        ("feel", "--duration <DURATION>", "0", format!("{positive}, got 0 s")),
+        ("feel", "--rate <RATE>", "0", format!("{positive}, got 0 Hz")),
+        ("feel", "--rate <RATE>", "fast", "must be a number".into()),
+        (
+            "feel",
+            "--points <POINTS>",
+            "0",
+            "must be a whole number from 1 to 1000, got 0".into(),
+        ),
+        (
+            "feel",
+            "--points <POINTS>",
+            "1001",
+            "must be a whole number from 1 to 1000, got 1001".into(),
+        ),
+        ("feel", "--stiffness <STIFFNESS>", "-1", format!("{zero_or_more}, got -1 N/m")),
+        ("feel", "--damping <DAMPING>", "nan", format!("{zero_or_more}, got NaN N·s/m")),
+        ("feel", "--max-force <MAX_FORCE>", "0", format!("{positive}, got 0 N")),
+        ("feel", "--radius <RADIUS>", "-0.1", format!("{length_or_zero}, got -0.1 m")),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "omega",
+            "a device of this name is written simulated:omega".into(),
+        ),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "simulated:desktopp",
+            "unknown device `desktopp`, did you mean `desktop`?".into(),
+        ),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "hand",
+            "must be recorded, simulated:NAME or glove".into(),
+        ),
+        ("contact", "--margin <MARGIN>", "-1", format!("{length_or_zero}, got -1 m")),
+        (
+            "contact",
+            "--margin <MARGIN>",
+            "1e99",
+            format!("{length_or_zero}, got 1{} m", "0".repeat(99)),
+        ),
+        ("contact", "--spacing <SPACING>", "0", format!("{length}, got 0 m")),
+        ("contact", "--tolerance <TOLERANCE>", "nan", format!("{length_or_zero}, got NaN m")),
+        (
+            "contact",
+            "--tolerance <TOLERANCE>",
+            "0,5",
+            "must be a number; a decimal comma is written 0.5".into(),
+        ),
+        (
+            "contact",
+            "--budget <BUDGET>",
+            "0",
+            "must be a whole number of at least 1, got 0".into(),
+        ),
+        (
+            "contact",
+            "--budget <BUDGET>",
+            "1e6",
+            "must be a whole number of at least 1, got 1e6".into(),
+        ),
+        ("contact", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
+        ("plot", "--step <STEP>", "0", format!("{length}, got 0 m")),
+        (
+            "plot",
+            "--at <AT>",
+            "inf",
+            "must be finite and at most 1e15 m in size, got inf m".into(),
+        ),
+        ("plot", "--size <SIZE>", "-1", format!("{length}, got -1 m")),
+        (
+            "plot",
+            "--width <WIDTH>",
+            "0",
+            "must be a whole number from 64 to 16384, got 0".into(),
+        ),
+        ("mass", "--density <DENSITY>", "-1", format!("{positive}, got -1 kg/m³")),
+        ("mass", "--tolerance <TOLERANCE>", "0", format!("{positive}, got 0")),
+        ("mass", "--cells <CELLS>", "0", "must be a whole number of at least 1, got 0".into()),
+        ("mesh", "--scale <METRES>", "-1", format!("{length}, got -1 m")),
+        (
+            "eval",
+            "--threads <THREADS>",
+            "0",
+            "must be a whole number of at least 1, got 0".into(),
+        ),
+        ("descend", "--tolerance <TOLERANCE>", "-1", format!("{length_or_zero}, got -1 m")),
+    ] {
+        let name = option.split(' ').next().unwrap();
+        let said = refused(&folder, &[command, "ball.json", name, value]);
+        assert_eq!(said, invalid(value, option, &rule));
+    }
+    for (command, option, value, rule) in [
+        ("jitter", "--rate <RATE>", "0", format!("{positive}, got 0 Hz")),
+        ("jitter", "--duration <DURATION>", "-1", format!("{positive}, got -1 s")),
+        (
+            "gallery",
+            "--width <WIDTH>",
+            "63",
+            "must be a whole number from 64 to 16384, got 63".into(),
+        ),
+    ] {
+        let name = option.split(' ').next().unwrap();
+        assert_eq!(refused(&folder, &[command, name, value]), invalid(value, option, &rule));
+    }
+}
+
+#[test]
+fn options_without_an_effect_are_refused() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    folder.write("disc.json", &BALL.replace("\"dimension\": 3", "\"dimension\": 2"));
+    let glove = ["feel", "ball.json", "--fast", "--device", "glove"];
+    for (arguments, expected) in [
+        (
+            &[&glove[..], &["--max-force", "1"]].concat()[..],
+            "--max-force has no meaning for a glove, which has no forces",
+        ),
+        (
+            &[&glove[..], &["--stiffness", "1", "--damping", "1", "--strict"]].concat(),
+            "--stiffness, --damping, --strict have no meaning for a glove, which has no forces",
+        ),
+        (
+            &[
+                "feel",
+                "ball.json",
+                "--fast",
+                "--device",
+                "simulated:omega",
+                "--max-force",
+                "100",
+            ],
+            "--max-force must be at most 12 N, the largest force of the Force Dimension omega, got 100 N",
+        ),
+        (
+            &["plot", "disc.json", "--plane", "xz"],
+            "--plane is for scenes in space; this scene is in the plane, and drawn whole",
+        ),
+        (
+            &["plot", "disc.json", "--at", "1"],
+            "--at is for scenes in space; this scene is in the plane, and drawn whole",
+        ),
+        (
+            &["plot", "ball.json", "--at", "1", "--centre", "0,0,0", "--size", "1"],
+            "--at and the point of --centre both say where the plane is; leave out --at",
+        ),
+        (
+            &["plot", "ball.json", "--at", "1", "--plane", "0,0,0:1,0,0:0,1,0"],
+            "--at and the point of --plane both say where the plane is; leave out --at",
+        ),
+        (
+            &["plot", "ball.json", "--output", "ball.svg", "--width", "500"],
+            "--width is for PNG pictures; an SVG is drawn at any width",
+        ),
+        (
+            &["gallery", "--format", "svg", "--width", "500"],
+            "--width is for PNG pictures; an SVG is drawn at any width",
+        ),
+        (
+            &["plot", "ball.json", "--margin", "1"],
+            "--margin is about contacts, and needs --contacts",
+        ),
+        (
+            &["plot", "ball.json", "--budget", "1"],
+            "--budget is about contacts, and needs --contacts",
+        ),
+    ] {
+        assert_eq!(refused(&folder, arguments), format!("palpate: {expected}\n"));
+    }
+}
+
+#[test]
+fn what_a_command_needs_is_said_with_an_example_of_the_scene() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    for (arguments, expected) in [
+        (
+            &["eval", "ball.json"][..],
+            "eval needs a point, as with --at 0,0,0, or many with --points FILE",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1,2"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got 2 in \"1,2\"",
+        ),
+        (
+            &["eval", "ball.json", "--at", "0,5,1,0,2,0"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got 6 in \"0,5,1,0,2,0\"; a decimal comma is written as a point",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1;2;3"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got \"1;2;3\"; numbers are joined by commas alone",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1,x,3"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got \"1,x,3\"",
+        ),
+        (
+            &["eval", "ball.json", "--at", "0,0,nan"],
+            "z must be finite and at most 1e15 m in size, got NaN m",
+        ),
+        (
+            &["descend", "ball.json"],
+            "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start with 1; for example: palpate descend ball.json --segment -0.5,0,0 0.5,0,0",
+        ),
+    ] {
+        assert_eq!(refused(&folder, arguments), format!("palpate: {expected}\n"));
+    }
+    // The example runs.
+    let example = ["descend", "ball.json", "--segment", "-0.5,0,0", "0.5,0,0"];
+    assert_eq!(status(&folder.run(&example)), 0);
+}

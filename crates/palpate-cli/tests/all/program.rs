@@ -143,11 +143,9 @@ fn a_mesh_is_good_if_it_is_watertight() {
     let welded: Value = serde_json::from_slice(&welded.stdout).unwrap();
     assert_eq!((&welded["vertices"], &welded["boundary_edges"]), (&4.into(), &4.into()));
     let broken = folder.write("broken.stl", "solid x\nfacet");
-    for arguments in [&["mesh", &broken][..], &["mesh", &file, "--scale", "-1"]] {
-        let output = palpate(arguments);
-        assert_eq!(status(&output), 2);
-        assert!(errors(&output).contains(arguments[1]), "{}", errors(&output));
-    }
+    let output = palpate(&["mesh", &broken]);
+    assert_eq!(status(&output), 2);
+    assert!(errors(&output).contains(&broken), "{}", errors(&output));
 }
 
 #[test]
