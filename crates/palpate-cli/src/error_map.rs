@@ -117,7 +117,7 @@ where
     }
 
     /// Draws the directions as colours.
-    pub(crate) fn draw_directions(
+    fn draw_directions(
         &self,
         isolines: Isolines,
         plane: &Slice,
@@ -160,7 +160,7 @@ where
 
     /// Draws the value of the other field less that of `shape` as colours, and the surface of the
     /// other.
-    pub(crate) fn draw_difference(
+    fn draw_difference(
         &self,
         isolines: Isolines,
         shape: &Shape<D>,

@@ -24,8 +24,8 @@ const TOLERANCE: f64 = 1e-4;
 pub(super) struct Balls<'a, const D: usize> {
     shape: &'a Shape<D>,
     radius: f64,
-    /// How far apart the bounds may be [m].
-    tolerance: f64,
+    /// The longest edge of the scene's box, if it has one [m].
+    size: Option<f64>,
 }
 
 impl<'a, const D: usize> Balls<'a, D> {
@@ -34,9 +34,8 @@ impl<'a, const D: usize> Balls<'a, D> {
             let rule = format!("from 0 m to {LARGEST_LENGTH:e} m, got {radius:?} m");
             return Err(Failure::input(format!("--radius must be {rule}")));
         }
-        // Without bounds, the ball is the only length there is.
-        let size = scene.bounds().map_or(2.0 * radius, |bounds| longest_edge(&bounds));
-        Ok(Self { shape: &scene.whole, radius, tolerance: TOLERANCE * size })
+        let size = scene.bounds().map(|bounds| longest_edge(&bounds));
+        Ok(Self { shape: &scene.whole, radius, size })
     }
 
     /// Asks about the ball around a point.
@@ -56,14 +55,18 @@ impl<'a, const D: usize> Balls<'a, D> {
         at: &AtPoint<D>,
         workspace: &mut BallWorkspace<D>,
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
-        let Self { shape, radius, tolerance } = *self;
-        let limits = Limits::new(tolerance);
+        let Self { shape, radius, size } = *self;
+        // Without bounds, the ball and its distance are the only lengths there are.
+        let size = size.unwrap_or(2.0 * radius + at.distance.abs());
+        let limits = Limits::new(TOLERANCE * size);
         let mut found = contact_ball(shape, at.point, radius, &limits, workspace)?;
         if found.is_hit().is_none() {
             let limits = limits.with_tolerance(0.0);
             let sign = touches_ball(shape, at.point, radius, &limits, workspace)?;
             found.lower = found.lower.max(sign.lower);
-            found.upper = found.upper.min(sign.upper);
+            if sign.upper < found.upper {
+                (found.upper, found.best) = (sign.upper, sign.best);
+            }
             found.evaluations += sign.evaluations;
             found.stop = sign.stop;
         }
@@ -96,13 +99,14 @@ impl<const D: usize> Ball<D> {
         self.meets().map(|meets| meets == self.test())
     }
 
+    /// As JSON, where a bound that is infinite is `null`.
     pub(super) fn to_json(&self) -> Value {
         let contact = self.found.best;
         json!({
             "radius_m": self.radius,
             "meets": self.meets(),
             "gap_lower_m": self.found.lower,
-            "gap_upper_m": self.found.upper.is_finite().then_some(self.found.upper),
+            "gap_upper_m": self.found.upper,
             "surface_point_m": contact.map(|contact| contact.point_a.0.to_vec()),
             "ball_point_m": contact.map(|contact| contact.point_b.0.to_vec()),
             "stop": self.found.stop.to_string(),
@@ -121,11 +125,7 @@ impl<const D: usize> Ball<D> {
             self.radius,
             said(self.meets())
         )?;
-        let bounds = if upper.is_finite() {
-            joined(&[lower, upper])
-        } else {
-            format!("{lower}, no upper bound")
-        };
+        let bounds = joined(&[lower, upper]);
         writeln!(out, "gap            [{bounds}] m, proven ({evaluations} evaluations)")?;
         match self.found.best {
             Some(contact) => {

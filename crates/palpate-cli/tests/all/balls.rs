@@ -133,3 +133,24 @@ fn a_radius_is_a_length() {
         assert_refused(&["eval", "scenes/s1.json", "--at", "1,0,0", "--radius", radius], &said);
     }
 }
+
+/// A quadrant has no bounds, and is a bound outside: its corner is √2 m away, its value 1 m.
+#[test]
+fn a_scene_without_bounds_is_asked_about_too() {
+    let folder = Folder::new();
+    let scene = folder.write(
+        "quadrant.json",
+        r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "quadrant", "shape":
+          { "intersection": [ { "half_space": { "normal": [0, 1], "offset": 0 } },
+                              { "half_space": { "normal": [1, 0], "offset": 0 } } ] } } ] }"#,
+    );
+    for (radius, meets) in [("0", false), ("1.2", false), ("1.5", true)] {
+        let (_, answer) = ask(&scene, "1,1", radius);
+        let ball = &answer["ball"];
+        assert_eq!(ball["meets"], meets, "{ball}");
+        let gap = 2.0_f64.sqrt() - number(&ball["radius_m"]);
+        let [lower, upper] = ["gap_lower_m", "gap_upper_m"].map(|key| number(&ball[key]));
+        assert!(lower <= gap && gap <= upper && upper - lower < 1e-3, "{ball}");
+        assert!(number(&ball["evaluations"]) < 1000.0, "{ball}");
+    }
+}
