@@ -24,8 +24,9 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// # Errors
     ///
     /// If a coordinate is not finite or beyond 1e15 m.
-    pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
+    pub fn new(vertices: [impl Into<Point<D>>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
+        let vertices = vertices.map(Into::into);
         for vertex in vertices {
             QueryError::check_point("vertex", vertex)?;
         }
@@ -41,7 +42,7 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// The barycentric weights of the centre of the smallest ball around the element.
     #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
-        palpate_mesh::centre_weights(&self.vertices)
+        palpate_mesh::internal::centre_weights(&self.vertices)
     }
 
     /// A triangle without area as its longest edge with the second end doubled, so that its

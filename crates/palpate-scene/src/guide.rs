@@ -188,11 +188,11 @@ impl WrittenGuide {
             position(point, dimension).map_err(|problem| problem.under("point"))?;
         }
         if let Some(line) = &self.line {
-            check_straight((&line.through, "direction", &line.direction), dimension)
+            check_straight(&line.through, "direction", &line.direction, dimension)
                 .map_err(|problem| problem.under("line"))?;
         }
         if let Some(plane) = &self.plane {
-            check_straight((&plane.through, "normal", &plane.normal), dimension)
+            check_straight(&plane.through, "normal", &plane.normal, dimension)
                 .map_err(|problem| problem.under("plane"))?;
         }
         if let Some(segment) = &self.segment {
@@ -258,7 +258,9 @@ impl WrittenGuide {
 
 /// Checks a point and a direction, which has a name of its own.
 fn check_straight(
-    (through, key, along): (&[f64], &str, &[f64]),
+    through: &[f64],
+    key: &str,
+    along: &[f64],
     dimension: usize,
 ) -> Result<(), Problem> {
     position(through, dimension).map_err(|problem| problem.under("through"))?;

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
-    Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, Nearest, PairWorkspace, Placed, Proof, Verdict, WorldSettings,
+    proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -44,7 +44,7 @@ impl Question {
         asked: &ContactQuestion,
         scene: &BuiltScene<D>,
     ) -> Result<Self, Failure> {
-        let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
+        let usual = scene.world_settings().manifold;
         let margin = length("--margin", asked.margin.unwrap_or(usual.margin), 0.0)?;
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;

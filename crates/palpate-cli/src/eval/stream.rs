@@ -170,8 +170,8 @@ fn answers<const D: usize>(shape: &Shape<D>, points: &[Point<D>], as_json: bool)
     shape.block_gradients(&block, points.len(), &mut found);
     let mut text = String::new();
     for (i, point) in points.iter().enumerate() {
-        let slope = (found.distance.get(i), found.gradient.get(i));
-        let answer = AtPoint::of_slope(shape, *point, slope);
+        let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
+        let answer = AtPoint::of_slope(shape, *point, distance, gradient);
         if as_json {
             text.push_str(&answer::to_json(&answer).to_string());
         } else {
