@@ -8,7 +8,8 @@
 use crate::error::DeviceError;
 use crate::hand_path::HandPath;
 use palpate_field::Vector;
-use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, limited};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState};
+use palpate_safety::internal::limited;
 
 /// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
 /// point.

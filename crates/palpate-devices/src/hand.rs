@@ -88,8 +88,9 @@ impl<const D: usize> Hand<D> {
     ///
     /// [`DeviceError::SampleNotFinite`] if a coordinate of `place` is not finite or exceeds
     /// 1e15 m.
-    pub fn resting(place: Point<D>) -> Result<Self, DeviceError> {
-        HandPath::new(vec![0.0, 1.0], vec![place; 2], Interpolation::Linear).map(Self::new)
+    pub fn resting(place: impl Into<Point<D>>) -> Result<Self, DeviceError> {
+        HandPath::new(vec![0.0, 1.0], vec![place.into(); 2], Interpolation::Linear)
+            .map(Self::new)
     }
 
     /// This hand with another mass [kg].
@@ -117,7 +118,8 @@ impl<const D: usize> Hand<D> {
     /// # Errors
     ///
     /// [`DeviceError::Number`] if a coordinate is not finite.
-    pub fn with_push(self, push: Vector<f64, D>) -> Result<Self, DeviceError> {
+    pub fn with_push(self, push: impl Into<Vector<f64, D>>) -> Result<Self, DeviceError> {
+        let push = push.into();
         for component in push.0 {
             NumberError::check_not_negative("hand push", component.abs(), "N")?;
         }
@@ -183,7 +185,8 @@ impl<const D: usize> Hand<D> {
     /// # Errors
     ///
     /// [`DeviceError::Number`] if a coordinate is not finite.
-    pub fn with_torque(self, torque: Vector<f64, 3>) -> Result<Self, DeviceError> {
+    pub fn with_torque(self, torque: impl Into<Vector<f64, 3>>) -> Result<Self, DeviceError> {
+        let torque = torque.into();
         for component in torque.0 {
             NumberError::check_not_negative("hand torque", component.abs(), "N·m")?;
         }

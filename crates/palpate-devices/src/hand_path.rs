@@ -136,9 +136,9 @@ impl<const D: usize> HandPath<D> {
                 PointState { position: from + way * part, velocity: way * (1.0 / span) }
             }
             Interpolation::Smooth => {
-                let (start, end) =
-                    (self.velocities[before] * span, self.velocities[after] * span);
-                hermite(from, way, (start, end), (part, span))
+                let start = self.velocities[before] * span;
+                let end = self.velocities[after] * span;
+                Cubic { from, way, start, end }.at(part, span)
             }
         }
     }
@@ -155,23 +155,29 @@ impl<const D: usize> HandPath<D> {
     }
 }
 
-/// The cubic from `from` over `way` with the derivatives `start` and `end` by the part `u` of
-/// its `span`:
+/// The cubic from `from` over `way`, whose derivatives by the part `u` of its time are `start`
+/// and `end`:
 ///
 /// ```text
 /// p = from + u s + u² (3w − 2s − e) + u³ (s + e − 2w)
 /// ```
-fn hermite<const D: usize>(
+struct Cubic<const D: usize> {
     from: Point<D>,
     way: Vector<f64, D>,
-    (start, end): (Vector<f64, D>, Vector<f64, D>),
-    (u, span): (f64, f64),
-) -> PointState<D> {
-    let square = way * 3.0 - start * 2.0 - end;
-    let cube = start + end - way * 2.0;
-    let position = from + (start + (square + cube * u) * u) * u;
-    let velocity = (start + (square * 2.0 + cube * (3.0 * u)) * u) * (1.0 / span);
-    PointState { position, velocity }
+    start: Vector<f64, D>,
+    end: Vector<f64, D>,
+}
+
+impl<const D: usize> Cubic<D> {
+    /// Position and velocity at the part `u` of its time `span` [s].
+    fn at(&self, u: f64, span: f64) -> PointState<D> {
+        let Self { from, way, start, end } = *self;
+        let square = way * 3.0 - start * 2.0 - end;
+        let cube = start + end - way * 2.0;
+        let position = from + (start + (square + cube * u) * u) * u;
+        let velocity = (start + (square * 2.0 + cube * (3.0 * u)) * u) * (1.0 / span);
+        PointState { position, velocity }
+    }
 }
 
 /// At each sample the slope of the parabola through it and its neighbours; zero at both ends,

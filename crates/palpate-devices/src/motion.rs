@@ -189,7 +189,7 @@ impl Body {
             let longest = left.min(self.oscillator.longest());
             let stop = piece.stop(&self.oscillator, longest);
             let length = stop.unwrap_or(longest);
-            energies.add(&self.glide(axis, &load, (&piece, length)));
+            energies.add(&self.glide(axis, &load, &piece, length));
             if stop.is_some() {
                 axis.velocity = 0.0;
             }
@@ -230,12 +230,7 @@ impl Body {
     }
 
     /// Moves `axis` along a piece without a change of direction.
-    fn glide(
-        &mut self,
-        axis: &mut Axis,
-        load: &Load,
-        (piece, length): (&Piece, f64),
-    ) -> Energies {
+    fn glide(&mut self, axis: &mut Axis, load: &Load, piece: &Piece, length: f64) -> Energies {
         if self.nodes.length != length {
             self.nodes = Nodes::new(&self.oscillator, length);
         }

@@ -7,9 +7,8 @@
 
 use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
-use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, NumberError, PointState, TurnState, limited,
-};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, TurnState};
+use palpate_safety::internal::limited;
 
 use crate::hand::Hand;
 use crate::motion::{Axis, Body, Energies, Load, Parts};

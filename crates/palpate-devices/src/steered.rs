@@ -107,17 +107,18 @@ impl<const D: usize> Steering<D> {
     ///
     /// [`DeviceError::OneForEach`] if there is not one target for each hand;
     /// [`DeviceError::TargetNotFinite`] if one is not finite. No hand is led anywhere then.
-    pub fn steer(&mut self, targets: &[Point<D>]) -> Result<(), DeviceError> {
+    pub fn steer(&mut self, targets: &[impl Into<Point<D>> + Copy]) -> Result<(), DeviceError> {
         if targets.len() != self.hands {
             let (items, given) = ("targets", targets.len());
             return Err(DeviceError::OneForEach { items, given, points: self.hands });
         }
-        for (index, target) in targets.iter().enumerate() {
+        let targets = || targets.iter().map(|target| (*target).into());
+        for (index, target) in targets().enumerate() {
             if let Some(value) = target.0.into_iter().find(|x| !x.is_finite()) {
                 return Err(DeviceError::TargetNotFinite { index, value });
             }
         }
-        self.targets.set(|all| all.clone_from_slice(targets));
+        self.targets.set(|all| all.iter_mut().zip(targets()).for_each(|(one, new)| *one = new));
         Ok(())
     }
 }
@@ -254,7 +255,8 @@ mod tests {
     #[test]
     fn what_leads_nowhere_is_refused() {
         let (mut device, mut steering) = steered(1.0);
-        let error = steering.steer(&[]).unwrap_err();
+        let none: [Point<2>; 0] = [];
+        let error = steering.steer(&none).unwrap_err();
         assert_eq!(error.to_string(), "1 contact points need as many targets, got 0");
         let error = steering.steer(&[Vector([f64::NAN, 0.0])]).unwrap_err();
         assert_eq!(error.to_string(), "target 0 must be finite, got NaN m");

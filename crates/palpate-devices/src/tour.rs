@@ -259,7 +259,7 @@ impl<const D: usize> Tour<D> {
             press.iter_mut().zip(lifted).for_each(|(press, lift)| *press *= ease(1.0 - lift));
             positions = self.positions(shape, &sights, &press, window);
         }
-        Ok(Route { passed: passed(&positions, &press, (step, window)), positions })
+        Ok(Route { passed: passed(&positions, &press, step, window), positions })
     }
 
     /// The smooth path with the depth that `press` gives, corrected by the field.
@@ -471,7 +471,8 @@ fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
 fn passed<const D: usize>(
     positions: &[Point<D>],
     press: &[f64],
-    (step, window): (f64, usize),
+    step: f64,
+    window: usize,
 ) -> Vec<f64> {
     let last = positions.len() - 2;
     let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();

@@ -13,7 +13,8 @@
 
 use crate::error::DeviceError;
 use palpate_field::{Rotation, Vector};
-use palpate_haptics::{NumberError, TurnState, TurningProfile, limited};
+use palpate_haptics::{NumberError, TurnState, TurningProfile};
+use palpate_safety::internal::limited;
 
 use crate::hand::{Hand, Wrist};
 use crate::motion::{Axis, Body, Energies, Load, Parts};

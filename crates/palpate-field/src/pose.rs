@@ -167,7 +167,11 @@ impl Rotation<3> {
     /// # Errors
     ///
     /// If the axis has no direction or a number is not finite.
-    pub fn from_axis_angle(axis: Vector<f64, 3>, angle: f64) -> Result<Self, ShapeError> {
+    pub fn from_axis_angle(
+        axis: impl Into<Vector<f64, 3>>,
+        angle: f64,
+    ) -> Result<Self, ShapeError> {
+        let axis = axis.into();
         if !angle.is_finite() {
             return Err(ShapeError::number("angle", "finite", angle, Unit::Radian));
         }
@@ -256,8 +260,8 @@ pub struct Pose<const D: usize> {
 impl<const D: usize> Pose<D> {
     /// Rotates, then translates.
     #[must_use]
-    pub fn new(rotation: Rotation<D>, translation: Vector<f64, D>) -> Self {
-        Self { rotation, translation }
+    pub fn new(rotation: Rotation<D>, translation: impl Into<Vector<f64, D>>) -> Self {
+        Self { rotation, translation: translation.into() }
     }
 
     /// The motion that moves nothing.
@@ -268,7 +272,7 @@ impl<const D: usize> Pose<D> {
 
     /// A translation alone.
     #[must_use]
-    pub fn translation(translation: Vector<f64, D>) -> Self {
+    pub fn translation(translation: impl Into<Vector<f64, D>>) -> Self {
         Self::new(Rotation::identity(), translation)
     }
 

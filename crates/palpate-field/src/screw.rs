@@ -54,9 +54,10 @@ pub struct Screw<const D: usize> {
     to: Pose<D>,
     /// The unit axis, seen from the first pose; z in the plane.
     axis: Vector<f64, 3>,
-    /// The angle of the shorter way, and with whole turns [rad].
+    /// The angle of the shorter way, without whole turns [rad].
+    short_angle: f64,
+    /// The angle with whole turns [rad].
     angle: f64,
-    whole_angle: f64,
     /// The translation along the axis, seen from the first pose [m]; zero in the plane.
     along: Vector<f64, 3>,
     /// The translation across the axis [m].
@@ -88,8 +89,8 @@ impl<const D: usize> Screw<D> {
             let rule = "0 for a translation in the plane";
             return Err(ShapeError::number("turns", rule, f64::from(turns), Unit::One));
         }
-        let whole_angle = angle + TAU * f64::from(turns);
-        Ok(Self { from, to, axis, angle, whole_angle, along, across })
+        let (short_angle, angle) = (angle, angle + TAU * f64::from(turns));
+        Ok(Self { from, to, axis, short_angle, angle, along, across })
     }
 
     /// The first pose.
@@ -107,7 +108,7 @@ impl<const D: usize> Screw<D> {
     /// The angle of the whole motion, whole turns included [rad].
     #[must_use]
     pub fn angle(&self) -> f64 {
-        self.whole_angle
+        self.angle
     }
 
     /// The pose after a share of the motion: the first at 0 and below, the last at 1 and above.
@@ -116,16 +117,15 @@ impl<const D: usize> Screw<D> {
         if share >= 1.0 {
             return self.to;
         }
-        // Written so that NaN gives the first pose.
-        if !(share > 0.0) {
+        if share.is_nan() || share <= 0.0 {
             return self.from;
         }
-        let phi = share * self.whole_angle;
+        let phi = share * self.angle;
         // A motion without rotation has no centre to turn about.
-        let (ratio, off) = if self.angle < NO_ROTATION {
+        let (ratio, off) = if self.short_angle < NO_ROTATION {
             (share, 0.0)
         } else {
-            let half = 0.5 * self.angle;
+            let half = 0.5 * self.short_angle;
             (libm::sin(0.5 * phi) / libm::sin(half), 0.5 * phi - half)
         };
         let across =

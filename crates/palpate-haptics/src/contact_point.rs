@@ -15,7 +15,8 @@ use crate::options::ServoOptions;
 use crate::ports::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::surface::{Press, Ringing};
-use palpate_safety::{PointState, PortState, WorkspaceMap, limited, shortening};
+use palpate_safety::internal::{limited, shortening};
+use palpate_safety::{PointState, PortState, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,10 +12,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::clock::{Clock, WallClock};
+use crate::pacer::{Pace, ticks};
 use crate::priority::{Priority, raise_priority};
 use crate::recorder::Recorder;
 use crate::report::RunReport;
-use crate::run::{Pace, ticks};
 use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock

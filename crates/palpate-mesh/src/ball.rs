@@ -16,7 +16,7 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_mesh::centre_weights;
+/// use palpate_mesh::internal::centre_weights;
 ///
 /// let right = [Vector([0.0, 0.0]), Vector([3.0, 0.0]), Vector([0.0, 4.0])];
 /// assert_eq!(centre_weights(&right), [0.0, 0.5, 0.5]);

@@ -59,6 +59,8 @@ mod element_search;
 mod engine;
 mod error;
 mod goal;
+#[doc(hidden)]
+pub mod internal;
 mod larger;
 mod manifold;
 mod mesh;
@@ -89,8 +91,7 @@ pub use mesh::{
 };
 pub use pair::{
     DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    SeparatingTranslation, minimax_step, overlap, proof, rates, separating_translation,
-    separation,
+    SeparatingTranslation, overlap, proof, rates, separating_translation, separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};

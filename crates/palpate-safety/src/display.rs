@@ -68,7 +68,8 @@ mod tests {
         let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.0);
         let mut chain = SafetyChain::<2>::new(&device, 1000.0, options)?;
         let mut step = |force| chain.step(Vector([force, 0.0]), &PortState::at_rest());
-        (step(0.5), step(2.0));
+        step(0.5);
+        step(2.0);
         let said = "2 ticks, changed by: force limit 1";
         assert_eq!(chain.report().to_string(), said);
         Ok(())

@@ -24,6 +24,8 @@ mod error;
 mod finite;
 mod force_limit;
 mod impedance;
+#[doc(hidden)]
+pub mod internal;
 mod limit;
 mod limits;
 mod passivity;
@@ -41,7 +43,6 @@ pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, Turni
 pub use effect::Effect;
 pub use error::{NumberError, SafetyError};
 pub use impedance::Impedance;
-pub use limit::{limited, shortening};
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};

@@ -198,10 +198,10 @@ impl WrittenGuide {
     fn check_target(&self, dimension: usize) -> Result<(), Problems> {
         let point = self.point.as_ref().map_or(Ok(()), |point| position(point, dimension));
         let line = self.line.as_ref().map_or(Ok(()), |line| {
-            check_straight((&line.through, "direction", &line.direction), dimension)
+            check_straight(&line.through, "direction", &line.direction, dimension)
         });
         let plane = self.plane.as_ref().map_or(Ok(()), |plane| {
-            check_straight((&plane.through, "normal", &plane.normal), dimension)
+            check_straight(&plane.through, "normal", &plane.normal, dimension)
         });
         let segment = self.segment.as_ref().map_or(Ok(()), |segment| segment.check(dimension));
         let curve = self.curve.as_ref().map_or(Ok(()), |curve| curve.check(dimension));
@@ -268,7 +268,9 @@ impl WrittenGuide {
 
 /// Checks a point and a direction, which has a name of its own.
 fn check_straight(
-    (through, key, along): (&[f64], &str, &[f64]),
+    through: &[f64],
+    key: &str,
+    along: &[f64],
     dimension: usize,
 ) -> Result<(), Problems> {
     Problems::all([

@@ -6,8 +6,8 @@
 use std::collections::BTreeSet;
 
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, Neighbours, PairWorkspace, Placed,
-    Proof, QueryError, Stop, Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, QueryError,
+    Stop, Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -55,7 +55,7 @@ impl Asked<'_> {
 impl Question {
     /// Lengths that the command line leaves out are shares of the smallest body.
     pub(crate) fn of<const D: usize>(asked: &ContactQuestion, scene: &BuiltScene<D>) -> Self {
-        let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
+        let usual = scene.world_settings().manifold;
         let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let tolerance = asked.tolerance.unwrap_or(0.5 * margin);

@@ -191,8 +191,8 @@ impl<const D: usize> Job<'_, D> {
         self.shape.block_gradients(&block, points.len(), &mut found);
         let mut text = String::new();
         for (i, point) in points.iter().enumerate() {
-            let slope = (found.distance.get(i), found.gradient.get(i));
-            let answer = AtPoint::of_slope(self.shape, *point, slope);
+            let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
+            let answer = AtPoint::of_slope(self.shape, *point, distance, gradient);
             let ball = match (&self.balls, workspace.as_deref_mut()) {
                 (Some(balls), Some(workspace)) => Some(balls.ask(&answer, workspace)?),
                 _ => None,

@@ -37,7 +37,7 @@ impl TryFrom<glam::DAffine2> for Pose<2> {
     /// The matrix must be a rotation: scale and shear are refused.
     fn try_from(affine: glam::DAffine2) -> Result<Self, ShapeError> {
         let rows = affine.matrix2.transpose().to_cols_array_2d();
-        Ok(Self::new(Rotation::from_matrix(rows)?, affine.translation.into()))
+        Ok(Self::new(Rotation::from_matrix(rows)?, affine.translation))
     }
 }
 
@@ -59,7 +59,7 @@ impl TryFrom<glam::DAffine3> for Pose<3> {
 
     /// The matrix must be a rotation: scale and shear are refused.
     fn try_from(affine: glam::DAffine3) -> Result<Self, ShapeError> {
-        Ok(Self::new(affine.matrix3.try_into()?, affine.translation.into()))
+        Ok(Self::new(affine.matrix3.try_into()?, affine.translation))
     }
 }
 

@@ -28,7 +28,7 @@ impl<const D: usize> Shape<D> {
     ///
     /// As [`placed`](Self::placed).
     pub fn translated(self, offset: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
-        self.placed(&Pose::translation(offset.into()))
+        self.placed(&Pose::translation(offset))
     }
 
     /// The shape turned about the origin.

@@ -17,7 +17,7 @@ fn by_search(curve: Quadratic, a: f64, b: f64) -> f64 {
     let count = 4000;
     let at = |i: usize| far * i as f64 / count as f64;
     let best = (0..=count).min_by(|i, j| square(at(*i)).total_cmp(&square(at(*j))));
-    let best = best.unwrap();
+    let best = best.expect("there are points");
     let (mut low, mut high) = (at(best.saturating_sub(1)), at(best + 1));
     for _ in 0..200 {
         let third = (high - low) / 3.0;

@@ -198,8 +198,11 @@ impl<const D: usize> Guide<D> {
     ///
     /// [`HapticsError::Number`] if an option is outside its range or a coordinate is not
     /// finite.
-    pub fn to_point(point: Point<D>, options: GuideOptions) -> Result<Self, HapticsError> {
-        Self::of(Kind::Target(Target::Point(finite("point", point)?)), options)
+    pub fn to_point(
+        point: impl Into<Point<D>>,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        Self::of(Kind::Target(Target::Point(finite("point", point.into())?)), options)
     }
 
     /// A guide towards the line through the point `through` [m] along `direction`, a vector of
@@ -209,12 +212,12 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `direction` is zero.
     pub fn along_line(
-        through: Point<D>,
-        direction: Vector<f64, D>,
+        through: impl Into<Point<D>>,
+        direction: impl Into<Vector<f64, D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        let through = finite("through", through)?;
-        let direction = unit("direction", direction)?;
+        let through = finite("through", through.into())?;
+        let direction = unit("direction", direction.into())?;
         Self::of(Kind::Target(Target::Line { through, direction }), options)
     }
 
@@ -224,11 +227,11 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if the ends coincide.
     pub fn along_segment(
-        from: Point<D>,
-        to: Point<D>,
+        from: impl Into<Point<D>>,
+        to: impl Into<Point<D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        Self::along_curve(Curve::polyline(&[from, to])?, options)
+        Self::along_curve(Curve::polyline(&[from.into(), to.into()])?, options)
     }
 
     /// A guide towards the plane (in 2D the line) through `through` [m] with the `normal`, a
@@ -238,11 +241,12 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `normal` is zero.
     pub fn on_plane(
-        through: Point<D>,
-        normal: Vector<f64, D>,
+        through: impl Into<Point<D>>,
+        normal: impl Into<Vector<f64, D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        let (through, normal) = (finite("through", through)?, unit("normal", normal)?);
+        let through = finite("through", through.into())?;
+        let normal = unit("normal", normal.into())?;
         Self::of(Kind::Target(Target::Plane { through, normal }), options)
     }
 
@@ -283,12 +287,12 @@ impl<const D: usize> Guide<D> {
     /// # }
     /// ```
     pub fn well(
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         reach: f64,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         let options = options.checked()?;
-        Self::of(Kind::Well(well::Well::new(centre, reach, &options)?), options)
+        Self::of(Kind::Well(well::Well::new(centre.into(), reach, &options)?), options)
     }
 
     /// A guide down the field of a shape within a band of distances: see [`Slope`].

@@ -15,7 +15,7 @@ use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
-use palpate_safety::shortening;
+use palpate_safety::internal::shortening;
 
 /// The response of the pushing bodies to the coupling.
 struct BodyResponse<const D: usize> {

@@ -196,7 +196,7 @@ impl<const D: usize> Query<D> {
     pub fn contact_ball(
         &mut self,
         shape: &Shape<D>,
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         radius: f64,
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
         let limits = self.limits([size(shape), Some(2.0 * radius)]);
@@ -212,7 +212,7 @@ impl<const D: usize> Query<D> {
     pub fn touches_ball(
         &mut self,
         shape: &Shape<D>,
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         radius: f64,
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
         let limits = self.limits([size(shape), Some(2.0 * radius)]);

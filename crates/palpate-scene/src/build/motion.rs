@@ -34,8 +34,7 @@ impl<const D: usize> BuiltMotion<D> {
     #[must_use]
     pub fn pose(&self, time: f64) -> Option<Pose<D>> {
         let passed = (time - self.start) / self.duration;
-        // Written so that NaN counts as before the motion.
-        if !(passed >= 0.0) {
+        if passed.is_nan() || passed < 0.0 {
             return None;
         }
         Some(self.screw.pose(match self.repeat {
