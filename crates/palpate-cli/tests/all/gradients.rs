@@ -143,6 +143,6 @@ fn what_cannot_be_compared_is_refused_in_a_sentence() {
     );
     assert_refused(
         &["gradients", "scenes/s1.json", "--at", "0,1"],
-        "a point needs 3 numbers joined by commas, got \"0,1\"",
+        "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got 2 in \"0,1\"",
     );
 }
