@@ -58,7 +58,7 @@ pub fn smallest_ball<const N: usize, const D: usize>(
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_mesh::{circumscribed_ball, smallest_ball};
+/// use palpate_mesh::internal::{circumscribed_ball, smallest_ball};
 ///
 /// // 1 m long and 1 cm high: R = abc/4A.
 /// let sliver = [Vector([0.0, 0.0]), Vector([1.0, 0.0]), Vector([0.5, 0.01])];

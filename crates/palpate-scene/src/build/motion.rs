@@ -164,7 +164,9 @@ where
     };
     let Some(bodies) = bodies else { return Err(Problems::told()) };
     let from = from.unwrap_or(bodies[body].world_from_body);
-    let screw = Screw::new(from, to, motion.turns).map_err(Problem::of_shape)?;
+    // Both poses are checked: what is refused are the turns.
+    let screw = Screw::new(from, to, motion.turns)
+        .map_err(|error| Problem::of_shape(error).under("turns"))?;
     let Motion { start, duration, repeat, .. } = *motion;
     Ok(BuiltMotion { body, screw, start, duration, repeat })
 }
