@@ -87,9 +87,9 @@ impl<S: Scalar, const D: usize> Vector<S, D> {
     #[inline(always)]
     pub fn dot(self, other: Self) -> S {
         let mut sum = self.0[0] * other.0[0];
-        for i in 1..D {
+        unrolled!(i < D => if i > 0 {
             sum = sum + self.0[i] * other.0[i];
-        }
+        });
         sum
     }
 

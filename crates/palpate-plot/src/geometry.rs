@@ -152,14 +152,19 @@ pub(crate) fn simplify(line: &[Point], tolerance: f64) -> Vec<Point> {
 
 /// Distance of `p` from the segment `a b`.
 pub(crate) fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+    distance(p, nearest_on_segment(p, a, b))
+}
+
+/// The point of the segment `a b` that is nearest to `p`.
+pub(crate) fn nearest_on_segment(p: Point, a: Point, b: Point) -> Point {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length_squared = along[0] * along[0] + along[1] * along[1];
     if length_squared == 0.0 {
-        return distance(p, a);
+        return a;
     }
     let t = ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / length_squared;
     let t = t.clamp(0.0, 1.0);
-    distance(p, [a[0] + t * along[0], a[1] + t * along[1]])
+    [a[0] + t * along[0], a[1] + t * along[1]]
 }
 
 #[cfg(test)]

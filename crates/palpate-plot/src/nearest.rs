@@ -3,7 +3,7 @@
 
 //! Distances from many points to many short segments.
 
-use crate::geometry::{Point, distance_to_segment};
+use crate::geometry::{Point, distance, nearest_on_segment};
 
 /// Buckets along the longer side: few segments in each, and few empty ones to cross.
 const BUCKETS: f64 = 24.0;
@@ -55,10 +55,13 @@ impl Nearest {
     /// Searches rings of buckets around that of `p` until no farther ring can hold a nearer
     /// segment.
     pub(crate) fn distance(&self, p: Point, at_least: f64) -> f64 {
-        let mut best = f64::INFINITY;
         if self.segments.is_empty() {
-            return best;
+            return f64::INFINITY;
         }
+        // The nearest point so far, and the square of its distance in edges: a square of a
+        // length in metres could underflow.
+        let (mut nearest, mut square) = ([f64::INFINITY; 2], f64::INFINITY);
+        let per_edge = 1.0 / self.edge;
         let [x, y] = self.bucket(p);
         // The nearest and the farthest ring that meet the buckets, also from outside them.
         let gap = |i: i64, count: i64| (-i).max(i - count + 1).max(0);
@@ -68,7 +71,7 @@ impl Nearest {
         // Ring k reaches (k + 1)·√2 edges far; one ring more for rounding.
         let reached = (at_least / (std::f64::consts::SQRT_2 * self.edge)) as i64 - 2;
         for ring in first.max(reached)..=last {
-            if best <= (ring - 1) as f64 * self.edge {
+            if square.sqrt() <= (ring - 1) as f64 {
                 break;
             }
             for offset in -ring..=ring {
@@ -80,12 +83,16 @@ impl Nearest {
                 ];
                 for bucket in sides.into_iter().filter_map(|at| self.index(at)) {
                     for &[a, b] in self.buckets[bucket].iter().map(|&i| &self.segments[i]) {
-                        best = best.min(distance_to_segment(p, a, b));
+                        let q = nearest_on_segment(p, a, b);
+                        let [dx, dy] = [0, 1].map(|i| (p[i] - q[i]) * per_edge);
+                        if dx * dx + dy * dy < square {
+                            (nearest, square) = (q, dx * dx + dy * dy);
+                        }
                     }
                 }
             }
         }
-        best
+        distance(p, nearest)
     }
 
     /// The column and row of the bucket of `p`, also outside all buckets.
@@ -103,6 +110,7 @@ impl Nearest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::distance_to_segment;
 
     #[test]
     fn distances_are_those_of_a_search_of_all() {

@@ -37,11 +37,6 @@ fn main() -> Result<(), Error> {
         writeln!(csv, "{},{x},{y},{z},{}", row.time_s, row.force.norm())?;
     }
     ended.report.clone().unless_failed()?;
-    println!(
-        "{} ticks, at most {:.2} N: {}",
-        ended.report.ticks,
-        ended.report.largest_force,
-        path.display()
-    );
+    println!("{}: {}", ended.report, path.display());
     Ok(())
 }

@@ -30,6 +30,16 @@ use palpate_scene::SceneCause;
 /// assert_eq!((error.kind().name(), error.rule()), ("shape", Some("positive")));
 /// ```
 ///
+/// ```
+/// use palpate::Error;
+/// use palpate::devices::Hand;
+///
+/// let hand = Hand::resting([0.0, 0.1]).and_then(|hand| hand.with_mass(-0.1));
+/// let error = Error::from(hand.unwrap_err());
+/// assert_eq!((error.kind().name(), error.parameter()), ("device", Some("mass")));
+/// assert_eq!((error.value(), error.unit()), (Some(-0.1), Some("kg")));
+/// ```
+///
 /// What a scene file holds is refused with the same data, and its place:
 ///
 /// ```

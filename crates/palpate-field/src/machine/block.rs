@@ -8,7 +8,7 @@ use std::fmt;
 use super::lanes::{Lane, LaneArray};
 use crate::pose::Rotation;
 use crate::scalar::Model;
-use crate::vector::{Point, Vector, array};
+use crate::vector::{Point, Vector, array, unrolled};
 
 /// The most points that a block holds.
 pub const BLOCK: usize = 64;
@@ -248,9 +248,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         for i in 0..lanes {
             let point = point(i.min(count.max(1) - 1));
             are_boxes = are_boxes && S::is_box(&point.0);
-            for k in 0..D {
-                self.columns[k].lanes.write(i, point.0[k]);
-            }
+            unrolled!(k < D => self.columns[k].lanes.write(i, point.0[k]));
         }
         self.boxes = if are_boxes { Boxes::Straight } else { Boxes::No };
         for column in &mut self.columns {
@@ -268,9 +266,7 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
         if self.boxes != Boxes::Straight || !S::is_box(&point.0) {
             self.boxes = Boxes::No;
         }
-        for k in 0..D {
-            self.columns[k].set(i, point.0[k]);
-        }
+        unrolled!(k < D => self.columns[k].set(i, point.0[k]));
     }
 
     /// The shape that all points are known to have.
@@ -343,9 +339,7 @@ impl<S: Lane, const D: usize, const W: usize> RowsMut for Block<S, D, W> {
 
     #[inline(always)]
     fn write(&mut self, i: usize, point: Vector<S, D>) {
-        for k in 0..D {
-            self.columns[k].lanes.write(i, point.0[k]);
-        }
+        unrolled!(k < D => self.columns[k].lanes.write(i, point.0[k]));
     }
 
     #[inline(always)]

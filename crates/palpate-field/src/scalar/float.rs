@@ -5,6 +5,7 @@
 
 use super::trigonometry;
 use super::{Blend, Scalar};
+use crate::vector::unrolled;
 
 /// A floating-point number: [`f32`] or [`f64`].
 pub trait Float:
@@ -53,9 +54,9 @@ macro_rules! float {
                 $single: &[f32; N],
             ) -> Self {
                 let mut sum = x[0] * $stored[0];
-                for i in 1..N {
+                unrolled!(i < N => if i > 0 {
                     sum += x[i] * $stored[i];
-                }
+                });
                 sum
             }
 
@@ -104,9 +105,9 @@ macro_rules! float {
             #[inline(always)]
             fn norm<const N: usize>(x: [Self; N]) -> Self {
                 let mut sum = x[0] * x[0];
-                for i in 1..N {
+                unrolled!(i < N => if i > 0 {
                     sum += x[i] * x[i];
-                }
+                });
                 sum.sqrt()
             }
 
@@ -114,11 +115,11 @@ macro_rules! float {
             fn orthant<const N: usize>(q: [Self; N]) -> Self {
                 let mut largest = q[0];
                 let mut sum = 0.0;
-                for i in 0..N {
+                unrolled!(i < N => {
                     largest = Scalar::max(largest, q[i]);
                     let positive = Scalar::max(q[i], 0.0);
                     sum += positive * positive;
-                }
+                });
                 sum.sqrt() + Scalar::min(largest, 0.0)
             }
 

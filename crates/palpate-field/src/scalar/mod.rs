@@ -33,7 +33,7 @@ pub(crate) use model::TurnedBoxes;
 pub use model::{AffineModel, Model};
 pub use recorded::Recorded;
 
-use crate::vector::array;
+use crate::vector::{array, unrolled};
 
 /// A number that the formulas of this crate can be evaluated with.
 ///
@@ -66,9 +66,9 @@ pub trait Scalar:
     #[inline(always)]
     fn weighted_sum<const N: usize>(x: [Self; N], weights: &[f64; N]) -> Self {
         let mut sum = x[0].scale(weights[0]);
-        for i in 1..N {
+        unrolled!(i < N => if i > 0 {
             sum = sum + x[i].scale(weights[i]);
-        }
+        });
         sum
     }
 

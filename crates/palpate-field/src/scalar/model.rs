@@ -429,14 +429,14 @@ impl<const N: usize> Scalar for AffineModel<N> {
             (term, weight * (f64::abs(x[i].value) + x[i].slope()))
         };
         let (mut sum, mut size) = term(0);
-        for i in 1..M {
+        unrolled!(i < M => if i > 0 {
             let (term, its_size) = term(i);
             sum.value += term.value;
             unrolled!(k < N => sum.gradient[k] += term.gradient[k]);
             sum.lower += term.lower;
             sum.upper += term.upper;
             size += its_size;
-        }
+        });
         sum.widened((M as f64 + 2.0) * UNIT * (size + (sum.lower + sum.upper)))
     }
 
