@@ -91,7 +91,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Eval(options) => eval::run(options, interrupt),
         Command::Contact(options) => contact::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
-        Command::Plot(options) => plot::run(options),
+        Command::Plot(options) => plot::run(options, interrupt),
         Command::Gallery(options) => gallery::run(options, interrupt),
         Command::Check(options) => check::run(options),
         Command::Mass(options) => mass::run(options, interrupt),

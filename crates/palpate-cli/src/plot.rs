@@ -6,30 +6,34 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
-use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
+use palpate::plot::{Figure, Isolines, Measured, PlotError, Sampling, Slice, View};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::{Map, PlotOptions};
 use crate::contact::Touched;
 use crate::input::{self, promise_in_words};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
-use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::picture::{self, Colours, Dimensions, Drawable, Picture};
 
-pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
     let picture = Picture::new(&mut files, &output(options))?;
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
-        AnyScene::Planar(scene) => Plot::of(options, &picture, scene)?.draw(&Slice::planar()),
+        AnyScene::Planar(scene) => {
+            Plot::of(options, &picture, scene)?.draw(&Slice::planar(), interrupt)
+        }
         AnyScene::Spatial(scene) => {
             let plot = Plot::of(options, &picture, scene)?;
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
-            plot.draw(&plane(options, through)?)
+            plot.draw(&plane(options, through)?, interrupt)
         }
     }
 }
@@ -100,16 +104,14 @@ where
     }
 
     /// Draws the scene on `plane`, and reports the picture.
-    fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
+    fn draw(&self, plane: &Slice, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         let Self { options, scene, window, .. } = self;
         let view = Dimensions::view(plane, &window.bounds, window.margin);
         let view = view.map_err(Failure::input)?;
-        let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
-            .map_err(Failure::input)?;
-        let isolines = match options.step {
-            Some(step) => isolines.with_step(step).map_err(Failure::input)?,
-            None => picture::mapped(&scene.whole, plane, isolines, options.map)
-                .map_err(Failure::input)?,
+        let isolines = self.isolines(plane, &view, interrupt).map_err(Failure::input)?;
+        let Some(isolines) = isolines else {
+            output::remark("interrupted: there is no picture");
+            return Ok(Outcome::Interrupted);
         };
         let drawn = Drawn {
             step: isolines.step(),
@@ -133,6 +135,31 @@ where
         Ok(Outcome::Yes)
     }
 
+    /// The isolines or what is in their place; `None` if interrupted.
+    fn isolines(
+        &self,
+        plane: &Slice,
+        view: &View,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Isolines>, PlotError> {
+        let Self { options, scene, .. } = self;
+        let isolines = picture::scene(scene, plane, view, Sampling::default())?;
+        if let Some(step) = options.step {
+            return isolines.with_step(step).map(Some);
+        }
+        let grid = Sampling::new(<Dimensions as Drawable<D>>::COMPARED)?;
+        let bar = bar(isolines.compared_places(grid).len());
+        interrupt.heed();
+        let watch = || {
+            bar.inc(1);
+            !interrupt.is_asked()
+        };
+        let colours = Colours { map: options.map, grid, watch: &watch };
+        let mapped = picture::mapped(&scene.whole, plane, isolines, colours);
+        bar.finish_and_clear();
+        mapped
+    }
+
     fn described(&self, drawn: &Drawn, plane: &Slice) -> Value {
         let mut answer = json!({
             "output": self.picture.path(),
@@ -145,11 +172,12 @@ where
         }
         let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
         if let Some(measured) = &drawn.measured {
-            answer[gauge::<D>()] = json!({
+            answer["value_over_distance"] = json!({
                 "smallest": measured.smallest,
                 "smallest_at_m": point(measured.smallest_at),
                 "largest": measured.largest,
                 "largest_at_m": point(measured.largest_at),
+                "open_share": measured.open,
             });
         }
         if let Some(touched) = &self.touched {
@@ -164,9 +192,16 @@ where
         match (self.options.map, &drawn.measured) {
             (Map::Distance, _) => format!("isolines every {} m", drawn.step),
             (Map::Gradient, _) => "directions of the gradient".to_owned(),
-            (Map::Promise, None) => "promises".to_owned(),
-            (Map::Promise, Some(Measured { smallest, largest, .. })) => {
-                format!("promises; {} from {smallest:.3} to {largest:.3}", gauge::<D>())
+            (Map::Promise, None) => "promises; value over distance is open".to_owned(),
+            (Map::Promise, Some(Measured { smallest, largest, open, .. })) => {
+                let open = if *open > 0.0 {
+                    format!(", open in {:.1} % of the picture", 100.0 * open)
+                } else {
+                    String::new()
+                };
+                format!(
+                    "promises; value over distance from {smallest:.3} to {largest:.3}{open}"
+                )
             }
         }
     }
@@ -178,19 +213,16 @@ struct Drawn {
     step: f64,
     /// The smallest and the largest value [m].
     range: (f64, f64),
-    /// The extremes of the number that is compared with the promise.
+    /// The extremes of the value over the true distance.
     measured: Option<Measured>,
 }
 
-/// The JSON key of the number that is compared with the promise.
-fn gauge<const D: usize>() -> &'static str
-where
-    Dimensions: Drawable<D>,
-{
-    match <Dimensions as Drawable<D>>::GAUGE {
-        Gauge::Distance => "value_over_distance",
-        Gauge::Steepness => "steepness",
-    }
+/// The progress of comparisons, which is hidden unless standard error is a terminal.
+fn bar(places: usize) -> ProgressBar {
+    ProgressBar::new(places as u64).with_style(
+        ProgressStyle::with_template("true distances {bar:40} {percent} %, {eta} left")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    )
 }
 
 fn output(options: &PlotOptions) -> PathBuf {

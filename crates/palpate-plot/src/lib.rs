@@ -40,6 +40,8 @@
 //! ```
 
 mod axis;
+mod body;
+mod body_picture;
 mod chain;
 mod chart;
 mod contours;
@@ -49,10 +51,12 @@ mod figure;
 mod follow;
 mod frame;
 mod geometry;
+mod hatch;
 mod isolines;
 mod labels;
 mod legend;
 mod levels;
+mod names;
 mod nearest;
 mod numbers;
 mod outline;
@@ -65,7 +69,6 @@ mod sampling;
 mod sheet;
 mod slice;
 mod slope;
-mod surface;
 mod svg;
 mod text;
 mod trust;
@@ -73,6 +76,7 @@ mod view;
 mod views;
 mod wheel;
 
+pub use body::Body;
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
 pub use figure::Figure;
@@ -84,5 +88,5 @@ pub use palette::Color;
 pub use sampling::Sampling;
 pub use slice::Slice;
 pub use slope::Slope;
-pub use trust::{Gauge, Measured, Promised};
+pub use trust::{Comparison, Measured, Promised};
 pub use view::View;

@@ -57,10 +57,29 @@ impl Color {
         [Self::GREEN, Self::PURPLE, Self::VERMILION, Self::NAVY, Self::INK][index % 5]
     }
 
+    /// The colour of body number `number` of a scene; colours repeat after twelve.
+    pub(crate) fn of_body(number: usize) -> Self {
+        BODIES[number % BODIES.len()]
+    }
+
     /// `self` for `t` = 0, `other` for `t` = 1, with perceptually even steps between.
     pub(crate) fn mix(self, other: Self, t: f64) -> Self {
         let (a, b) = (self.to_oklab(), other.to_oklab());
         Self::from_oklab([0, 1, 2].map(|i| a[i] + t * (b[i] - a[i])))
+    }
+
+    /// `self` below a layer of `other` with an `opacity` from 0 (invisible) to 1, as renderers
+    /// compose them.
+    pub(crate) fn below(self, other: Self, opacity: f64) -> Self {
+        let part = |below: u8, above: u8| {
+            let (below, above) = (f64::from(below), f64::from(above));
+            (below + opacity * (above - below)).round() as u8
+        };
+        Self::rgb(
+            part(self.red, other.red),
+            part(self.green, other.green),
+            part(self.blue, other.blue),
+        )
     }
 
     /// Perceived lightness, from 0 (black) to 1 (white).
@@ -104,10 +123,28 @@ impl Color {
     }
 }
 
+/// The colours of bodies, each far from the others, from ink and from the bands outside.
+const BODIES: [Color; 12] = [
+    Color::rgb(0x1B, 0x5F, 0xB0), // blue
+    Color::rgb(0xA8, 0x2A, 0x1A), // brick
+    Color::rgb(0x1A, 0x7D, 0x3C), // green
+    Color::rgb(0x74, 0x3A, 0xA6), // violet
+    Color::rgb(0x00, 0xA0, 0xA8), // teal
+    Color::rgb(0xD6, 0x3C, 0x8C), // pink
+    Color::rgb(0x8C, 0x80, 0x00), // olive
+    Color::rgb(0x14, 0x14, 0x6E), // navy
+    Color::rgb(0x6B, 0x44, 0x20), // brown
+    Color::rgb(0x5C, 0xB8, 0xF0), // sky
+    Color::rgb(0x83, 0x88, 0x8F), // grey
+    Color::rgb(0x6A, 0x0A, 0x48), // plum
+];
+
 /// The side of the surface a band lies on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
     Inside,
+    /// The inside, where bodies tint it in colours of their own.
+    InsideBodies,
     Outside,
 }
 
@@ -116,6 +153,7 @@ impl Side {
     const fn ends(self) -> (Color, Color) {
         match self {
             Self::Inside => (Color::rgb(0xB4, 0xD3, 0xEC), Color::rgb(0x5F, 0x9B, 0xCE)),
+            Self::InsideBodies => (Color::rgb(0xF4, 0xF4, 0xF4), Color::rgb(0xB6, 0xB8, 0xBB)),
             Self::Outside => (Color::rgb(0xF9, 0xD2, 0xA2), Color::rgb(0xFF, 0xF9, 0xF0)),
         }
     }
@@ -124,6 +162,7 @@ impl Side {
     pub(crate) const fn line(self) -> Color {
         match self {
             Self::Inside => Color::rgb(0x2F, 0x69, 0x9E),
+            Self::InsideBodies => Color::rgb(0x6A, 0x6E, 0x74),
             Self::Outside => Color::rgb(0xC0, 0x86, 0x45),
         }
     }
@@ -132,6 +171,7 @@ impl Side {
     pub(crate) const fn label(self) -> Color {
         match self {
             Self::Inside => Color::rgb(0x0C, 0x2C, 0x4C),
+            Self::InsideBodies => Color::rgb(0x2C, 0x2F, 0x34),
             Self::Outside => Color::rgb(0x5E, 0x36, 0x06),
         }
     }
@@ -160,6 +200,22 @@ mod tests {
         for color in [Color::GREEN, Color::WHITE, Color::INK, Color::rgb(255, 0, 7)] {
             assert_eq!(Color::from_oklab(color.to_oklab()), color);
         }
+    }
+
+    /// The just noticeable difference is about 0.02.
+    #[test]
+    fn bodies_have_colours_of_their_own() {
+        let apart = |a: Color, b: Color| {
+            let (a, b) = (a.to_oklab(), b.to_oklab());
+            (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+        };
+        for (number, &color) in BODIES.iter().enumerate() {
+            assert!(apart(color, Color::INK) > 0.13, "{number}");
+            for &other in &BODIES[..number] {
+                assert!(apart(color, other) > 0.1, "{number}: {}", apart(color, other));
+            }
+        }
+        assert_eq!(Color::of_body(12), Color::of_body(0));
     }
 
     #[test]

@@ -6,8 +6,9 @@
 use palpate::field::scalar::Model;
 use palpate::field::{BLOCK, Block, Column, Gradients, Rotation, Shape, Vector};
 use palpate::plot::{
-    BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
+    Body, BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
 };
+use palpate::scene::{BuiltBody, BuiltScene};
 
 use super::{Dimensions, Drawable};
 
@@ -87,6 +88,24 @@ where
         models: Column::zero(),
     };
     Outline::follow(view, sampling, flat)
+}
+
+/// The isolines of a scene on `plane`, with its bodies.
+pub(crate) fn scene<const D: usize>(
+    scene: &BuiltScene<D>,
+    plane: &Slice,
+    view: &View,
+    sampling: Sampling,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    let body = |body: &BuiltBody<D>| {
+        let outline = outline(&body.shape, plane, view, sampling)?;
+        Ok(Body::new(&body.name, outline))
+    };
+    let bodies = scene.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+    Ok(isolines(&scene.whole, plane, view, sampling)?.with_bodies(bodies))
 }
 
 /// A shape on a plane.
