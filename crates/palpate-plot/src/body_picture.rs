@@ -61,13 +61,11 @@ struct Seen<'a> {
 }
 
 impl<'a> Bodies<'a> {
-    /// The bodies of which `frame` shows some surface. One that is alone in its scene is drawn in
-    /// ink.
-    pub(crate) fn new(frame: &Frame, bodies: &'a [Body]) -> Self {
-        let are_coloured = bodies.len() > 1;
+    /// The bodies of which `frame` shows some surface, in colours of their own or in ink.
+    pub(crate) fn new(frame: &Frame, bodies: &'a [Body], are_coloured: bool) -> Self {
         let seen = bodies.iter().enumerate().filter_map(|(number, body)| {
             let bounds = frame.rect(&body.outline.bounds(&frame.window())?);
-            let color = if are_coloured { Color::of_body(number) } else { Color::INK };
+            let color = if are_coloured { Color::numbered(number) } else { Color::INK };
             let pixels = |lines: &[Vec<Point>]| -> Vec<_> {
                 lines.iter().map(|line| frame.pixels(line)).collect()
             };
@@ -173,29 +171,38 @@ impl<'a> Bodies<'a> {
 
     /// The legend: an entry for each colour. Empty if no body is in view.
     pub(crate) fn entries(&self) -> Vec<Entry> {
-        let mut entries: Vec<Entry> = Vec::new();
-        let mut colors: Vec<Color> = Vec::new();
-        for seen in &self.bodies {
-            let color = seen.stroke.color;
-            if colors.contains(&color) {
-                continue;
+        let mut entries = match &self.bodies[..] {
+            [] => Vec::new(),
+            seen if self.are_coloured => coloured_entries(seen),
+            [seen] => {
+                let text = format!("surface of {}", seen.body.in_words());
+                vec![Entry::new(Key::Line(seen.stroke.clone()), text)]
             }
-            colors.push(color);
-            let alike = self.bodies.iter().filter(|other| other.stroke.color == color);
-            let names: Vec<_> = alike.map(|other| other.body.in_words()).collect();
-            entries.push(if self.are_coloured {
-                let key = Key::Body(seen.stroke.clone(), Color::WHITE.below(color, TINT));
-                Entry::new(key, listed(&names))
-            } else {
-                let text = format!("surface of {}", listed(&names));
-                Entry::new(Key::Line(seen.stroke.clone()), text)
-            });
-        }
+            [seen, ..] => {
+                vec![Entry::new(Key::Line(seen.stroke.clone()), "surfaces of the bodies")]
+            }
+        };
         if !self.shared.verbs.is_empty() {
             entries.push(Entry::new(Key::Shared, "in several bodies"));
         }
         entries
     }
+}
+
+/// An entry for each colour.
+fn coloured_entries(bodies: &[Seen<'_>]) -> Vec<Entry> {
+    let mut colors: Vec<Color> = Vec::new();
+    let mut entries = Vec::new();
+    for Seen { stroke, .. } in bodies {
+        if !colors.contains(&stroke.color) {
+            colors.push(stroke.color);
+            let alike = bodies.iter().filter(|other| other.stroke.color == stroke.color);
+            let names: Vec<_> = alike.map(|other| other.body.in_words()).collect();
+            let key = Key::Body(stroke.clone(), Color::WHITE.below(stroke.color, TINT));
+            entries.push(Entry::new(key, listed(&names)));
+        }
+    }
+    entries
 }
 
 /// Draws names over what is below.

@@ -63,6 +63,7 @@ mod outline;
 mod overlay;
 mod overlay_picture;
 mod palette;
+mod panels;
 mod picture;
 mod png;
 mod sampling;

@@ -57,9 +57,18 @@ impl Color {
         [Self::GREEN, Self::PURPLE, Self::VERMILION, Self::NAVY, Self::INK][index % 5]
     }
 
-    /// The colour of body number `number` of a scene; colours repeat after twelve.
-    pub(crate) fn of_body(number: usize) -> Self {
-        BODIES[number % BODIES.len()]
+    /// The colour of body or contact point number `number`: twelve that are told apart, which
+    /// repeat.
+    ///
+    /// ```
+    /// use palpate_plot::Color;
+    ///
+    /// assert_ne!(Color::numbered(3), Color::numbered(9));
+    /// assert_eq!(Color::numbered(12), Color::numbered(0));
+    /// ```
+    #[must_use]
+    pub fn numbered(number: usize) -> Self {
+        NUMBERED[number % NUMBERED.len()]
     }
 
     /// `self` for `t` = 0, `other` for `t` = 1, with perceptually even steps between.
@@ -123,8 +132,8 @@ impl Color {
     }
 }
 
-/// The colours of bodies, each far from the others, from ink and from the bands outside.
-const BODIES: [Color; 12] = [
+/// Colours far from each other, from ink and from the bands outside.
+const NUMBERED: [Color; 12] = [
     Color::rgb(0x1B, 0x5F, 0xB0), // blue
     Color::rgb(0xA8, 0x2A, 0x1A), // brick
     Color::rgb(0x1A, 0x7D, 0x3C), // green
@@ -204,18 +213,17 @@ mod tests {
 
     /// The just noticeable difference is about 0.02.
     #[test]
-    fn bodies_have_colours_of_their_own() {
+    fn numbered_colours_are_told_apart() {
         let apart = |a: Color, b: Color| {
             let (a, b) = (a.to_oklab(), b.to_oklab());
             (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
         };
-        for (number, &color) in BODIES.iter().enumerate() {
+        for (number, &color) in NUMBERED.iter().enumerate() {
             assert!(apart(color, Color::INK) > 0.13, "{number}");
-            for &other in &BODIES[..number] {
+            for &other in &NUMBERED[..number] {
                 assert!(apart(color, other) > 0.1, "{number}: {}", apart(color, other));
             }
         }
-        assert_eq!(Color::of_body(12), Color::of_body(0));
     }
 
     #[test]

@@ -71,7 +71,8 @@ impl Isolines {
         let plot = self.plot(area, gutter, top);
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
-        let bodies = Bodies::new(&frame, &self.bodies);
+        let bodies =
+            Bodies::new(&frame, &self.bodies, self.bodies.len() > 1 && !self.is_in_ink);
         let picture = self.picture(&levels, frame, bodies.inside());
         let overlays = Overlays::new(frame, &self.overlays);
         let lines = picture.lines();

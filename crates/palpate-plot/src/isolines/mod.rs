@@ -54,6 +54,7 @@ pub struct Isolines {
     samples: Samples,
     outline: Outline,
     bodies: Vec<Body>,
+    is_in_ink: bool,
     levels: Levels,
     sampling: Sampling,
     ground: Ground,
@@ -96,6 +97,7 @@ impl Isolines {
             levels: Levels::choose(low, high, view.width().min(view.height())),
             outline: Outline::of_samples(&samples),
             bodies: Vec::new(),
+            is_in_ink: false,
             samples,
             sampling,
             ground: Ground::Distance,
@@ -121,6 +123,12 @@ impl Isolines {
     #[must_use]
     pub fn with_bodies(self, bodies: impl IntoIterator<Item = Body>) -> Self {
         Self { bodies: bodies.into_iter().collect(), ..self }
+    }
+
+    /// With all bodies in ink, for pictures in which colours tell something else apart.
+    #[must_use]
+    pub fn in_ink(self) -> Self {
+        Self { is_in_ink: true, ..self }
     }
 
     /// With isolines at multiples of `step` \[m\] instead of a round step that gives about ten.
