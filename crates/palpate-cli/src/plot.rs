@@ -143,7 +143,7 @@ where
         interrupt: &Interrupt,
     ) -> Result<Option<Isolines>, PlotError> {
         let Self { options, scene, .. } = self;
-        let isolines = picture::scene(scene, plane, view, Sampling::default())?;
+        let isolines = picture::scene(scene, plane, view)?;
         if let Some(step) = options.step {
             return isolines.with_step(step).map(Some);
         }

@@ -95,17 +95,31 @@ pub(crate) fn scene<const D: usize>(
     scene: &BuiltScene<D>,
     plane: &Slice,
     view: &View,
-    sampling: Sampling,
 ) -> Result<Isolines, PlotError>
 where
     Dimensions: Drawable<D>,
 {
+    noted(scene, plane, view, |_| String::new())
+}
+
+/// The isolines of a scene on `plane`, with its bodies and a `note` below the name of each.
+pub(crate) fn noted<const D: usize>(
+    scene: &BuiltScene<D>,
+    plane: &Slice,
+    view: &View,
+    note: impl Fn(&BuiltBody<D>) -> String,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    let sampling = Sampling::default();
     let body = |body: &BuiltBody<D>| {
         let outline = outline(&body.shape, plane, view, sampling)?;
-        Ok(Body::new(&body.name, outline))
+        Ok(Body::new(&body.name, outline).with_note(note(body)))
     };
     let bodies = scene.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
-    Ok(isolines(&scene.whole, plane, view, sampling)?.with_bodies(bodies))
+    let isolines = Isolines::sample(plane, view, sampling, values(&scene.whole, plane))?;
+    Ok(isolines.with_bodies(bodies))
 }
 
 /// A shape on a plane.

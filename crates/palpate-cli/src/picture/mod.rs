@@ -18,7 +18,7 @@ use crate::outcome::Failure;
 use crate::output::{Destination, Files};
 
 use flat::slopes;
-pub(crate) use flat::{isolines, scene};
+pub(crate) use flat::{isolines, noted, outline, scene};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
