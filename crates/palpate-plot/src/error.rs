@@ -87,6 +87,16 @@ pub enum PlotError {
         /// The places.
         expected: usize,
     },
+    /// The ends of a scale of decades are no interval of positive numbers.
+    #[error(
+        "the ends of a scale of decades must be positive, the lower one first, got {low} and {high}"
+    )]
+    Scale {
+        /// The lower end, in the unit of the scale.
+        low: f64,
+        /// The upper end.
+        high: f64,
+    },
     /// The distance between isolines is not a positive number.
     #[error("the step between isolines must be positive, got {step} m")]
     Step {

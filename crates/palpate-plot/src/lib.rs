@@ -8,6 +8,8 @@
 //! time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene and [`Chart`]s
 //! and writes them with [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
 //!
+//! A [`Layer`] is a legend with points and arrows for a picture of pixels that was made elsewhere.
+//!
 //! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
 //! [`Slice::project`] takes points of space there.
 //!
@@ -54,8 +56,10 @@ mod geometry;
 mod hatch;
 mod isolines;
 mod labels;
+mod layer;
 mod legend;
 mod levels;
+mod measured;
 mod names;
 mod nearest;
 mod numbers;
@@ -67,12 +71,14 @@ mod panels;
 mod picture;
 mod png;
 mod sampling;
+mod scale;
 mod sheet;
 mod slice;
 mod slope;
 mod svg;
 mod text;
 mod trust;
+mod values;
 mod view;
 mod views;
 mod wheel;
@@ -83,11 +89,14 @@ pub use error::PlotError;
 pub use figure::Figure;
 pub use follow::{BoundedField, Cell};
 pub use isolines::Isolines;
+pub use layer::Layer;
+pub use measured::Measured;
 pub use outline::Outline;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;
+pub use scale::Scale;
 pub use slice::Slice;
 pub use slope::Slope;
-pub use trust::{Comparison, Measured, Promised};
+pub use trust::{Comparison, Promised};
 pub use view::View;

@@ -70,6 +70,11 @@ impl Pixels {
         Self { min: view.min(), size: [0, 1].map(|i| sides[i] / count[i] as f64), count }
     }
 
+    /// How many there are.
+    pub(crate) fn number(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+
     /// The pixels in a row.
     pub(crate) fn width(&self) -> usize {
         self.count[0]
@@ -95,19 +100,33 @@ impl Pixels {
     /// for the first gradient without a finite length.
     pub(crate) fn paint(
         &self,
-        mut field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
         color: impl Fn(&Slope) -> Color,
     ) -> Result<Image, PlotError> {
-        let mut slopes = vec![Slope::default(); self.width()];
-        let mut pixels = Vec::new();
+        let mut pixels = Vec::with_capacity(self.number());
+        self.visit(field, |at, slope| {
+            slope.check(at)?;
+            pixels.push(color(slope));
+            Ok(())
+        })?;
+        Ok(Image { width: self.width(), pixels })
+    }
+
+    /// Evaluates `field` at the centres of the pixels, a row at a time, and shows each place with
+    /// what was found to `see`, from the top left corner, until that fails.
+    pub(crate) fn visit<T: Clone + Default>(
+        &self,
+        mut field: impl FnMut(&[[f64; 2]], &mut [T]),
+        mut see: impl FnMut(Point, &T) -> Result<(), PlotError>,
+    ) -> Result<(), PlotError> {
+        let mut found = vec![T::default(); self.width()];
         for points in self.rows() {
-            field(&points, &mut slopes);
-            for (&at, slope) in points.iter().zip(&slopes) {
-                slope.check(at)?;
-                pixels.push(color(slope));
+            field(&points, &mut found);
+            for (&at, found) in points.iter().zip(&found) {
+                see(at, found)?;
             }
         }
-        Ok(Image { width: self.width(), pixels })
+        Ok(())
     }
 }
 

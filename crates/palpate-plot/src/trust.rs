@@ -3,15 +3,16 @@
 
 //! Promises and how values compare with them, as colours.
 
-use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
+use crate::drawing::{Drawing, Image, Stroke};
 use crate::error::PlotError;
 use crate::geometry::{Point, Rect};
 use crate::hatch::Hatching;
 use crate::legend::{Entry, Key};
+use crate::measured::Measured;
 use crate::numbers::write;
 use crate::palette::Color;
+use crate::scale::draw_bar;
 use crate::slope::Pixels;
-use crate::text::Anchor;
 
 /// The promise of a field's values f on one side of the surface, at the distance d from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,22 +60,6 @@ impl Comparison {
         let [low, high] = self.ratio();
         (high - low <= OPEN).then(|| 1.0_f64.max(low).min(high))
     }
-}
-
-/// The extremes of the ratio of value to distance over a picture, with their places in plane
-/// coordinates \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
-    /// The smallest ratio, of the loosest value.
-    pub smallest: f64,
-    /// The first place where it was found.
-    pub smallest_at: [f64; 2],
-    /// The largest ratio, above one where values are too steep.
-    pub largest: f64,
-    /// The first place where it was found.
-    pub largest_at: [f64; 2],
-    /// The share of the picture where the bounds leave the ratio open.
-    pub open: f64,
 }
 
 /// Colours of values that are too small and too large; the pair differs under colour
@@ -170,25 +155,14 @@ impl Trust {
             let (count, expected) = (comparisons.len(), places.len());
             return Err(PlotError::Comparisons { count, expected });
         }
-        let color = |comparison: &Comparison| {
+        let ratios: Vec<Option<f64>> = comparisons.iter().map(Comparison::measured).collect();
+        let color = |(comparison, ratio): (&Comparison, &Option<f64>)| {
             let side = promised[usize::from(comparison.value < 0.0)];
-            comparison.measured().map_or(UNKNOWN, |ratio| side.color(ratio))
+            ratio.map_or(UNKNOWN, |ratio| side.color(ratio))
         };
-        let image =
-            Image { width: pixels.width(), pixels: comparisons.iter().map(color).collect() };
-        let ratios = places.into_iter().zip(comparisons);
-        let ratios = ratios.filter_map(|(at, one)| Some((at, one.measured()?)));
-        let known: Vec<(Point, f64)> = ratios.collect();
-        let open = 1.0 - known.len() as f64 / comparisons.len() as f64;
-        let smallest = known.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
-        let largest = known.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let measured = smallest.zip(largest).map(|(low, high)| Measured {
-            smallest: low.1,
-            smallest_at: low.0,
-            largest: high.1,
-            largest_at: high.0,
-            open,
-        });
+        let colors = comparisons.iter().zip(&ratios).map(color).collect();
+        let image = Image { width: pixels.width(), pixels: colors };
+        let measured = Measured::of(places.into_iter().zip(ratios));
         Ok(Self { promised, image, measured })
     }
 
@@ -236,24 +210,18 @@ pub(crate) const SCALE: [f64; 2] = [132.0, 40.0];
 /// [px].
 pub(crate) fn draw_scale(
     drawing: &mut Drawing,
-    [x, y]: Point,
+    at: Point,
     promised: Promised,
     [low, high]: [f64; 2],
 ) {
-    let style = TextStyle::TICK;
-    let (left, width) = (x + 8.0, SCALE[0] - 16.0);
-    let count = 2 * width as usize;
-    let at = |i: usize| low + (high - low) * (i as f64 + 0.5) / count as f64;
-    let pixels = (0..count).map(|i| promised.color(at(i))).collect();
-    let bar = Rect::new(left, y - 7.0, width, 12.0);
-    drawing.image(bar, Image { width: count, pixels });
-    drawing.stroke(Path::rect(&bar), Stroke::new(Color::MUTED, 0.75));
-    for tick in [0.0, 0.5, 1.0].map(|share| low + share * (high - low)) {
+    let measured = |share: f64| low + share * (high - low);
+    let ticks = [0.0, 0.5, 1.0].map(|share| {
+        let tick = measured(share);
         let label = write(tick, if high > 1.0 { 1.0 } else { 0.5 });
-        let label = if tick > 1.0 { format!("≥{label}") } else { label };
-        let x = left + width * (tick - low) / (high - low);
-        drawing.label(&label, [x, y + 18.0], Anchor::Middle, style);
-    }
+        (share, if tick > 1.0 { format!("≥{label}") } else { label })
+    });
+    let color = |share| promised.color(measured(share));
+    draw_bar(drawing, at, SCALE[0], color, &ticks);
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use palpate::query::{Contact, Proof, Verdict};
 use palpate::scene::BuiltScene;
 
 use super::FEW;
-use super::question::{Pair, Question};
+use super::question::{Asked, Pair, Question};
 use crate::arguments::ContactQuestion;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
@@ -30,12 +30,10 @@ impl<const D: usize> Touched<D> {
         scene: &BuiltScene<D>,
         with_proof: bool,
     ) -> Result<Self, Failure> {
-        let question = Question::of(asked, scene)?;
-        let mut pairs = question.near(scene)?;
-        if scene.bodies.len() <= FEW {
-            // Not interruptible: a picture of some pairs would be taken for one of all pairs.
-            pairs.extend(question.apart(scene, &pairs, &Interrupt::new())?);
-        }
+        let question = Question::of(asked, scene);
+        let asked = Asked { bodies: &[], is_every: scene.bodies.len() <= FEW };
+        // Not interruptible: a picture of some pairs would be taken for one of all pairs.
+        let pairs = question.pairs(scene, &asked, &Interrupt::new())?;
         let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
         let proofs = shown.map(|pair| question.proof(scene, pair.bodies));
         let proofs = proofs.collect::<Result<_, _>>()?;
@@ -47,6 +45,12 @@ impl<const D: usize> Touched<D> {
         let contacts = self.pairs.iter().flat_map(|pair| &pair.contacts);
         let deepest = contacts.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
         Some((deepest.point_a + deepest.point_b) * 0.5)
+    }
+
+    /// The contacts of bodies that touch, or may touch.
+    pub(crate) fn touching(&self) -> impl Iterator<Item = &Contact<D>> {
+        let pairs = self.pairs.iter().filter(|pair| pair.verdict != Verdict::Apart);
+        pairs.flat_map(|pair| &pair.contacts)
     }
 
     /// How many pairs touch, and how many boxes the drawn proofs have.

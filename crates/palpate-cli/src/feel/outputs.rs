@@ -64,7 +64,8 @@ impl Outputs {
         let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces;
         let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate));
         let vibration = vibration.transpose()?;
-        let trace = self.trace.iter().map(|to| to.write(|out| trace::write(recorder, out)));
+        let trace =
+            self.trace.iter().map(|to| to.write(|out| trace::write(scene, recorder, out)));
         let wav = self.wav.iter().zip(&vibration).map(|(to, vibration)| vibration.write(to));
         let vibration = vibration.as_ref().filter(|_| !ran.has_forces);
         let run = Run { scene, recorder, title: ran.title, vibration };

@@ -27,7 +27,7 @@ where
 }
 
 /// A function of plane coordinates that gives values of `shape` on `plane`.
-fn values<const D: usize>(
+pub(crate) fn values<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
 ) -> impl FnMut(&[[f64; 2]], &mut [f64])

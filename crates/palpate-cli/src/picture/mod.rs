@@ -13,12 +13,14 @@ use std::path::Path;
 use palpate::field::{Aabb, Rotation, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
 
+use palpate::scene::{AnyScene, BuiltScene};
+
 use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
 
 use flat::slopes;
-pub(crate) use flat::{isolines, noted, outline, scene};
+pub(crate) use flat::{isolines, noted, outline, scene, values};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
@@ -45,6 +47,9 @@ pub(crate) trait Drawable<const D: usize> {
     /// How cells of the picture lie in space: the rotation from the picture's axes, `None` if
     /// these run along axes of space, and half the edges of a cell for which they are one.
     fn cells(plane: &Slice) -> (Option<Rotation<D>>, Vector<f64, D>);
+
+    /// The scene, if it is of this dimension.
+    fn scene(scene: AnyScene) -> Option<BuiltScene<D>>;
 }
 
 /// Marks the dimension of a shape.
@@ -67,6 +72,13 @@ impl Drawable<2> for Dimensions {
 
     fn cells(_: &Slice) -> (Option<Rotation<2>>, Vector<f64, 2>) {
         (None, Vector::constant(1.0))
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<2>> {
+        match scene {
+            AnyScene::Planar(scene) => Some(scene),
+            AnyScene::Spatial(_) => None,
+        }
     }
 }
 
@@ -94,6 +106,13 @@ impl Drawable<3> for Dimensions {
             Ok(turn) => (Some(turn), Vector([1.0, 1.0, 0.0])),
             // The axes of a slice are orthonormal; a box that holds any cell is right too.
             Err(_) => (None, Vector::constant(std::f64::consts::SQRT_2)),
+        }
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<3>> {
+        match scene {
+            AnyScene::Spatial(scene) => Some(scene),
+            AnyScene::Planar(_) => None,
         }
     }
 }
@@ -130,6 +149,16 @@ where
     }
 }
 
+/// Refuses a width in pixels for a format without pixels.
+pub(crate) fn check_width(format: Format, width: Option<u32>) -> Result<(), Failure> {
+    match (format, width) {
+        (Format::Svg, Some(_)) => {
+            Err(Failure::input("--width is for PNG pictures; an SVG is drawn at any width"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A picture file to be written.
 #[derive(Debug)]
 pub(crate) struct Picture {
@@ -155,6 +184,11 @@ impl Picture {
     /// The path that the command line gave.
     pub(crate) fn path(&self) -> &Path {
         self.destination.name()
+    }
+
+    /// Refuses a width in pixels for a picture without pixels.
+    pub(crate) fn check_width(&self, width: Option<u32>) -> Result<(), Failure> {
+        check_width(self.format, width)
     }
 
     /// Writes `figure`; as a PNG, `width` pixels wide.

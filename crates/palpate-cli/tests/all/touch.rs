@@ -161,11 +161,18 @@ fn a_glove_feels_what_it_vibrates_like() {
     ]);
     assert_eq!((&report["points"], &report["largest_force"]), (&10.into(), &0.0.into()));
     let bytes = std::fs::read(&wav).unwrap();
-    // A header of 44 bytes, and 8000 samples of two bytes for each second.
-    assert_eq!(&bytes[..4], b"RIFF");
+    // A header of 68 bytes, and for each actuator 8000 samples of two bytes a second.
+    assert_eq!((&bytes[..4], &bytes[22..24]), (&b"RIFF"[..], &[10, 0][..]));
     let seconds = report["duration"].as_f64().unwrap();
-    assert_eq!(bytes.len(), 44 + 2 * (8000.0 * seconds) as usize);
-    assert!(bytes[44..].iter().any(|byte| *byte != 0), "silence");
+    assert_eq!(bytes.len(), 68 + 10 * 2 * (8000.0 * seconds) as usize);
+    let (samples, _) = bytes[68..].as_chunks::<2>();
+    let channel = |number: usize| {
+        let samples = samples.iter().skip(number).step_by(10);
+        Vec::from_iter(samples.map(|sample| i16::from_le_bytes(*sample)))
+    };
+    let sounding = (0..10).filter(|number| channel(*number).iter().any(|sample| *sample != 0));
+    assert!(sounding.count() > 1, "silence");
+    assert_ne!(channel(0), channel(1));
 }
 
 #[test]

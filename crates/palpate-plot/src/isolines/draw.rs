@@ -171,6 +171,7 @@ impl Isolines {
         match &self.ground {
             Ground::Distance => picture.draw_bands(drawing, insides),
             Ground::Gradient(image) => drawing.image(*plot, image.clone()),
+            Ground::Values(values) => drawing.image(*plot, values.image.clone()),
             Ground::Promise(trust) => {
                 drawing.image(*plot, trust.image.clone());
                 let insides: Vec<_> = insides.iter().map(Vec::as_slice).collect();
@@ -220,6 +221,7 @@ impl Isolines {
         match &self.ground {
             Ground::Distance => self.distance_legend(bodies),
             Ground::Gradient(_) => self.gradient_legend(bodies),
+            Ground::Values(values) => [values.entries(), self.surface_entries(bodies)].concat(),
             Ground::Promise(trust) => {
                 let (low, high) = self.samples.range();
                 let mut entries = trust.entries([high > 0.0, low < 0.0]);

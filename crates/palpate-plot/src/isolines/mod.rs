@@ -9,12 +9,14 @@ use crate::body::Body;
 use crate::drawing::Image;
 use crate::error::PlotError;
 use crate::levels::Levels;
+use crate::measured::Measured;
 use crate::outline::Outline;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
 use crate::sampling::{Samples, Sampling};
 use crate::slice::Slice;
 use crate::slope::{Pixels, Slope};
-use crate::trust::{Comparison, Measured, Promised, Trust};
+use crate::trust::{Comparison, Promised, Trust};
+use crate::values::Values;
 use crate::view::View;
 use crate::wheel;
 
@@ -50,27 +52,29 @@ pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};
 #[derive(Debug, Clone)]
 pub struct Isolines {
     slice: Slice,
-    view: View,
+    pub(crate) view: View,
     samples: Samples,
     outline: Outline,
     bodies: Vec<Body>,
     is_in_ink: bool,
     levels: Levels,
-    sampling: Sampling,
-    ground: Ground,
+    pub(crate) sampling: Sampling,
+    pub(crate) ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
 }
 
 /// The ground below the lines.
 #[derive(Debug, Clone)]
-enum Ground {
+pub(crate) enum Ground {
     /// Bands of distance, with isolines.
     Distance,
     /// The direction of the gradient.
     Gradient(Image),
     /// Promises, and how values compare with them.
     Promise(Box<Trust>),
+    /// Other numbers.
+    Values(Box<Values>),
 }
 
 impl Isolines {
@@ -248,12 +252,13 @@ impl Isolines {
         Ok(Self { ground: Ground::Promise(Box::new(trust)), ..self })
     }
 
-    /// The extremes of what [`with_promise`](Self::with_promise) measured; `None` without, or if
-    /// all is open.
+    /// The extremes of what [`with_promise`](Self::with_promise) measured, or of the numbers of
+    /// [`with_values`](Self::with_values); `None` without, or if there is no number.
     #[must_use]
     pub fn measured(&self) -> Option<Measured> {
         match &self.ground {
             Ground::Promise(trust) => trust.measured,
+            Ground::Values(values) => values.measured,
             _ => None,
         }
     }
@@ -283,6 +288,12 @@ impl Isolines {
     pub fn with_markers(mut self, markers: Markers) -> Self {
         self.overlays.push(Overlay::Markers(markers));
         self
+    }
+
+    /// The window.
+    #[must_use]
+    pub fn view(&self) -> View {
+        self.view
     }
 
     /// Distance between neighbouring isolines \[m\].

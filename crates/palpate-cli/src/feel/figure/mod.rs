@@ -15,6 +15,7 @@ use palpate::plot::{Figure, Isolines};
 use palpate::scene::{BuiltBody, BuiltScene};
 use palpate::servo_loop::Recorder;
 
+use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
 use crate::input::{self, promise_in_words};
@@ -41,10 +42,13 @@ where
 
     fn figure(&self) -> Result<Figure, Failure> {
         let (scene, rows) = (self.scene, self.recorder.rows());
+        let end = rows.last().map_or(0.0, |row| row.time_s);
         let tools = tools::placed(scene.tool.as_ref(), rows)?;
         // The unit box stands for a scene without bounds.
         let bounds =
             input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
+        let moved = moved::bounds(scene, end);
+        let bounds = moved.map_or(bounds, |moved| bounds.union(&moved));
         let slices = felt_slices(&bounds, rows).map_err(Failure::input)?;
         let bounds = tools::around(bounds, &tools);
         let points = Points::of(rows);
@@ -83,7 +87,9 @@ where
         let scene = picture::noted(self.scene, &slice.plane, &view, material);
         let isolines = scene.map_err(Failure::input)?.in_ink().with_title(&slice.heading);
         let spacing = overlays::ARROW_SPACING * (view.width() * view.height()).sqrt();
-        overlays::drawn(isolines, slice, points, spacing)
+        let end = self.recorder.rows().last().map_or(0.0, |row| row.time_s);
+        moved::drawn_over(isolines, self.scene, &slice.plane, &view, end)
+            .and_then(|isolines| overlays::drawn(isolines, slice, points, spacing))
             .and_then(|isolines| tools::drawn(isolines, slice, &view, tools))
             .map_err(Failure::input)
     }
