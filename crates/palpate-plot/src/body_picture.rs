@@ -41,6 +41,8 @@ pub(crate) fn shared_stroke() -> Stroke {
 #[derive(Debug, Default)]
 pub(crate) struct Bodies<'a> {
     bodies: Vec<Seen<'a>>,
+    /// Whether the scene has others, which may be out of view.
+    are_several: bool,
     /// Whether they have colours of their own.
     are_coloured: bool,
     /// The hatching of what several of them share.
@@ -78,13 +80,14 @@ impl<'a> Bodies<'a> {
                 bounds,
             })
         });
+        let are_several = bodies.len() > 1;
         let mut bodies: Vec<_> = seen.collect();
         if are_coloured {
             tell_apart(&mut bodies, frame.plot.width());
         }
         let regions: Vec<_> = bodies.iter().map(|seen| &seen.rings[..]).collect();
         let shared = SHARED.over(&frame.plot, &regions, |count| count > 1);
-        Self { bodies, are_coloured, shared }
+        Self { bodies, are_several, are_coloured, shared }
     }
 
     /// The colours of bands inside them.
@@ -169,12 +172,13 @@ impl<'a> Bodies<'a> {
         })
     }
 
-    /// The legend: an entry for each colour. Empty if no body is in view.
-    pub(crate) fn entries(&self) -> Vec<Entry> {
+    /// The legend: an entry for each colour, with a tint and hatching if insides
+    /// [are drawn](Self::draw_insides). Empty if no body is in view.
+    pub(crate) fn entries(&self, has_insides: bool) -> Vec<Entry> {
         let mut entries = match &self.bodies[..] {
             [] => Vec::new(),
-            seen if self.are_coloured => coloured_entries(seen),
-            [seen] => {
+            seen if self.are_coloured => coloured_entries(seen, has_insides),
+            [seen] if !self.are_several => {
                 let text = format!("surface of {}", seen.body.in_words());
                 vec![Entry::new(Key::Line(seen.stroke.clone()), text)]
             }
@@ -182,15 +186,26 @@ impl<'a> Bodies<'a> {
                 vec![Entry::new(Key::Line(seen.stroke.clone()), "surfaces of the bodies")]
             }
         };
-        if !self.shared.verbs.is_empty() {
+        if has_insides && !self.shared.verbs.is_empty() {
             entries.push(Entry::new(Key::Shared, "in several bodies"));
+        }
+        let areas = self.bodies.iter().find(|seen| seen.solids.iter().any(|ring| is_wide(ring)));
+        if let Some(seen) = areas {
+            entries.push(Entry::new(Key::Swatch(seen.stroke.color), "area that is all surface"));
         }
         entries
     }
 }
 
+/// Whether a ring [px] encloses an area that is wider than lines.
+fn is_wide(ring: &[Point]) -> bool {
+    let boxes = ring.iter().map(|p| Rect { min: *p, max: *p });
+    let bounds = boxes.reduce(|a, b| a.union(&b));
+    bounds.is_some_and(|bounds| bounds.width().min(bounds.height()) > TOGETHER)
+}
+
 /// An entry for each colour.
-fn coloured_entries(bodies: &[Seen<'_>]) -> Vec<Entry> {
+fn coloured_entries(bodies: &[Seen<'_>], has_insides: bool) -> Vec<Entry> {
     let mut colors: Vec<Color> = Vec::new();
     let mut entries = Vec::new();
     for Seen { stroke, .. } in bodies {
@@ -198,7 +213,11 @@ fn coloured_entries(bodies: &[Seen<'_>]) -> Vec<Entry> {
             colors.push(stroke.color);
             let alike = bodies.iter().filter(|other| other.stroke.color == stroke.color);
             let names: Vec<_> = alike.map(|other| other.body.in_words()).collect();
-            let key = Key::Body(stroke.clone(), Color::WHITE.below(stroke.color, TINT));
+            let key = if has_insides {
+                Key::Body(stroke.clone(), Color::WHITE.below(stroke.color, TINT))
+            } else {
+                Key::Line(stroke.clone())
+            };
             entries.push(Entry::new(key, listed(&names)));
         }
     }

@@ -4,7 +4,7 @@
 //! Parallel lines over parts of a picture.
 
 use crate::drawing::Path;
-use crate::geometry::{Point, Rect, clip_segment};
+use crate::geometry::{Point, Rect, clip_segment, distance};
 
 /// Parallel lines.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +14,9 @@ pub(crate) struct Hatching {
     /// From line to line, up or down [px].
     pub(crate) spacing: f64,
 }
+
+/// Shorter lines are not seen [px]: such are those between outlines that run together.
+const SHORTEST: f64 = 2.0;
 
 impl Hatching {
     /// The lines over those points of `area` [px] that lie in as many of `regions` as `is_here`
@@ -39,7 +42,8 @@ impl Hatching {
             for (right, region) in crossings {
                 let right = right.clamp(area.min[0], area.max[0]);
                 if right > left && is_here(is_inside.iter().filter(|inside| **inside).count()) {
-                    if let Some((a, b)) = clip_segment(at(left), at(right), area) {
+                    let line = clip_segment(at(left), at(right), area);
+                    if let Some((a, b)) = line.filter(|(a, b)| distance(*a, *b) >= SHORTEST) {
                         path.add_line(&[a, b]);
                     }
                 }
@@ -101,6 +105,17 @@ mod tests {
             for [x, y] in seen {
                 assert!((29.99..=50.01).contains(&x) && (19.99..=50.01).contains(&y));
             }
+        }
+    }
+
+    #[test]
+    fn what_is_narrower_than_a_line_is_not_hatched() {
+        let area = Rect::new(0.0, 0.0, 100.0, 100.0);
+        for (overlap, is_seen) in [(0.5, false), (3.0, true)] {
+            let (a, b) = (square(10.0, 10.0), square(50.0 - overlap, 10.0));
+            let hatching = Hatching { slope: -1.0, spacing: 5.0 };
+            let shared = hatching.over(&area, &[&a, &b], |count| count == 2);
+            assert_eq!(!ends(&shared).is_empty(), is_seen, "{overlap} px");
         }
     }
 

@@ -9,17 +9,17 @@ use crate::drawing::{Drawing, TextPaint, TextStyle};
 use crate::geometry::{Point, Rect};
 use crate::legend::{self, Entry, Key};
 use crate::palette::Color;
-use crate::text::{Anchor, CAP_HEIGHT, Text, Weight, shorten};
+use crate::text::{Anchor, Text, Weight, shorten};
 
 /// Panels in a row.
 const COLUMNS: usize = 2;
-/// Height of a panel, and the room between panels, across and up [px].
+/// Height of a panel, and the room between panels, across and up [px]: titles stand there.
 const HEIGHT: f64 = 84.0;
-const BETWEEN: [f64; 2] = [18.0, 12.0];
+const BETWEEN: [f64; 2] = [18.0, 24.0];
 /// The desired distance of ticks, across and up [px].
 const TICK_SPACING: [f64; 2] = [95.0, 40.0];
-/// From the corner of a panel to its title [px].
-const INSET: f64 = 7.0;
+/// From a title to its panel [px].
+const BELOW_TITLE: f64 = 6.0;
 
 /// Charts of one quantity each, row by row.
 #[derive(Debug, Clone)]
@@ -55,12 +55,13 @@ impl Panels {
         let width = (area.width() - gutter - gaps) / columns as f64;
         let [x, y] = self.axes(width);
         let rows = self.charts.len().div_ceil(columns);
+        let top = area.min[1] + BETWEEN[1];
         let mut entries: Vec<Entry> = Vec::new();
         for (number, chart) in self.charts.iter().enumerate() {
             let (column, row) = (number % columns, number / columns);
             let plot = Rect::new(
                 area.min[0] + gutter + column as f64 * (width + BETWEEN[0]),
-                area.min[1] + row as f64 * (HEIGHT + BETWEEN[1]),
+                top + row as f64 * (HEIGHT + BETWEEN[1]),
                 width,
                 HEIGHT,
             );
@@ -76,7 +77,7 @@ impl Panels {
                 x.draw_below(drawing, &plot);
             }
         }
-        let bottom = area.min[1] + rows as f64 * (HEIGHT + BETWEEN[1]) - BETWEEN[1] + BELOW;
+        let bottom = top + rows as f64 * (HEIGHT + BETWEEN[1]) - BETWEEN[1] + BELOW;
         let origin: Point = [area.min[0] + gutter, bottom + 10.0];
         let height = legend::draw(drawing, &entries, origin, area.max[0] - origin[0]);
         origin[1] + height - area.min[1]
@@ -96,12 +97,12 @@ fn merge(entries: &mut Vec<Entry>, entry: Entry) {
     }
 }
 
-/// Writes a title into the upper left corner of a panel.
+/// Writes a title above a panel.
 fn draw_title(drawing: &mut Drawing, plot: &Rect, title: &str) {
     let TextStyle { size, color, .. } = TextStyle::TICK;
     let weight = Weight::SemiBold;
-    let title = shorten(title, size, weight, plot.width() - 2.0 * INSET);
-    let at = [plot.min[0] + INSET, plot.min[1] + INSET + CAP_HEIGHT * size];
+    let title = shorten(title, size, weight, plot.width());
+    let at = [plot.min[0], plot.min[1] - BELOW_TITLE];
     let text = Text { text: &title, at, size, weight, anchor: Anchor::Start, angle: 0.0 };
-    drawing.text(&text, TextPaint { color, halo: Some((Color::WHITE, 3.0)) });
+    drawing.text(&text, TextPaint { color, halo: None });
 }

@@ -91,7 +91,7 @@ impl Drawable<3> for Dimensions {
         Vector(plane.point(st))
     }
 
-    const COMPARED: usize = 160;
+    const COMPARED: usize = 128;
 
     fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
         plane.project_gradient(gradient.0)

@@ -206,7 +206,7 @@ impl Isolines {
     }
 
     fn surface_entries(&self, bodies: &Bodies<'_>) -> Vec<Entry> {
-        let of_bodies = bodies.entries();
+        let of_bodies = bodies.entries(matches!(self.ground, Ground::Distance));
         let window = Rect { min: self.view.min(), max: self.view.max() };
         if !of_bodies.is_empty() {
             of_bodies

@@ -32,7 +32,7 @@ pub(super) fn with_forces<const D: usize>(
     let count = points.count();
     if count > MOST_PANELS {
         let name = format!("largest force on one of {count} points");
-        let series = Series::new(name, points.largest_force())?;
+        let series = Series::new(name, points.largest_force())?.with_color(points.color(0));
         return Ok(figure.with_chart(over_time("force", "N").with_series(series)));
     }
     let series = |number: usize, name: String| {
@@ -76,6 +76,10 @@ pub(super) fn with_levels<const D: usize>(
         let chart = levels(times, &all, points.color(0)).map_err(Failure::input)?;
         let title = format!("Largest level of {} actuators", tones.len());
         return Ok(figure.with_chart(chart.with_title(title)));
+    }
+    if let [alone] = &tones[..] {
+        let chart = levels(times, &[alone], points.color(0)).map_err(Failure::input)?;
+        return Ok(figure.with_chart(chart));
     }
     let panel = |(number, tones): (usize, &Vec<Tones>)| {
         let chart = levels(times, &[tones], points.color(number))?;
