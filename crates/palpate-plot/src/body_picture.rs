@@ -24,6 +24,8 @@ const WIDTHS: [f64; 2] = [3.2, 1.5];
 const RIM: f64 = 1.4;
 /// How much of a body's colour its inside takes.
 const TINT: f64 = 0.3;
+/// How much darker names are than outlines: letters are thinner than these.
+const DARKER: f64 = 0.35;
 /// Places tried for a name within a body, along each side of its box.
 const PLACES: u32 = 10;
 /// The names of bodies of one colour that a legend lists.
@@ -189,9 +191,11 @@ impl<'a> Bodies<'a> {
         if has_insides && !self.shared.verbs.is_empty() {
             entries.push(Entry::new(Key::Shared, "in several bodies"));
         }
-        let areas = self.bodies.iter().find(|seen| seen.solids.iter().any(|ring| is_wide(ring)));
+        let areas =
+            self.bodies.iter().find(|seen| seen.solids.iter().any(|ring| is_wide(ring)));
         if let Some(seen) = areas {
-            entries.push(Entry::new(Key::Swatch(seen.stroke.color), "area that is all surface"));
+            entries
+                .push(Entry::new(Key::Swatch(seen.stroke.color), "area that is all surface"));
         }
         entries
     }
@@ -229,7 +233,7 @@ pub(crate) fn draw_names(drawing: &mut Drawing, names: &[(Name, Color)]) {
     for (name, color) in names {
         for text in name.texts() {
             let halo = Some((Color::WHITE, 3.5));
-            drawing.text(&text, TextPaint { color: *color, halo });
+            drawing.text(&text, TextPaint { color: color.mix(Color::INK, DARKER), halo });
         }
     }
 }

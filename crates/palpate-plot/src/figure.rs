@@ -105,7 +105,7 @@ impl Figure {
     }
 
     /// With small charts of one quantity below the parts so far, two in a row, which share their
-    /// axes. Each has its [title](Chart::with_title) in its corner; lines of the same name have one
+    /// axes. Each has its [title](Chart::with_title) above it; lines of the same name have one
     /// entry in the legend.
     ///
     /// # Examples

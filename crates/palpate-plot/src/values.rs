@@ -89,15 +89,9 @@ impl Isolines {
         scale: Scale,
         field: impl FnMut(&[[f64; 2]], &mut [Option<f64>]),
     ) -> Result<Self, PlotError> {
-        let values = Values::paint(&Pixels::of(&self.view, self.sampling), scale, field)?;
+        let values = Values::paint(&self.pixels, scale, field)?;
         self.ground = Ground::Values(Box::new(values));
         Ok(self)
-    }
-
-    /// How many pixels coloured numbers or directions have in this window, for progress bars.
-    #[must_use]
-    pub fn pixels(&self) -> usize {
-        Pixels::of(&self.view, self.sampling).number()
     }
 }
 
@@ -137,6 +131,8 @@ mod tests {
         let texts: Vec<_> = values.entries().into_iter().map(|entry| entry.text).collect();
         assert_eq!(texts, ["x [m]", "nothing"]);
         assert_eq!(picture.pixels(), 250 * 250);
+        let coarse = picture.with_pixels(Sampling::new(10).unwrap());
+        assert_eq!(coarse.pixels(), 10 * 10);
     }
 
     #[test]

@@ -4,8 +4,8 @@
 //! Whole figures: their bytes, their pixels, their words.
 
 use palpate_plot::{
-    Body, BoundedField, Cell, Chart, Figure, Isolines, Markers, Outline, PlotError, Polyline,
-    Quantity, Sampling, Series, Slice, Slope, View,
+    Body, BoundedField, Cell, Chart, Color, Dash, Figure, Isolines, Markers, Outline,
+    PlotError, Polyline, Quantity, Sampling, Series, Slice, Slope, View,
 };
 
 fn disc(points: &[[f64; 2]], values: &mut [f64]) {
@@ -287,6 +287,37 @@ fn a_gradient_has_the_colour_of_its_direction() {
     let words = words(&svg);
     assert!(words.contains(&"x") && words.contains(&"y"), "{words:?}");
     assert!(!words.contains(&"inside") && words.contains(&"surface"), "{words:?}");
+}
+
+#[test]
+fn directions_are_those_of_a_method() {
+    let picture = isolines(100).unwrap().with_directions("dichotomy", slopes).unwrap();
+    let svg = Figure::new("").with_isolines(picture).to_svg();
+    let words = words(&svg);
+    assert!(words.contains(&"direction in which the field grows, as dichotomy finds it"));
+    assert!(words.contains(&"none, or leaning out of the plane"), "{words:?}");
+    assert!(!words.iter().any(|word| word.contains("steeper") || word.contains("rim")));
+}
+
+#[test]
+fn panels_share_axes_and_a_legend() -> Result<(), PlotError> {
+    let finger = |number: usize| {
+        let force = Series::new("force", [[0.0, 0.0], [4.0, 1.0 + number as f64]])?;
+        let force = force.with_color(Color::numbered(number)).with_dash(Dash::Solid);
+        let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+        Ok(chart.with_series(force).with_title(format!("finger {number}")))
+    };
+    let fingers = (0..5).map(finger).collect::<Result<Vec<_>, PlotError>>()?;
+    let svg = Figure::new("").with_panels(fingers).to_svg();
+    let found = words(&svg);
+    let count = |text: &str| found.iter().filter(|word| **word == text).count();
+    // The last panel of each column has an axis below it, the first of each row one beside it.
+    assert_eq!(["time [s]", "force [N]", "force"].map(count), [2, 1, 1], "{found:?}");
+    assert_eq!(count("5"), 3, "the largest force is on every axis: {found:?}");
+    assert!((0..5).all(|number| count(&format!("finger {number}")) == 1));
+    // A line in a colour of its own in each panel, explained in ink.
+    assert_eq!(svg.matches("stroke=\"#743aa6\"").count(), 1);
+    Ok(())
 }
 
 #[test]

@@ -170,7 +170,7 @@ impl Isolines {
         let plot = &picture.frame.plot;
         match &self.ground {
             Ground::Distance => picture.draw_bands(drawing, insides),
-            Ground::Gradient(image) => drawing.image(*plot, image.clone()),
+            Ground::Gradient(image, _) => drawing.image(*plot, image.clone()),
             Ground::Values(values) => drawing.image(*plot, values.image.clone()),
             Ground::Promise(trust) => {
                 drawing.image(*plot, trust.image.clone());
@@ -220,7 +220,7 @@ impl Isolines {
     fn legend(&self, bodies: &Bodies<'_>) -> Vec<Entry> {
         match &self.ground {
             Ground::Distance => self.distance_legend(bodies),
-            Ground::Gradient(_) => self.gradient_legend(bodies),
+            Ground::Gradient(_, method) => self.gradient_legend(method.as_deref(), bodies),
             Ground::Values(values) => [values.entries(), self.surface_entries(bodies)].concat(),
             Ground::Promise(trust) => {
                 let (low, high) = self.samples.range();
@@ -239,15 +239,23 @@ impl Isolines {
         })
     }
 
-    fn gradient_legend(&self, bodies: &Bodies<'_>) -> Vec<Entry> {
+    fn gradient_legend(&self, method: Option<&str>, bodies: &Bodies<'_>) -> Vec<Entry> {
         let wheel = Key::Wheel(self.axis_arrows());
-        let direction = "direction in which the field grows; at the rim its gradient is 1";
+        let grows = "direction in which the field grows";
+        let direction = match method {
+            Some(method) => format!("{grows}, as {method} finds it"),
+            None => format!("{grows}; at the rim its gradient is 1"),
+        };
         let mut entries = vec![Entry::new(wheel, direction)];
         entries.extend(self.surface_entries(bodies));
         let [flat, steep] =
             [[0.0; 2], [0.0, -2.0]].map(|slope| Key::Swatch(wheel::color(slope)));
-        entries.push(Entry::new(flat, "flat, or leaning out of the plane"));
-        entries.push(Entry::new(steep, "darker: steeper than 1"));
+        if method.is_some() {
+            entries.push(Entry::new(flat, "none, or leaning out of the plane"));
+        } else {
+            entries.push(Entry::new(flat, "flat, or leaning out of the plane"));
+            entries.push(Entry::new(steep, "darker: steeper than 1"));
+        }
         entries
     }
 

@@ -12,6 +12,7 @@ use crate::levels::Levels;
 use crate::measured::Measured;
 use crate::outline::Outline;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
+use crate::palette::Color;
 use crate::sampling::{Samples, Sampling};
 use crate::slice::Slice;
 use crate::slope::{Pixels, Slope};
@@ -58,7 +59,7 @@ pub struct Isolines {
     bodies: Vec<Body>,
     is_in_ink: bool,
     levels: Levels,
-    pub(crate) sampling: Sampling,
+    pub(crate) pixels: Pixels,
     pub(crate) ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
@@ -69,8 +70,8 @@ pub struct Isolines {
 pub(crate) enum Ground {
     /// Bands of distance, with isolines.
     Distance,
-    /// The direction of the gradient.
-    Gradient(Image),
+    /// The direction of the gradient, and how it was found if not from the field.
+    Gradient(Image, Option<String>),
     /// Promises, and how values compare with them.
     Promise(Box<Trust>),
     /// Other numbers.
@@ -103,7 +104,7 @@ impl Isolines {
             bodies: Vec::new(),
             is_in_ink: false,
             samples,
-            sampling,
+            pixels: Pixels::of(view, sampling),
             ground: Ground::Distance,
             title: String::new(),
             overlays: Vec::new(),
@@ -187,9 +188,33 @@ impl Isolines {
         self,
         field: impl FnMut(&[[f64; 2]], &mut [Slope]),
     ) -> Result<Self, PlotError> {
-        let color = |slope: &Slope| wheel::color([slope.gradient[0], slope.gradient[1]]);
-        let image = Pixels::of(&self.view, self.sampling).paint(field, color)?;
-        Ok(Self { ground: Ground::Gradient(image), ..self })
+        let image = self.pixels.paint(field, wheel_color)?;
+        Ok(Self { ground: Ground::Gradient(image, None), ..self })
+    }
+
+    /// As [`with_gradient`](Self::with_gradient), with directions that were found in another way
+    /// than from the field: the legend says that they are those of `method`. Where it finds none,
+    /// the slope's gradient is zero.
+    ///
+    /// # Errors
+    ///
+    /// As of [`with_gradient`](Self::with_gradient).
+    pub fn with_directions(
+        self,
+        method: impl Into<String>,
+        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+    ) -> Result<Self, PlotError> {
+        let image = self.pixels.paint(field, wheel_color)?;
+        Ok(Self { ground: Ground::Gradient(image, Some(method.into())), ..self })
+    }
+
+    /// With `grid` pixels along the longer side for [gradients](Self::with_gradient),
+    /// [directions](Self::with_directions) and [numbers](Self::with_values) that are drawn
+    /// afterwards, in place of five for two cells of the isolines: fewer for what takes long to
+    /// find.
+    #[must_use]
+    pub fn with_pixels(self, grid: Sampling) -> Self {
+        Self { pixels: self.compared(grid), ..self }
     }
 
     /// The places whose values [`with_promise`](Self::with_promise) compares, in plane
@@ -263,6 +288,12 @@ impl Isolines {
         }
     }
 
+    /// How many pixels gradients, directions and numbers have in this window, for progress bars.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.pixels.number()
+    }
+
     /// With a heading above the picture, for figures of several parts.
     #[must_use]
     pub fn with_title(self, title: impl Into<String>) -> Self {
@@ -313,4 +344,9 @@ impl Isolines {
     pub fn range(&self) -> (f64, f64) {
         self.samples.range()
     }
+}
+
+/// The direction of a gradient in the plane, as a colour.
+fn wheel_color(slope: &Slope) -> Color {
+    wheel::color([slope.gradient[0], slope.gradient[1]])
 }
