@@ -21,13 +21,6 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// The length of the gradient.
-    #[must_use]
-    pub fn steepness(&self) -> f64 {
-        let [x, y, z] = self.gradient;
-        x.hypot(y).hypot(z)
-    }
-
     /// Refuses a slope at the point `at` that is not a number, or beyond all numbers drawn.
     ///
     /// # Errors

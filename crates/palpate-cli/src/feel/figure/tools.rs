@@ -34,7 +34,7 @@ pub(super) fn placed<'a, const D: usize>(
     let times = [
         ("first touch", Dash::Dotted, touches().next()),
         ("deepest", Dash::Solid, touches().max_by(|a, b| depth(a).total_cmp(&depth(b)))),
-        ("last touch", Dash::Dashed, touches().last()),
+        ("last touch", Dash::Dashed, touches().next_back()),
     ];
     let mut placed = Vec::new();
     for (what, dash, row) in times {
