@@ -8,7 +8,7 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{LARGEST_LENGTH, Point, Shape, Vector};
 use palpate::local::{GradientMethod, GradientSampler, angle_between, closest_vector};
-use palpate::plot::{Dash, Isolines, PlotError, Polyline, Scale, Slice};
+use palpate::plot::{Dash, Isolines, PlotError, Polyline, Sampling, Scale, Slice};
 use palpate::query::BallWorkspace;
 use palpate::scene::BuiltScene;
 use rayon::prelude::*;
@@ -16,11 +16,15 @@ use rayon::prelude::*;
 use crate::arguments::{PlotMap, PlotOptions};
 use crate::input::{self, longest_edge};
 use crate::outcome::Failure;
-use crate::picture::{Dimensions, Drawable, values};
+use crate::picture::{self, Dimensions, Drawable, values};
 use crate::plot::title;
 
 /// The smallest angle of the scale [degrees]: finer than any picture shows a direction.
 const SMALLEST: f64 = 1e-3;
+
+/// Pixels along the longer side of a picture of directions that are searched for: one takes as
+/// long as hundreds that compare values.
+const SEARCHED: usize = 280;
 
 /// Fewest pixels that share a workspace, whose memory is as dear as some searches.
 const FEWEST: usize = 64;
@@ -97,6 +101,17 @@ where
         Some(angle_between(self.direction(p, workspace)?, exact).to_degrees())
     }
 
+    /// The isolines with as many pixels as the method can find directions for in seconds.
+    fn prepared(&self, isolines: Isolines, bar: &ProgressBar) -> Result<Isolines, PlotError> {
+        let isolines = if self.method == GradientMethod::ClosestVector {
+            isolines.with_pixels(Sampling::new(SEARCHED)?)
+        } else {
+            isolines
+        };
+        bar.inc_length(isolines.pixels() as u64);
+        Ok(isolines)
+    }
+
     /// Draws the angles as colours.
     pub(crate) fn draw_error(
         &self,
@@ -104,7 +119,7 @@ where
         plane: &Slice,
         bar: &ProgressBar,
     ) -> Result<Isolines, PlotError> {
-        bar.inc_length(isolines.pixels() as u64);
+        let isolines = self.prepared(isolines, bar)?;
         let scale =
             Scale::decades("angle from the exact gradient", "degrees", SMALLEST, 180.0)?;
         isolines.with_values(scale.with_missing("no direction"), |points, angles| {
@@ -123,8 +138,8 @@ where
         plane: &Slice,
         bar: &ProgressBar,
     ) -> Result<Isolines, PlotError> {
-        bar.inc_length(isolines.pixels() as u64);
-        isolines.with_gradient(|points, slopes| {
+        let isolines = self.prepared(isolines, bar)?;
+        isolines.with_directions(self.method.to_string(), |points, slopes| {
             let pixels = points.par_iter().zip(slopes).with_min_len(FEWEST);
             pixels.for_each_init(BallWorkspace::new, |workspace, (st, slope)| {
                 let p = Dimensions::point(plane, *st);
@@ -167,7 +182,9 @@ where
         plane: &Slice,
     ) -> Result<Isolines, PlotError> {
         let [name, other] = &self.names;
-        let outline = isolines.outline(values(&self.shape, plane))?;
+        let outline =
+            picture::outline(&self.shape, plane, &isolines.view(), Sampling::default())?;
+        let outline = outline.lines().iter().cloned();
         let outline = Polyline::of_pieces(format!("surface of {other}"), outline)?;
         let scale = format!("difference of values: {other} − {name}");
         let scale = Scale::signed(scale, "m");

@@ -19,14 +19,15 @@ use crate::input::promise_in_words;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
-use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::picture::{self, Colours, Dimensions, Drawable, Picture};
 
 /// A scene with one body for each operator.
 const OPERATORS: &str = include_str!("../../../scenes/sampler_operators.json");
 /// Tiles in a row: with six, the longest names of the catalogue would not fit.
 const COLUMNS: usize = 5;
-/// Cells along a tile, two to a pixel of the figure.
-const TILE_CELLS: usize = 140;
+/// Cells along a tile, about one to a pixel of the figure, and cells whose values are compared
+/// with true distances.
+const TILE_CELLS: [usize; 2] = [140, 70];
 /// Room around a shape, as a share of its longest edge.
 const MARGIN: f64 = 0.2;
 /// The range shown of a shape without bounds, along each axis [m]: about the size of the
@@ -134,19 +135,7 @@ impl Work<'_> {
         let drawn: Vec<(Isolines, Option<Written>)> = specimens
             .par_iter()
             .take_any_while(|_| !self.interrupt.is_asked())
-            .map(|specimen| {
-                let cells = Sampling::new(TILE_CELLS).map_err(Failure::input)?;
-                let tile = specimen.picture(&plane, cells, map).map_err(Failure::input)?;
-                let tile = tile.with_title(&specimen.name);
-                let written = if self.options.each {
-                    let file = specimen.name.replace(' ', "_");
-                    Some(self.draw_one(specimen, &plane, &each.join(file))?)
-                } else {
-                    None
-                };
-                self.bar.inc(1);
-                Ok((tile, written))
-            })
+            .filter_map(|specimen| self.draw_specimen(specimen, &plane, &each).transpose())
             .collect::<Result<_, Failure>>()?;
         let (tiles, single): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
         let mut written = Vec::new();
@@ -163,22 +152,38 @@ impl Work<'_> {
         Ok(written)
     }
 
-    fn draw_one<const D: usize>(
+    /// The tile of a specimen, and with `--each` its picture in the folder `each`; `None` if
+    /// interrupted.
+    fn draw_specimen<const D: usize>(
         &self,
         specimen: &Specimen<D>,
         plane: impl Fn(&Aabb<D>) -> Result<Slice, PlotError>,
-        path: &Path,
-    ) -> Result<Written, Failure>
+        each: &Path,
+    ) -> Result<Option<(Isolines, Option<Written>)>, Failure>
     where
         Dimensions: Drawable<D>,
     {
-        let isolines = specimen
-            .picture(plane, Sampling::default(), self.options.map)
-            .map_err(Failure::input)?;
-        let figure = Figure::new(specimen.name.replace('_', " "))
-            .with_caption(promise_in_words(specimen.shape.promise()))
-            .with_isolines(isolines);
-        self.save(&figure, &self.picture(path)?, vec![specimen.name.clone()])
+        let isolines = |grids: [Sampling; 2]| {
+            specimen.picture(&plane, grids, self).map_err(Failure::input)
+        };
+        let sampling = |cells: usize| Sampling::new(cells).map_err(Failure::input);
+        let [cells, compared] = TILE_CELLS;
+        let tile = isolines([sampling(cells)?, sampling(compared)?])?;
+        let Some(tile) = tile else { return Ok(None) };
+        let tile = tile.with_title(&specimen.name);
+        let mut written = None;
+        if self.options.each {
+            let compared = sampling(<Dimensions as Drawable<D>>::COMPARED)?;
+            let whole = isolines([Sampling::default(), compared])?;
+            let Some(whole) = whole else { return Ok(None) };
+            let figure = Figure::new(specimen.name.replace('_', " "))
+                .with_caption(promise_in_words(specimen.shape.promise()))
+                .with_isolines(whole);
+            let picture = self.picture(&each.join(specimen.name.replace(' ', "_")))?;
+            written = Some(self.save(&figure, &picture, vec![specimen.name.clone()])?);
+        }
+        self.bar.inc(1);
+        Ok(Some((tile, written)))
     }
 
     /// A picture at `path` with the ending of its format. Names differ and the run reads no
@@ -200,13 +205,14 @@ impl Work<'_> {
 }
 
 impl<const D: usize> Specimen<D> {
-    /// The shape in a square window around it.
+    /// The shape in a square window around it, with grids for isolines and for comparisons;
+    /// `None` if interrupted.
     fn picture(
         &self,
         plane: impl Fn(&Aabb<D>) -> Result<Slice, PlotError>,
-        sampling: Sampling,
-        map: Map,
-    ) -> Result<Isolines, PlotError>
+        [sampling, grid]: [Sampling; 2],
+        work: &Work<'_>,
+    ) -> Result<Option<Isolines>, PlotError>
     where
         Dimensions: Drawable<D>,
     {
@@ -219,7 +225,9 @@ impl<const D: usize> Specimen<D> {
         let side = 2.0 * (1.0 + 2.0 * MARGIN) * longest;
         let view = View::new(view.center(), side, side)?;
         let isolines = picture::isolines(&self.shape, &plane, &view, sampling)?;
-        picture::mapped(&self.shape, &plane, isolines, map)
+        let watch = || !work.interrupt.is_asked();
+        let colours = Colours { map: work.options.map, grid, watch: &watch };
+        picture::mapped(&self.shape, &plane, isolines, colours)
     }
 }
 

@@ -100,7 +100,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Contact(options) => contact::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
         Command::Gradients(options) => gradients::run(options),
-        Command::Plot(options) => plot::run(options),
+        Command::Plot(options) => plot::run(options, interrupt),
         Command::Render(options) => render::run(options, interrupt),
         Command::Gallery(options) => gallery::run(options, interrupt),
         Command::Check(options) => check::run(options),

@@ -7,21 +7,22 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
-use palpate::plot::{Figure, Gauge, Isolines, Measured, PlotError, Sampling, Slice, View};
+use palpate::plot::{Figure, Isolines, Measured, PlotError, Sampling, Slice, View};
 use palpate::scene::{AnyScene, BuiltScene, View as SceneView};
 use serde_json::{Value, json};
 
 use crate::arguments::{PlotMap, PlotOptions};
 use crate::contact::Touched;
 use crate::emptiness;
-use crate::error_map::Compared;
+use crate::error_map::{self, Compared};
 use crate::input::{self, promise_in_words};
+use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
-use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::picture::{self, Colours, Dimensions, Drawable, Picture};
 use crate::{plane, views};
 
-pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
+pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
     let mut files = Files::reading(inputs.into_iter().flatten());
     let picture = Picture::new(&mut files, &output(options))?;
@@ -40,18 +41,18 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
                 return Err(Failure::input(format!("{option} {problem}")));
             }
             let scene = views::at(scene, options.time)?;
-            Plot::of(options, &picture, &scene)?.draw(&Slice::planar())
+            Plot::of(options, &picture, &scene)?.draw(&Slice::planar(), interrupt)
         }
         AnyScene::Spatial(scene) => {
             let scene = views::at(scene, options.time)?;
             let plot = Plot::of(options, &picture, &scene)?;
             if let Some(view) = plot.named {
-                return plot.draw(&views::plane(view)?);
+                return plot.draw(&views::plane(view)?, interrupt);
             }
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
-            plot.draw(&plane(options, through)?)
+            plot.draw(&plane(options, through)?, interrupt)
         }
     }
 }
@@ -171,14 +172,13 @@ where
     }
 
     /// Draws the scene on `plane`, and reports the picture.
-    fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
-        let Self { options, scene, .. } = self;
+    fn draw(&self, plane: &Slice, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+        let options = self.options;
         let view = self.view(plane)?;
-        let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
-            .map_err(Failure::input)?;
-        let isolines = match self.step() {
-            Some(step) => isolines.with_step(step).map_err(Failure::input)?,
-            None => self.mapped(isolines, plane).map_err(Failure::input)?,
+        let isolines = self.isolines(plane, &view, interrupt).map_err(Failure::input)?;
+        let Some(isolines) = isolines else {
+            output::remark("interrupted: there is no picture");
+            return Ok(Outcome::Interrupted);
         };
         let drawn = Drawn {
             step: isolines.step(),
@@ -202,12 +202,34 @@ where
         Ok(Outcome::Yes)
     }
 
-    /// The picture with the colours of the map.
-    fn mapped(&self, isolines: Isolines, plane: &Slice) -> Result<Isolines, PlotError> {
+    /// The isolines or what is in their place; `None` if interrupted.
+    fn isolines(
+        &self,
+        plane: &Slice,
+        view: &View,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Isolines>, PlotError> {
+        let isolines = picture::scene(self.scene, plane, view)?;
+        if let Some(step) = self.step() {
+            return isolines.with_step(step).map(Some);
+        }
         let (shape, map) = (&self.scene.whole, self.options.map);
+        interrupt.heed();
         match (&self.compared, map.of_one_field()) {
-            (Compared::Nothing, Some(map)) => picture::mapped(shape, plane, isolines, map),
-            (compared, _) => compared.draw(map, shape, isolines, plane),
+            (Compared::Nothing, Some(map)) => {
+                let grid = Sampling::new(<Dimensions as Drawable<D>>::COMPARED)?;
+                let bar = error_map::bar();
+                bar.inc_length(isolines.compared_places(grid).len() as u64);
+                let watch = || {
+                    bar.inc(1);
+                    !interrupt.is_asked()
+                };
+                let colours = Colours { map, grid, watch: &watch };
+                let mapped = picture::mapped(shape, plane, isolines, colours);
+                bar.finish_and_clear();
+                mapped
+            }
+            (compared, _) => compared.draw(map, shape, isolines, plane).map(Some),
         }
     }
 
@@ -234,6 +256,7 @@ where
                 "smallest_at_m": point(measured.smallest_at),
                 "largest": measured.largest,
                 "largest_at_m": point(measured.largest_at),
+                "open_share": measured.open,
             });
         }
         if let Some(touched) = &self.touched {
@@ -248,9 +271,16 @@ where
         match (self.options.map, &drawn.measured) {
             (PlotMap::Distance, _) => format!("isolines every {} m", drawn.step),
             (PlotMap::Gradient, _) => "directions of the gradient".to_owned(),
-            (PlotMap::Promise, None) => "promises".to_owned(),
-            (PlotMap::Promise, Some(Measured { smallest, largest, .. })) => {
-                format!("promises; {} from {smallest:.3} to {largest:.3}", gauge::<D>())
+            (PlotMap::Promise, None) => "promises; value over distance is open".to_owned(),
+            (PlotMap::Promise, Some(Measured { smallest, largest, open, .. })) => {
+                let open = if *open > 0.0 {
+                    format!(", open in {:.1} % of the picture", 100.0 * open)
+                } else {
+                    String::new()
+                };
+                format!(
+                    "promises; value over distance from {smallest:.3} to {largest:.3}{open}"
+                )
             }
             (PlotMap::Error, None) => "errors: there is no direction in view".to_owned(),
             (PlotMap::Error, Some(Measured { smallest, largest, .. })) => {
@@ -268,7 +298,7 @@ where
         match (&self.compared, self.options.map) {
             (Compared::Other(_), _) => "difference_m",
             (Compared::Gradient(_), PlotMap::Error) => "error_degrees",
-            _ => gauge::<D>(),
+            _ => "value_over_distance",
         }
     }
 }
@@ -279,19 +309,8 @@ struct Drawn {
     step: f64,
     /// The smallest and the largest value [m].
     range: (f64, f64),
-    /// The extremes of the number that is compared with the promise.
+    /// The extremes of the value over the true distance.
     measured: Option<Measured>,
-}
-
-/// The JSON key of the number that is compared with the promise.
-fn gauge<const D: usize>() -> &'static str
-where
-    Dimensions: Drawable<D>,
-{
-    match <Dimensions as Drawable<D>>::GAUGE {
-        Gauge::Distance => "value_over_distance",
-        Gauge::Steepness => "steepness",
-    }
 }
 
 fn output(options: &PlotOptions) -> PathBuf {

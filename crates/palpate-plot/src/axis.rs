@@ -40,6 +40,11 @@ impl Axis {
         Self { name: name.to_owned(), start, end, step, ticks }
     }
 
+    /// The same axis with another name.
+    pub(crate) fn named(&self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self.clone() }
+    }
+
     /// The place of `value` between start (0) and end (1).
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         (value - self.start) / (self.end - self.start)

@@ -10,7 +10,7 @@ use crate::geometry::{Point, Rect, distance};
 use crate::legend::{self, Entry, Key};
 use crate::overlay::Dash;
 use crate::palette::Color;
-use crate::text::{Anchor, CAP_HEIGHT};
+use crate::text::{Anchor, CAP_HEIGHT, shorten};
 
 /// Height of a chart's plot [px].
 const HEIGHT: f64 = 210.0;
@@ -151,13 +151,7 @@ impl Chart {
     }
 
     fn axis(&self, index: usize, length: f64) -> Axis {
-        let values = self.series.iter().flat_map(|s| &s.points).map(|p| p[index]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
-        let margin = if index == 0 { 0.0 } else { MARGIN };
-        let name = if index == 0 { self.x.label() } else { self.y.label() };
-        Axis::new(&name, widened(low, high, margin), length, TICK_SPACING[index])
+        axis_of(&[self], index, length, TICK_SPACING[index])
     }
 
     /// Draws the chart into `area` from its top; its plot starts `gutter` right of its left
@@ -168,12 +162,28 @@ impl Chart {
         if !self.title.is_empty() {
             let style = TextStyle::SUBTITLE;
             let at = [left, top + CAP_HEIGHT * style.size];
-            drawing.label(&self.title, at, Anchor::Start, style);
+            let title = shorten(&self.title, style.size, style.weight, area.max[0] - left);
+            drawing.label(&title, at, Anchor::Start, style);
             top += 24.0;
         }
         let plot = Rect::new(left, top, area.max[0] - left, HEIGHT);
         let (x, y) = (self.axis(0, plot.width()), self.axis(1, HEIGHT));
-        draw_grid(drawing, &plot, &x, &y);
+        let entries = self.draw_lines(drawing, &plot, &[&x, &y]);
+        x.draw_below(drawing, &plot);
+        y.draw_left(drawing, &plot, area.min[0]);
+        let origin = [left, plot.max[1] + BELOW + 10.0];
+        let height = legend::draw(drawing, &entries, origin, plot.width());
+        origin[1] + height - area.min[1]
+    }
+
+    /// Draws the grid and the lines over these axes into `plot` [px]; returns the legend.
+    pub(crate) fn draw_lines(
+        &self,
+        drawing: &mut Drawing,
+        plot: &Rect,
+        [x, y]: &[&Axis; 2],
+    ) -> Vec<Entry> {
+        draw_grid(drawing, plot, x, y);
         let mut entries = Vec::new();
         for (index, series) in self.series.iter().enumerate() {
             let dash = series.dash.unwrap_or(Dash::of_series(index)).lengths(LINE);
@@ -190,12 +200,24 @@ impl Chart {
             drawing.stroke(Path::line(&thin(&pixels)), stroke.clone());
             entries.push(Entry::new(Key::Line(stroke), &*series.name));
         }
-        x.draw_below(drawing, &plot);
-        y.draw_left(drawing, &plot, area.min[0]);
-        let origin = [left, plot.max[1] + BELOW + 10.0];
-        let height = legend::draw(drawing, &entries, origin, plot.width());
-        origin[1] + height - area.min[1]
+        entries
     }
+
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+}
+
+/// The axis of all `charts`, across (0) or up (1), on a side of `length` with ticks about
+/// `spacing` apart, both [px]. It has the name of the first chart's.
+pub(crate) fn axis_of(charts: &[&Chart], index: usize, length: f64, spacing: f64) -> Axis {
+    let series = charts.iter().flat_map(|chart| &chart.series);
+    let values = series.flat_map(|series| &series.points).map(|p| p[index]);
+    let (low, high) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let margin = if index == 0 { 0.0 } else { MARGIN };
+    let name = charts.first().map(|chart| [&chart.x, &chart.y][index].label());
+    Axis::new(&name.unwrap_or_default(), widened(low, high, margin), length, spacing)
 }
 
 /// A range that holds `[low, high]` with a `margin` relative to its span, and is never empty.

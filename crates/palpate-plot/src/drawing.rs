@@ -50,6 +50,12 @@ impl Path {
         path
     }
 
+    pub(crate) fn lines(lines: &[Vec<Point>]) -> Self {
+        let mut path = Self::default();
+        lines.iter().for_each(|line| path.add_line(line));
+        path
+    }
+
     pub(crate) fn ring(points: &[Point]) -> Self {
         let mut path = Self::default();
         path.add_ring(points);
@@ -111,6 +117,8 @@ pub(crate) struct Mark {
     /// Filled by the even-odd rule.
     pub(crate) is_even_odd: bool,
     pub(crate) fill: Option<Color>,
+    /// Of the fill, from 0 (invisible) to 1.
+    pub(crate) opacity: f64,
     pub(crate) stroke: Option<Stroke>,
     /// The text that the path spells.
     pub(crate) text: Option<String>,
@@ -118,7 +126,7 @@ pub(crate) struct Mark {
 
 impl Mark {
     fn new(path: Path, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
-        Self { path, is_even_odd: false, fill, stroke, text: None }
+        Self { path, is_even_odd: false, fill, opacity: 1.0, stroke, text: None }
     }
 }
 
@@ -170,9 +178,9 @@ impl Drawing {
         self.push(Mark::new(path, None, Some(stroke)));
     }
 
-    /// Fills `path` by the even-odd rule.
-    pub(crate) fn fill_rings(&mut self, path: Path, color: Color) {
-        self.push(Mark { is_even_odd: true, ..Mark::new(path, Some(color), None) });
+    /// Fills `path` by the even-odd rule, with an `opacity` from 0 (invisible) to 1.
+    pub(crate) fn fill_rings(&mut self, path: Path, color: Color, opacity: f64) {
+        self.push(Mark { is_even_odd: true, opacity, ..Mark::new(path, Some(color), None) });
     }
 
     /// Draws `image` over `rect`.

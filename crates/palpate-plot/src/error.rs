@@ -79,6 +79,14 @@ pub enum PlotError {
         /// Its parts to the right, up, and towards the viewer.
         gradient: [f64; 3],
     },
+    /// There are more or fewer comparisons than places in the picture.
+    #[error("the picture compares values at {expected} places, got {count}")]
+    Comparisons {
+        /// The comparisons given.
+        count: usize,
+        /// The places.
+        expected: usize,
+    },
     /// The ends of a scale of decades are no interval of positive numbers.
     #[error(
         "the ends of a scale of decades must be positive, the lower one first, got {low} and {high}"

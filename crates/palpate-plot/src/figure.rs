@@ -8,6 +8,7 @@ use crate::drawing::{Drawing, TextStyle};
 use crate::error::PlotError;
 use crate::geometry::Rect;
 use crate::isolines::Isolines;
+use crate::panels::Panels;
 use crate::sheet::Sheet;
 use crate::text::{Anchor, CAP_HEIGHT, LINE_HEIGHT, wrap};
 use crate::views::Views;
@@ -47,6 +48,7 @@ enum Part {
     Views(Views),
     Sheet(Sheet),
     Chart(Chart),
+    Panels(Panels),
 }
 
 impl Figure {
@@ -102,6 +104,32 @@ impl Figure {
         self
     }
 
+    /// With small charts of one quantity below the parts so far, two in a row, which share their
+    /// axes. Each has its [title](Chart::with_title) above it; lines of the same name have one
+    /// entry in the legend.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::{Chart, Color, Figure, Quantity, Series};
+    ///
+    /// let finger = |number: usize| {
+    ///     let force = Series::new("force", [[0.0, 0.0], [1.0, 0.2 * number as f64]])?;
+    ///     let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+    ///     let chart = chart.with_series(force.with_color(Color::numbered(number)));
+    ///     Ok(chart.with_title(format!("finger {number}")))
+    /// };
+    /// let fingers = (0..5).map(finger).collect::<Result<Vec<_>, palpate_plot::PlotError>>()?;
+    /// let svg = Figure::new("A hand").with_panels(fingers).to_svg();
+    /// assert_eq!(svg.matches("aria-label=\"force [N]\"").count(), 1);
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub fn with_panels(mut self, charts: impl IntoIterator<Item = Chart>) -> Self {
+        self.parts.push(Part::Panels(Panels::new(charts.into_iter().collect())));
+        self
+    }
+
     /// The figure as an SVG document.
     #[must_use]
     pub fn to_svg(&self) -> String {
@@ -132,6 +160,7 @@ impl Figure {
             Part::Views(views) => views.gutter(room),
             Part::Sheet(_) => 0.0,
             Part::Chart(chart) => chart.gutter(),
+            Part::Panels(panels) => panels.gutter(),
         });
         // Parts share their left edge; the limit keeps very wide labels from pushing plots out.
         let gutter = gutters.fold(0.0, f64::max).min(0.4 * room);
@@ -145,6 +174,7 @@ impl Figure {
                 Part::Views(views) => views.draw(&mut drawing, &area, gutter),
                 Part::Sheet(sheet) => sheet.draw(&mut drawing, &area),
                 Part::Chart(chart) => chart.draw(&mut drawing, &area, gutter),
+                Part::Panels(panels) => panels.draw(&mut drawing, &area, gutter),
             };
         }
         drawing.height = (y + MARGIN).ceil();
@@ -261,7 +291,11 @@ mod tests {
             let name = "a name that is much too long for one line of the legend ".repeat(4);
             let series = Series::new(name, points.iter().copied()).unwrap();
             let chart = Chart::new(Quantity::new("x", ""), Quantity::new("y", ""));
-            check(&Figure::new("").with_chart(chart.with_series(series)));
+            let chart = chart.with_series(series).with_title("a title ".repeat(20));
+            check(&Figure::new("").with_chart(chart.clone()));
+            for count in [0, 1, 2, 5] {
+                check(&Figure::new("").with_panels(vec![chart.clone(); count]));
+            }
         }
         check(&Figure::new(""));
         check(&Figure::new("title ".repeat(60)).with_caption("caption ".repeat(60)));

@@ -38,6 +38,18 @@ impl Rect {
         self.contains(other.min) && self.contains(other.max)
     }
 
+    pub(crate) fn middle(&self) -> Point {
+        [0, 1].map(|k| (self.min[k] + self.max[k]) / 2.0)
+    }
+
+    /// The rectangle around both.
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self {
+            min: [0, 1].map(|k| self.min[k].min(other.min[k])),
+            max: [0, 1].map(|k| self.max[k].max(other.max[k])),
+        }
+    }
+
     pub(crate) fn corners(&self) -> [Point; 4] {
         let (a, b) = (self.min, self.max);
         [a, [b[0], a[1]], b, [a[0], b[1]]]
@@ -127,6 +139,18 @@ pub(crate) fn clip_ring(ring: &[Point], rect: &Rect) -> Vec<Point> {
     ring
 }
 
+/// Whether `p` lies within `rings` by the even-odd rule.
+pub(crate) fn is_within([x, y]: Point, rings: &[Vec<Point>]) -> bool {
+    let crosses = |a: Point, b: Point| {
+        (a[1] < y) != (b[1] < y) && x < a[0] + (b[0] - a[0]) * ((y - a[1]) / (b[1] - a[1]))
+    };
+    let crossings = rings.iter().map(|ring| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().zip(next).filter(|(a, b)| crosses(**a, **b)).count()
+    });
+    crossings.sum::<usize>() % 2 == 1
+}
+
 /// Drops points that lie within `tolerance` of the line without them (Ramer 1972, Douglas and
 /// Peucker 1973). Keeps both ends.
 pub(crate) fn simplify(line: &[Point], tolerance: f64) -> Vec<Point> {
@@ -205,6 +229,13 @@ mod tests {
         };
         assert_eq!(area.abs(), 0.5);
         assert!(clip_ring(&[[2.0, 2.0], [3.0, 2.0], [3.0, 3.0]], &UNIT).is_empty());
+    }
+
+    #[test]
+    fn holes_are_not_within() {
+        let rings = [UNIT.grown(1.0).corners().to_vec(), UNIT.corners().to_vec()];
+        assert!(is_within([-0.5, 0.3], &rings) && is_within([0.3, 1.7], &rings));
+        assert!(!is_within([0.2, 0.7], &rings) && !is_within([2.5, 0.7], &rings));
     }
 
     #[test]

@@ -43,12 +43,12 @@ impl Occupied {
         self.lines.push(line);
     }
 
-    fn add_text(&mut self, text: &Text<'_>) {
+    pub(crate) fn add_text(&mut self, text: &Text<'_>) {
         self.discs.extend(discs(text));
     }
 
     /// `true` if `text` is clear of all discs, and of all lines if `and_lines`.
-    fn is_free(&self, text: &Text<'_>, and_lines: bool) -> bool {
+    pub(crate) fn is_free(&self, text: &Text<'_>, and_lines: bool) -> bool {
         discs(text).into_iter().all(|(center, radius)| {
             let reach = radius + CLEARANCE;
             let is_off = |line: &Vec<Point>| {

@@ -3,6 +3,7 @@
 
 //! Symbols and the legend that explains them.
 
+use crate::body_picture;
 use crate::drawing::{Drawing, Path, Stroke, TextStyle};
 use crate::geometry::{Point, Rect, distance};
 use crate::palette::Color;
@@ -39,6 +40,10 @@ pub(crate) enum Key {
     Promised(Promised),
     /// The colours of a measurement, between two numbers.
     Scale(Promised, [f64; 2]),
+    /// The outline and the tint of a body.
+    Body(Stroke, Color),
+    /// The hatching of what bodies share.
+    Shared,
     /// The colours of other numbers.
     Values(Ramp),
     /// Words only.
@@ -81,7 +86,12 @@ impl Key {
             Self::Wheel(_) => wheel::SIZE,
             Self::Scale(..) => trust::SCALE[0],
             Self::Values(_) => scale::SIZE[0],
-            Self::Bands(_) | Self::Line(_) | Self::Swatch(_) | Self::Promised(_) => KEY,
+            Self::Bands(_)
+            | Self::Line(_)
+            | Self::Swatch(_)
+            | Self::Promised(_)
+            | Self::Body(..)
+            | Self::Shared => KEY,
             Self::Arrow(_, length) => length.max(12.0),
             Self::Point(..) => 12.0,
             Self::None => -GAP,
@@ -112,12 +122,24 @@ impl Key {
             Self::Swatch(color) => draw_swatch(drawing, x, y, *color, |_, _| {}),
             Self::Promised(promised) => {
                 let hatch = |drawing: &mut Drawing, rect: &Rect| {
-                    promised.hatch(drawing, rect, |_| true);
+                    promised.hatch(drawing, rect, &[], |_| true);
                 };
                 draw_swatch(drawing, x, y, promised.tint(), hatch);
             }
             Self::Scale(promised, ends) => {
                 trust::draw_scale(drawing, [x, y], *promised, *ends);
+            }
+            Self::Body(stroke, tint) => {
+                let rect = Rect::new(x + 1.0, y - 6.0, KEY - 2.0, 12.0);
+                drawing.fill(Path::rect(&rect), *tint);
+                drawing.stroke(Path::rect(&rect), stroke.clone());
+            }
+            Self::Shared => {
+                let hatch = |drawing: &mut Drawing, rect: &Rect| {
+                    let lines = body_picture::SHARED.over(rect, &[], |_| true);
+                    drawing.stroke(lines, body_picture::shared_stroke());
+                };
+                draw_swatch(drawing, x, y, Color::WHITE, hatch);
             }
             Self::Values(ramp) => ramp.draw(drawing, [x, y]),
             Self::None => {}

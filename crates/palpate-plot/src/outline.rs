@@ -28,8 +28,7 @@ impl Outline {
     /// cell of zero belong to the surface.
     pub(crate) fn of_samples(samples: &Samples) -> Self {
         let lines = rings(samples, 0.0);
-        let mut negated = samples.clone();
-        negated.values.iter_mut().for_each(|value| *value = -*value);
+        let negated = samples.negated();
         let is_thin = samples.has_thin_surface();
         let solids = if is_thin { rings(&negated, -negated.cell) } else { Vec::new() };
         Self { rings: rings(&negated, 0.0), lines, solids }
@@ -53,9 +52,6 @@ impl Outline {
     pub(crate) fn bounds(&self, window: &Rect) -> Option<Rect> {
         let seen = self.lines.iter().flatten().copied().filter(|p| window.contains(*p));
         let solids = self.solids.iter().flat_map(|ring| clip_ring(ring, window));
-        seen.chain(solids).map(|p| Rect { min: p, max: p }).reduce(|a, b| Rect {
-            min: [0, 1].map(|k| a.min[k].min(b.min[k])),
-            max: [0, 1].map(|k| a.max[k].max(b.max[k])),
-        })
+        seen.chain(solids).map(|p| Rect { min: p, max: p }).reduce(|a, b| a.union(&b))
     }
 }

@@ -29,7 +29,7 @@ pub(crate) struct Overlays<'a> {
     lines: Vec<(&'a Polyline, Stroke)>,
     arrows: Vec<(&'a Arrows, Color)>,
     markers: Vec<(&'a Markers, Symbol, Color)>,
-    /// Legend, in the order in which the overlays were added.
+    /// Legend, in the order in which the overlays were added; overlays of one name have one entry.
     pub(crate) entries: Vec<Entry>,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Overlays<'a> {
                     let stroke = Stroke::new(line.color.unwrap_or(Color::MUTED), width)
                         .with_opacity(opacity)
                         .with_dash(dash);
-                    all.entries.push(Entry::new(Key::Line(stroke.clone()), &*line.name));
+                    all.explain(Entry::new(Key::Line(stroke.clone()), &*line.name));
                     all.lines.push((line, stroke));
                 }
                 Overlay::Polyline(line) => {
@@ -63,12 +63,12 @@ impl<'a> Overlays<'a> {
                     bold += 1;
                     let stroke = Stroke::new(line.color.unwrap_or(next), LINE)
                         .with_dash(dash.lengths(LINE));
-                    all.entries.push(Entry::new(Key::Line(stroke.clone()), &*line.name));
+                    all.explain(Entry::new(Key::Line(stroke.clone()), &*line.name));
                     all.lines.push((line, stroke));
                 }
                 Overlay::Arrows(arrows) => {
                     let color = arrows.color.unwrap_or(next);
-                    all.entries.push(arrow_entry(arrows, color));
+                    all.explain(arrow_entry(arrows, color));
                     all.arrows.push((arrows, color));
                 }
                 Overlay::Markers(markers) => {
@@ -79,12 +79,19 @@ impl<'a> Overlays<'a> {
                         Symbol::of_series(symbols - 1)
                     };
                     let color = markers.color.unwrap_or(next);
-                    all.entries.push(Entry::new(Key::Point(symbol, color), &*markers.name));
+                    all.explain(Entry::new(Key::Point(symbol, color), &*markers.name));
                     all.markers.push((markers, symbol, color));
                 }
             }
         }
         all
+    }
+
+    /// Adds an entry to the legend, unless one says the same.
+    fn explain(&mut self, entry: Entry) {
+        if self.entries.iter().all(|known| known.text != entry.text) {
+            self.entries.push(entry);
+        }
     }
 
     /// Marks the room that the overlays cover as occupied.

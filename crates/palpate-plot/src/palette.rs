@@ -57,10 +57,38 @@ impl Color {
         [Self::GREEN, Self::PURPLE, Self::VERMILION, Self::NAVY, Self::INK][index % 5]
     }
 
+    /// The colour of body or contact point number `number`: twelve that are told apart, which
+    /// repeat.
+    ///
+    /// ```
+    /// use palpate_plot::Color;
+    ///
+    /// assert_ne!(Color::numbered(3), Color::numbered(9));
+    /// assert_eq!(Color::numbered(12), Color::numbered(0));
+    /// ```
+    #[must_use]
+    pub fn numbered(number: usize) -> Self {
+        NUMBERED[number % NUMBERED.len()]
+    }
+
     /// `self` for `t` = 0, `other` for `t` = 1, with perceptually even steps between.
     pub(crate) fn mix(self, other: Self, t: f64) -> Self {
         let (a, b) = (self.to_oklab(), other.to_oklab());
         Self::from_oklab([0, 1, 2].map(|i| a[i] + t * (b[i] - a[i])))
+    }
+
+    /// `self` below a layer of `other` with an `opacity` from 0 (invisible) to 1, as renderers
+    /// compose them.
+    pub(crate) fn below(self, other: Self, opacity: f64) -> Self {
+        let part = |below: u8, above: u8| {
+            let (below, above) = (f64::from(below), f64::from(above));
+            (below + opacity * (above - below)).round() as u8
+        };
+        Self::rgb(
+            part(self.red, other.red),
+            part(self.green, other.green),
+            part(self.blue, other.blue),
+        )
     }
 
     /// Perceived lightness, from 0 (black) to 1 (white).
@@ -104,10 +132,28 @@ impl Color {
     }
 }
 
+/// Colours far from each other, from ink and from the bands outside.
+const NUMBERED: [Color; 12] = [
+    Color::rgb(0x1B, 0x5F, 0xB0), // blue
+    Color::rgb(0xA8, 0x2A, 0x1A), // brick
+    Color::rgb(0x1A, 0x7D, 0x3C), // green
+    Color::rgb(0x74, 0x3A, 0xA6), // violet
+    Color::rgb(0x00, 0xA0, 0xA8), // teal
+    Color::rgb(0xD6, 0x3C, 0x8C), // pink
+    Color::rgb(0x8C, 0x80, 0x00), // olive
+    Color::rgb(0x14, 0x14, 0x6E), // navy
+    Color::rgb(0x6B, 0x44, 0x20), // brown
+    Color::rgb(0x5C, 0xB8, 0xF0), // sky
+    Color::rgb(0x83, 0x88, 0x8F), // grey
+    Color::rgb(0x6A, 0x0A, 0x48), // plum
+];
+
 /// The side of the surface a band lies on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
     Inside,
+    /// The inside, where bodies tint it in colours of their own.
+    InsideBodies,
     Outside,
 }
 
@@ -116,6 +162,7 @@ impl Side {
     const fn ends(self) -> (Color, Color) {
         match self {
             Self::Inside => (Color::rgb(0xB4, 0xD3, 0xEC), Color::rgb(0x5F, 0x9B, 0xCE)),
+            Self::InsideBodies => (Color::rgb(0xF4, 0xF4, 0xF4), Color::rgb(0xB6, 0xB8, 0xBB)),
             Self::Outside => (Color::rgb(0xF9, 0xD2, 0xA2), Color::rgb(0xFF, 0xF9, 0xF0)),
         }
     }
@@ -124,6 +171,7 @@ impl Side {
     pub(crate) const fn line(self) -> Color {
         match self {
             Self::Inside => Color::rgb(0x2F, 0x69, 0x9E),
+            Self::InsideBodies => Color::rgb(0x6A, 0x6E, 0x74),
             Self::Outside => Color::rgb(0xC0, 0x86, 0x45),
         }
     }
@@ -132,6 +180,7 @@ impl Side {
     pub(crate) const fn label(self) -> Color {
         match self {
             Self::Inside => Color::rgb(0x0C, 0x2C, 0x4C),
+            Self::InsideBodies => Color::rgb(0x2C, 0x2F, 0x34),
             Self::Outside => Color::rgb(0x5E, 0x36, 0x06),
         }
     }
@@ -159,6 +208,21 @@ mod tests {
     fn oklab_goes_there_and_back() {
         for color in [Color::GREEN, Color::WHITE, Color::INK, Color::rgb(255, 0, 7)] {
             assert_eq!(Color::from_oklab(color.to_oklab()), color);
+        }
+    }
+
+    /// The just noticeable difference is about 0.02.
+    #[test]
+    fn numbered_colours_are_told_apart() {
+        let apart = |a: Color, b: Color| {
+            let (a, b) = (a.to_oklab(), b.to_oklab());
+            (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+        };
+        for (number, &color) in NUMBERED.iter().enumerate() {
+            assert!(apart(color, Color::INK) > 0.13, "{number}");
+            for &other in &NUMBERED[..number] {
+                assert!(apart(color, other) > 0.1, "{number}: {}", apart(color, other));
+            }
         }
     }
 

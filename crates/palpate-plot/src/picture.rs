@@ -3,10 +3,11 @@
 
 //! Draws bands, isolines, their labels and the scale bar.
 
+use crate::body_picture::Bodies;
 use crate::contours::rings;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint, TextStyle};
-use crate::frame::{Frame, TOLERANCE};
-use crate::geometry::{Point, Rect, clip_line, clip_ring, simplify};
+use crate::frame::Frame;
+use crate::geometry::{Point, Rect};
 use crate::labels::{self, Occupied};
 use crate::levels::Levels;
 use crate::numbers::{round_down, write, write_length};
@@ -23,9 +24,6 @@ const SPECK: f64 = 2.5;
 const SURFACE: f64 = 2.8;
 const CASING: f64 = 5.6;
 
-/// Half the length of a line that is a point [px].
-const DOT: f64 = 0.05;
-
 /// The line of the surface.
 pub(crate) fn surface_stroke() -> Stroke {
     Stroke::new(Color::INK, SURFACE)
@@ -41,6 +39,8 @@ pub(crate) fn isoline_stroke(side: Side) -> Stroke {
 pub(crate) struct Picture<'a> {
     pub(crate) samples: &'a Samples,
     pub(crate) outline: &'a Outline,
+    /// The colours of the inside.
+    pub(crate) inside: Side,
     pub(crate) levels: &'a Levels,
     pub(crate) frame: Frame,
 }
@@ -64,44 +64,56 @@ impl Lines {
 }
 
 impl Picture<'_> {
-    /// Paints the lowest band everywhere, then each higher one over it, which leaves no seams.
-    pub(crate) fn draw_bands(&self, drawing: &mut Drawing) {
-        let step = self.levels.step;
-        let lowest = match self.levels.values.first() {
-            Some(first) => first - 0.5 * step,
-            None => self.samples.range().0,
-        };
-        drawing.fill(Path::rect(&self.frame.plot), self.band(lowest));
-        for &level in &self.levels.values {
-            let rings = if level == 0.0 { self.outside() } else { self.rings(level) };
-            let path = self.region(&rings);
-            drawing.fill_rings(path, self.band(level + 0.5 * step));
+    /// Paints the bands outside over one another from the surface on, and over them those inside
+    /// `insides`, rings around the inside of each body [px]; that leaves no seams.
+    pub(crate) fn draw_bands(&self, drawing: &mut Drawing, insides: &[Vec<Vec<Point>>]) {
+        let half = 0.5 * self.levels.step;
+        let (low, high) = self.samples.range();
+        let (inside, outside): (Vec<f64>, Vec<f64>) =
+            self.levels.values.iter().filter(|level| **level != 0.0).partition(|l| **l < 0.0);
+        // Where the picture shows one side only, its bands begin far from the surface.
+        let first = |levels: Option<&f64>, end: f64| levels.map_or(end, |level| *level);
+        let nearest = if low > 0.0 { first(outside.first(), low + half) - half } else { half };
+        drawing.fill(Path::rect(&self.frame.plot), self.band(nearest));
+        for level in outside {
+            let path = self.frame.region(&self.rings(self.samples, level));
+            drawing.fill_rings(path, self.band(level + half), 1.0);
+        }
+        let nearest = if high < 0.0 { first(inside.last(), high - half) + half } else { -half };
+        for rings in insides {
+            drawing.fill_rings(self.frame.region(rings), self.band(nearest), 1.0);
+        }
+        let negated = self.samples.negated();
+        for level in inside.into_iter().rev() {
+            let path = self.frame.region(&self.rings(&negated, -level));
+            drawing.fill_rings(path, self.band(level - half), 1.0);
         }
     }
 
     /// Finds the isolines.
     pub(crate) fn lines(&self) -> Lines {
-        let lines = |rings: &[Vec<Point>]| -> Vec<Vec<Point>> {
-            let pieces = rings.iter().flat_map(|ring| clip_line(ring, &self.frame.plot));
-            let simple = pieces.map(|line| simplify(&line, TOLERANCE));
-            simple.filter(|line| line.len() > 1).collect()
-        };
         let levels = self.levels.values.iter().filter(|level| **level != 0.0);
-        let Outline { lines: surface, solids, .. } = self.outline;
+        let Outline { lines, solids, .. } = self.outline;
         Lines {
-            surface: lines(&self.pixels(surface)).into_iter().map(visible).collect(),
+            surface: self.frame.shown(&self.pixels(lines)),
             solids: self.pixels(solids),
-            rest: levels.map(|&level| (level, lines(&self.rings(level)))).collect(),
+            rest: levels
+                .map(|&level| (level, self.frame.shown(&self.rings(self.samples, level))))
+                .collect(),
         }
     }
 
-    /// Draws the isolines, the surface over the others.
+    /// Draws the isolines without the surface.
     pub(crate) fn draw_lines(&self, drawing: &mut Drawing, lines: &Lines) {
         for (level, lines) in &lines.rest {
-            drawing.stroke(path_of(lines), isoline_stroke(side_of(*level)));
+            drawing.stroke(Path::lines(lines), isoline_stroke(self.side(*level)));
         }
-        drawing.stroke(path_of(&lines.surface), surface_stroke());
-        drawing.fill_rings(self.region(&lines.solids), Color::INK);
+    }
+
+    /// Draws the surface.
+    pub(crate) fn draw_surface(&self, drawing: &mut Drawing, lines: &Lines) {
+        drawing.stroke(Path::lines(&lines.surface), surface_stroke());
+        drawing.fill_rings(self.frame.region(&lines.solids), Color::INK, 1.0);
     }
 
     /// Draws the labels of the isolines where there is room.
@@ -109,6 +121,7 @@ impl Picture<'_> {
         &self,
         drawing: &mut Drawing,
         lines: &Lines,
+        bodies: &Bodies<'_>,
         occupied: &mut Occupied,
     ) {
         // From the surface outwards on each side, so that labels line up.
@@ -122,11 +135,11 @@ impl Picture<'_> {
                 let spots = labels::place_on_lines(lines, &label, plot, &neighbours, occupied);
                 for spot in &spots {
                     let text = spot.text(&label);
-                    let (around, width) = (self.around(*level), 4.5);
+                    let (around, width) = (bodies.tinted(self.around(*level), spot.at), 4.5);
                     // Covers the line, which would show between letters and above a decimal
                     // point.
                     drawing.stroke(text.middle(), Stroke::new(around, width));
-                    let color = side_of(*level).label();
+                    let color = self.side(*level).label();
                     drawing.text(&text, TextPaint { color, halo: Some((around, width)) });
                 }
                 if !spots.is_empty() {
@@ -138,8 +151,11 @@ impl Picture<'_> {
 
     /// Draws a white rim under the surface, which sets it off from dark colours.
     pub(crate) fn draw_casing(&self, drawing: &mut Drawing, lines: &Lines) {
-        drawing.stroke(path_of(&lines.surface), Stroke::new(Color::WHITE, CASING));
-        drawing.stroke(self.region(&lines.solids), Stroke::new(Color::WHITE, CASING - SURFACE));
+        drawing.stroke(Path::lines(&lines.surface), Stroke::new(Color::WHITE, CASING));
+        drawing.stroke(
+            self.frame.region(&lines.solids),
+            Stroke::new(Color::WHITE, CASING - SURFACE),
+        );
     }
 
     /// Draws the scale bar at the right of the row of the axis name whose baseline is `y`, or
@@ -159,17 +175,10 @@ impl Picture<'_> {
         extra
     }
 
-    /// Rings around the samples at or above `level` [m], which is not the surface, in pixels.
-    fn rings(&self, level: f64) -> Vec<Vec<Point>> {
-        let mut rings = self.pixels(&rings(self.samples, level));
+    /// Rings around the `samples` at or above `level` [m], which is not the surface, in pixels.
+    fn rings(&self, samples: &Samples, level: f64) -> Vec<Vec<Point>> {
+        let mut rings = self.pixels(&rings(samples, level));
         rings.retain(|ring| extent(ring) > SPECK);
-        rings
-    }
-
-    /// Rings around the outside: around the inside, and around the plot.
-    fn outside(&self) -> Vec<Vec<Point>> {
-        let mut rings = self.pixels(&self.outline.rings);
-        rings.push(self.frame.plot.corners().to_vec());
         rings
     }
 
@@ -177,26 +186,16 @@ impl Picture<'_> {
         lines.iter().map(|line| self.frame.pixels(line)).collect()
     }
 
-    /// The part of the plot within `rings` [px].
-    fn region(&self, rings: &[Vec<Point>]) -> Path {
-        let mut path = Path::default();
-        for ring in rings {
-            let ring = simplify(&clip_ring(ring, &self.frame.plot), TOLERANCE);
-            if ring.len() > 2 {
-                path.add_ring(&ring);
-            }
-        }
-        path
-    }
-
     /// Colour of the band that holds `value` [m].
     fn band(&self, value: f64) -> Color {
         let (inside, outside) = self.levels.bands();
         let index = (value.abs() / self.levels.step) as usize;
-        match side_of(value) {
-            Side::Inside => palette::band(Side::Inside, index.min(inside - 1), inside),
-            Side::Outside => palette::band(Side::Outside, index.min(outside - 1), outside),
-        }
+        let count = if value < 0.0 { inside } else { outside };
+        palette::band(self.side(value), index.min(count - 1), count)
+    }
+
+    fn side(&self, value: f64) -> Side {
+        if value < 0.0 { self.inside } else { Side::Outside }
     }
 
     /// The colour between the two bands that meet at `level` [m].
@@ -204,24 +203,6 @@ impl Picture<'_> {
         let half = 0.5 * self.levels.step;
         self.band(level - half).mix(self.band(level + half), 0.5)
     }
-}
-
-fn side_of(value: f64) -> Side {
-    if value < 0.0 { Side::Inside } else { Side::Outside }
-}
-
-/// A line that is a point, as one with ends that differ: writers leave out lines without length.
-fn visible(line: Vec<Point>) -> Vec<Point> {
-    match line[..] {
-        [[x, y], end] if [x, y] == end => vec![[x - DOT, y], [x + DOT, y]],
-        _ => line,
-    }
-}
-
-fn path_of(lines: &[Vec<Point>]) -> Path {
-    let mut path = Path::default();
-    lines.iter().for_each(|line| path.add_line(line));
-    path
 }
 
 /// The longer side of the box around `points`.

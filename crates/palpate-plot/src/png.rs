@@ -121,7 +121,7 @@ fn paint_mark(pixels: &mut Pixmap, mark: &Mark, transform: Transform) {
     }
     if let Some(color) = mark.fill {
         let rule = if mark.is_even_odd { FillRule::EvenOdd } else { FillRule::Winding };
-        pixels.fill_path(&path, &paint(color, 1.0), rule, transform, None);
+        pixels.fill_path(&path, &paint(color, mark.opacity), rule, transform, None);
     }
 }
 

@@ -104,12 +104,9 @@ impl Samples {
         Ok(Self { columns, rows, cell, origin, values })
     }
 
-    /// The value of the sample nearest to `p` [m].
-    pub(crate) fn value_near(&self, p: Point) -> f64 {
-        let index = |i: usize, count: usize| {
-            (((p[i] - self.origin[i]) / self.cell) as usize).min(count - 1)
-        };
-        self.values[index(1, self.rows) * self.columns + index(0, self.columns)]
+    /// The samples of the field with the other sign.
+    pub(crate) fn negated(&self) -> Self {
+        Self { values: self.values.iter().map(|value| -value).collect(), ..*self }
     }
 
     /// Whether the field is nowhere negative, but zero somewhere as far as samples can tell.

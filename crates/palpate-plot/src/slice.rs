@@ -158,6 +158,25 @@ impl Slice {
         }
     }
 
+    /// The parallel plane through `point` \[m\], with the same coordinates: those of what lies
+    /// one behind the other are the same.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::Slice;
+    ///
+    /// let behind = Slice::xy(0.0)?.parallel([0.5, 0.2, -0.3]);
+    /// assert_eq!(behind.point([0.1, 0.1]), [0.1, 0.1, -0.3]);
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub fn parallel(&self, point: [f64; 3]) -> Self {
+        let (normal, elevation) = (self.normal(), self.elevation(point));
+        let origin = std::array::from_fn(|k| self.origin[k] + elevation * normal[k]);
+        Self { origin, ..self.clone() }
+    }
+
     /// The point of space at plane coordinates `(s, t)`; all in metres.
     #[must_use]
     pub fn point(&self, [s, t]: [f64; 2]) -> [f64; 3] {

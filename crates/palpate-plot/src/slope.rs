@@ -21,13 +21,6 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// The length of the gradient.
-    #[must_use]
-    pub fn steepness(&self) -> f64 {
-        let [x, y, z] = self.gradient;
-        x.hypot(y).hypot(z)
-    }
-
     /// Refuses a slope at the point `at` that is not a number, or beyond all numbers drawn.
     ///
     /// # Errors
@@ -56,17 +49,43 @@ pub(crate) struct Pixels {
 }
 
 impl Pixels {
-    /// The pixels of `view`: [`FINER`] pixels for each cell of `sampling`.
+    /// The pixels of `view` for colours that follow a gradient: [`FINER`] pixels for each cell of
+    /// `sampling`.
     pub(crate) fn of(view: &View, sampling: Sampling) -> Self {
-        let cells = (FINER * sampling.cells() as f64).round();
-        let edge = view.width().max(view.height()) / cells;
+        Self::along(view, (FINER * sampling.cells() as f64).round())
+    }
+
+    /// The pixels of `view`, `count` along its longer side.
+    pub(crate) fn along(view: &View, count: f64) -> Self {
+        let edge = view.width().max(view.height()) / count;
         let sides = [view.width(), view.height()];
         let count = sides.map(|side| (side / edge).round().max(1.0) as usize);
         Self { min: view.min(), size: [0, 1].map(|i| sides[i] / count[i] as f64), count }
     }
 
+    /// How many there are.
+    pub(crate) fn number(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+
+    /// The pixels in a row.
+    pub(crate) fn width(&self) -> usize {
+        self.count[0]
+    }
+
+    /// The centres of the pixels, row by row from the top.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Vec<Point>> {
+        let Self { min, size, count } = *self;
+        let at = move |column: usize, row: usize| {
+            let place = [column, row].map(|i| i as f64 + 0.5);
+            [0, 1].map(|i| min[i] + place[i] * size[i])
+        };
+        let row = move |row: usize| (0..count[0]).map(|column| at(column, row)).collect();
+        (0..count[1]).rev().map(row)
+    }
+
     /// Evaluates `field` at the centres of the pixels, a row at a time, and colours each by
-    /// `color` of its place and slope.
+    /// `color` of its slope.
     ///
     /// # Errors
     ///
@@ -75,25 +94,15 @@ impl Pixels {
     pub(crate) fn paint(
         &self,
         field: impl FnMut(&[[f64; 2]], &mut [Slope]),
-        mut color: impl FnMut(Point, &Slope) -> Color,
+        color: impl Fn(&Slope) -> Color,
     ) -> Result<Image, PlotError> {
         let mut pixels = Vec::with_capacity(self.number());
         self.visit(field, |at, slope| {
             slope.check(at)?;
-            pixels.push(color(at, slope));
+            pixels.push(color(slope));
             Ok(())
         })?;
         Ok(Image { width: self.width(), pixels })
-    }
-
-    /// How many there are.
-    pub(crate) fn number(&self) -> usize {
-        self.count[0] * self.count[1]
-    }
-
-    /// Pixels in a row.
-    pub(crate) fn width(&self) -> usize {
-        self.count[0]
     }
 
     /// Evaluates `field` at the centres of the pixels, a row at a time, and shows each place with
@@ -103,14 +112,8 @@ impl Pixels {
         mut field: impl FnMut(&[[f64; 2]], &mut [T]),
         mut see: impl FnMut(Point, &T) -> Result<(), PlotError>,
     ) -> Result<(), PlotError> {
-        let [width, height] = self.count;
-        let mut points = vec![[0.0; 2]; width];
-        let mut found = vec![T::default(); width];
-        for row in (0..height).rev() {
-            for (column, p) in points.iter_mut().enumerate() {
-                let place = [column, row].map(|i| i as f64 + 0.5);
-                *p = [0, 1].map(|i| self.min[i] + place[i] * self.size[i]);
-            }
+        let mut found = vec![T::default(); self.width()];
+        for points in self.rows() {
             field(&points, &mut found);
             for (&at, found) in points.iter().zip(&found) {
                 see(at, found)?;
@@ -128,12 +131,8 @@ mod tests {
     fn pixels_cover_the_window_from_its_top_left_corner() {
         let view = View::new([1.0, 2.0], 0.4, 0.2).unwrap();
         let pixels = Pixels::of(&view, Sampling::new(8).unwrap());
-        let mut places = Vec::new();
-        let color = |at: Point, _: &Slope| {
-            places.push(at);
-            Color::WHITE
-        };
-        let image = pixels.paint(|_, _| {}, color).unwrap();
+        let places: Vec<Point> = pixels.rows().flatten().collect();
+        let image = pixels.paint(|_, _| {}, |_| Color::WHITE).unwrap();
         assert_eq!((image.width, image.height()), (20, 10));
         for (place, expected) in [(places[0], [0.81, 2.09]), (places[199], [1.19, 1.91])] {
             assert!((0..2).all(|i| (place[i] - expected[i]).abs() < 1e-15), "{place:?}");
@@ -147,7 +146,7 @@ mod tests {
         let field = |_: &[[f64; 2]], slopes: &mut [Slope]| {
             slopes.fill(Slope { value: 1.0, gradient: [1.0, f64::NAN, 0.0] });
         };
-        let error = pixels.paint(field, |_, _| Color::WHITE).unwrap_err();
+        let error = pixels.paint(field, |_| Color::WHITE).unwrap_err();
         assert_eq!(
             error.to_string(),
             "the gradient is [1.0, NaN, 0.0] at (-9.5, 9.5) m of the plane; it must be finite"

@@ -51,6 +51,9 @@ fn write_mark(svg: &mut String, mark: &Mark) {
         if mark.is_even_odd {
             svg.push_str(" fill-rule=\"evenodd\"");
         }
+        if mark.opacity < 1.0 {
+            svg.push_str(&format!(" fill-opacity=\"{}\"", Number(mark.opacity)));
+        }
         if let Some(text) = &mark.text {
             svg.push_str(&format!(" aria-label=\"{}\"", escape(text)));
         }

@@ -3,14 +3,16 @@
 
 //! Promises and how values compare with them, as colours.
 
-use crate::drawing::{Drawing, Image, Path, Stroke};
+use crate::drawing::{Drawing, Image, Stroke};
 use crate::error::PlotError;
 use crate::geometry::{Point, Rect};
+use crate::hatch::Hatching;
 use crate::legend::{Entry, Key};
+use crate::measured::Measured;
 use crate::numbers::write;
 use crate::palette::Color;
 use crate::scale::draw_bar;
-use crate::slope::{Pixels, Slope};
+use crate::slope::Pixels;
 
 /// The promise of a field's values f on one side of the surface, at the distance d from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,42 +25,40 @@ pub enum Promised {
     Lipschitz(f64),
 }
 
-/// The number that is compared with the promise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Gauge {
-    /// |f| over the distance to the surface that the picture shows. Only for fields in the
-    /// plane: on a slice through space, the nearest surface may lie outside the slice.
-    Distance,
-    /// The length of the gradient, which is one where the value is a distance, and possibly
-    /// elsewhere.
-    Steepness,
-}
-
-/// The extremes of a [`Gauge`], or of other numbers, over a picture, with their places in plane
-/// coordinates \[m\].
+/// A field's value at a point, beside bounds of the distance that it stands for.
+///
+/// # Examples
+///
+/// ```
+/// use palpate_plot::Comparison;
+///
+/// let loose = Comparison { value: -0.1, distance: [0.2, 0.25] };
+/// assert_eq!(loose.ratio(), [0.4, 0.5]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
-    /// The smallest number; of a gauge, that of the loosest value.
-    pub smallest: f64,
-    /// The first place where it was found.
-    pub smallest_at: [f64; 2],
-    /// The largest number; of a gauge, above one where values are too steep.
-    pub largest: f64,
-    /// The first place where it was found.
-    pub largest_at: [f64; 2],
+pub struct Comparison {
+    /// The value \[m\].
+    pub value: f64,
+    /// The distance to the nearest surface is at least, and at most, this \[m\]; not negative,
+    /// and infinite above where no surface was found.
+    pub distance: [f64; 2],
 }
 
-impl Measured {
-    /// Extends the `extremes` known so far to `x` at a place.
-    pub(crate) fn include(extremes: &mut Option<Self>, at: Point, x: f64) {
-        let first = Self { smallest: x, smallest_at: at, largest: x, largest_at: at };
-        let known = extremes.get_or_insert(first);
-        if x < known.smallest {
-            (known.smallest, known.smallest_at) = (x, at);
-        }
-        if x > known.largest {
-            (known.largest, known.largest_at) = (x, at);
-        }
+impl Comparison {
+    /// The value's size over the distance is at least, and at most, this.
+    #[must_use]
+    pub fn ratio(&self) -> [f64; 2] {
+        let [nearest, farthest] = self.distance;
+        let over = |distance: f64, at_zero: f64| {
+            if distance > 0.0 { self.value.abs() / distance } else { at_zero }
+        };
+        [over(farthest, 0.0), over(nearest, f64::INFINITY)]
+    }
+
+    /// The ratio nearest to one that the bounds allow; `None` if they leave it open.
+    fn measured(&self) -> Option<f64> {
+        let [low, high] = self.ratio();
+        (high - low <= OPEN).then(|| 1.0_f64.max(low).min(high))
     }
 }
 
@@ -66,6 +66,10 @@ impl Measured {
 /// deficiencies.
 const LOOSE: Color = Color::rgb(0x45, 0x1C, 0x70);
 const STEEP: Color = Color::rgb(0xC4, 0x4A, 0x00);
+/// A ratio is open if its bounds differ by more than this.
+const OPEN: f64 = 0.1;
+/// The colour where the ratio is open.
+const UNKNOWN: Color = Color::rgb(0x8C, 0x92, 0x9B);
 /// Lines of a hatching are this far apart [px].
 const HATCH: f64 = 13.0;
 
@@ -78,12 +82,12 @@ impl Promised {
         }
     }
 
-    /// The colour where `measured`: the tint for one, darker below and redder above.
-    fn color(self, measured: Option<f64>) -> Color {
-        match measured {
-            Some(low) if low < 1.0 => self.tint().mix(LOOSE, 1.0 - low.max(0.0)),
-            Some(high) => self.tint().mix(STEEP, (high - 1.0).clamp(0.0, 1.0)),
-            None => self.tint(),
+    /// The colour of a ratio: the tint for one, darker below and redder above.
+    fn color(self, ratio: f64) -> Color {
+        if ratio < 1.0 {
+            self.tint().mix(LOOSE, 1.0 - ratio.max(0.0))
+        } else {
+            self.tint().mix(STEEP, (ratio - 1.0).clamp(0.0, 1.0))
         }
     }
 
@@ -106,51 +110,24 @@ impl Promised {
         Entry::new(Key::Promised(self), text)
     }
 
-    /// The slopes of the lines that hatch the side, with y down.
-    fn hatching(self) -> &'static [f64] {
-        match self {
-            Self::Exact => &[],
-            Self::Bound => &[-1.0],
-            Self::Lipschitz(_) => &[-1.0, 1.0],
-        }
-    }
-
-    /// Hatches the part of `area` [px] where `is_here` is true, tested at each pixel.
+    /// Hatches `area` [px] where it lies in as many of `regions` as `is_here` says.
     pub(crate) fn hatch(
         self,
         drawing: &mut Drawing,
         area: &Rect,
-        is_here: impl Fn(Point) -> bool,
+        regions: &[&[Vec<Point>]],
+        is_here: impl Fn(usize) -> bool,
     ) {
-        let mut lines = Path::default();
-        for &slope in self.hatching() {
-            let start = if slope < 0.0 { area.min[1] } else { area.min[1] - area.width() };
-            let count = ((area.width() + area.height()) / HATCH) as usize;
-            for i in 0..=count {
-                let y = start + (i as f64 + 0.5) * HATCH;
-                let mut line: Vec<Point> = Vec::new();
-                for step in 0..=area.width() as usize {
-                    let x = step as f64;
-                    let p = [area.min[0] + x, y + slope * x];
-                    if area.contains(p) && is_here(p) {
-                        line.push(p);
-                    } else {
-                        add_ends(&mut lines, &mut line);
-                    }
-                }
-                add_ends(&mut lines, &mut line);
-            }
+        let slopes: &[f64] = match self {
+            Self::Exact => &[],
+            Self::Bound => &[-1.0],
+            Self::Lipschitz(_) => &[-1.0, 1.0],
+        };
+        for &slope in slopes {
+            let lines = Hatching { slope, spacing: HATCH }.over(area, regions, &is_here);
+            drawing.stroke(lines, Stroke::new(Color::MUTED, 0.7).with_opacity(0.55));
         }
-        drawing.stroke(lines, Stroke::new(Color::MUTED, 0.7).with_opacity(0.55));
     }
-}
-
-/// Adds the straight `line` to `path` by its ends, and empties it.
-fn add_ends(path: &mut Path, line: &mut Vec<Point>) {
-    if let [first, .., last] = line[..] {
-        path.add_line(&[first, last]);
-    }
-    line.clear();
 }
 
 /// Promises and measurements over a window.
@@ -158,45 +135,42 @@ fn add_ends(path: &mut Path, line: &mut Vec<Point>) {
 pub(crate) struct Trust {
     /// Outside and inside.
     pub(crate) promised: [Promised; 2],
-    pub(crate) gauge: Gauge,
     pub(crate) image: Image,
     pub(crate) measured: Option<Measured>,
 }
 
 impl Trust {
-    /// Calls `measure` at each pixel.
+    /// Colours `pixels` by their comparisons, row by row from the top.
     ///
     /// # Errors
     ///
-    /// As [`Pixels::paint`].
+    /// [`PlotError::Comparisons`] if their number is wrong.
     pub(crate) fn paint(
         pixels: &Pixels,
         promised: [Promised; 2],
-        gauge: Gauge,
-        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
-        mut measure: impl FnMut(Point, &Slope) -> Option<f64>,
+        comparisons: &[Comparison],
     ) -> Result<Self, PlotError> {
-        let mut extremes: Option<Measured> = None;
-        let image = pixels.paint(field, |at, slope| {
-            let measured = measure(at, slope);
-            if let Some(x) = measured {
-                Measured::include(&mut extremes, at, x);
-            }
-            promised[usize::from(slope.value < 0.0)].color(measured)
-        })?;
-        Ok(Self { promised, gauge, image, measured: extremes })
+        let places: Vec<Point> = pixels.rows().flatten().collect();
+        if places.len() != comparisons.len() {
+            let (count, expected) = (comparisons.len(), places.len());
+            return Err(PlotError::Comparisons { count, expected });
+        }
+        let ratios: Vec<Option<f64>> = comparisons.iter().map(Comparison::measured).collect();
+        let color = |(comparison, ratio): (&Comparison, &Option<f64>)| {
+            let side = promised[usize::from(comparison.value < 0.0)];
+            ratio.map_or(UNKNOWN, |ratio| side.color(ratio))
+        };
+        let colors = comparisons.iter().zip(&ratios).map(color).collect();
+        let image = Image { width: pixels.width(), pixels: colors };
+        let measured = Measured::of(places.into_iter().zip(ratios));
+        Ok(Self { promised, image, measured })
     }
 
-    /// Hatches the plot; `value` gives the field at a pixel.
-    pub(crate) fn hatch(
-        &self,
-        drawing: &mut Drawing,
-        plot: &Rect,
-        value: impl Fn(Point) -> f64,
-    ) {
+    /// Hatches the plot, with the inside in any of `insides` [px].
+    pub(crate) fn hatch(&self, drawing: &mut Drawing, plot: &Rect, insides: &[&[Vec<Point>]]) {
         let [outside, inside] = self.promised;
-        outside.hatch(drawing, plot, |p| value(p) >= 0.0);
-        inside.hatch(drawing, plot, |p| value(p) < 0.0);
+        outside.hatch(drawing, plot, insides, |count| count == 0);
+        inside.hatch(drawing, plot, insides, |count| count > 0);
     }
 
     /// The legend, with the outside and the inside if there are any.
@@ -215,13 +189,16 @@ impl Trust {
                 }
             }
         }
-        let name = match self.gauge {
-            Gauge::Distance => "measured: value over true distance",
-            Gauge::Steepness => "length of the gradient",
-        };
         let largest = self.measured.map_or(1.0, |measured| measured.largest);
         let ends = if largest > 1.01 { [0.0, 2.0] } else { [0.0, 1.0] };
-        entries.push(Entry::new(Key::Scale(outside, ends), name));
+        entries.push(Entry::new(
+            Key::Scale(outside, ends),
+            "value over true distance: 1 where it is exact",
+        ));
+        if self.measured.is_none_or(|measured| measured.open > 0.0) {
+            let text = "open: the search ended with bounds over 0.1 apart";
+            entries.push(Entry::new(Key::Swatch(UNKNOWN), text));
+        }
         entries
     }
 }
@@ -243,14 +220,13 @@ pub(crate) fn draw_scale(
         let label = write(tick, if high > 1.0 { 1.0 } else { 0.5 });
         (share, if tick > 1.0 { format!("≥{label}") } else { label })
     });
-    let color = |share| promised.color(Some(measured(share)));
+    let color = |share| promised.color(measured(share));
     draw_bar(drawing, at, SCALE[0], color, &ticks);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::{Item, Verb};
 
     fn lightness(color: Color) -> f64 {
         color.to_oklab()[0]
@@ -259,31 +235,44 @@ mod tests {
     #[test]
     fn looser_values_are_darker_under_every_promise() {
         for promised in [Promised::Exact, Promised::Bound, Promised::Lipschitz(3.0)] {
-            let colors = (0..=10).map(|i| promised.color(Some(f64::from(i) / 10.0)));
+            let colors = (0..=10).map(|i| promised.color(f64::from(i) / 10.0));
             let lightness: Vec<f64> = colors.map(lightness).collect();
             assert!(lightness.windows(2).all(|pair| pair[0] + 0.02 < pair[1]));
-            assert_eq!(promised.color(Some(1.0)), promised.tint());
-            assert_eq!(promised.color(None), promised.tint());
-            assert_eq!(promised.color(Some(2.0)), promised.color(Some(f64::INFINITY)));
+            assert_eq!(promised.color(1.0), promised.tint());
+            assert_eq!(promised.color(2.0), promised.color(f64::INFINITY));
         }
     }
 
     #[test]
-    fn hatching_stays_where_it_belongs() {
-        let area = Rect::new(10.0, 20.0, 100.0, 60.0);
-        for (promised, directions) in
-            [(Promised::Exact, 0), (Promised::Bound, 1), (Promised::Lipschitz(2.0), 2)]
-        {
-            let mut drawing = Drawing::default();
-            promised.hatch(&mut drawing, &area, |p| p[0] < 60.0);
-            assert_eq!(drawing.items.is_empty(), directions == 0);
-            for item in drawing.items {
-                let Item::Mark(mark) = item else { panic!("an image") };
-                for verb in mark.path.verbs {
-                    let (Verb::Move(p) | Verb::Line(p)) = verb else { panic!("{verb:?}") };
-                    assert!(area.contains(p) && p[0] < 60.0, "{p:?}");
-                }
-            }
-        }
+    fn the_ratio_nearest_to_one_is_measured() {
+        let measured = |value: f64, nearest: f64, farthest: f64| {
+            Comparison { value, distance: [nearest, farthest] }.measured()
+        };
+        assert_eq!(measured(1.0, 0.99, 1.02), Some(1.0));
+        assert_eq!(measured(-1.0, 2.0, 2.0), Some(0.5));
+        assert_eq!(measured(3.0, 2.0, 2.0), Some(1.5));
+        // Nothing is known of it, or too little.
+        assert_eq!(measured(1.0, 1.0, f64::INFINITY), None);
+        assert_eq!(measured(0.0, 0.0, 0.0), None);
+        assert_eq!(measured(1.0, 1.0, 1.2), None);
+        assert_eq!(measured(0.0, 0.5, f64::INFINITY), Some(0.0));
+    }
+
+    #[test]
+    fn what_is_open_is_counted_and_shown() {
+        let view = crate::View::new([0.0, 0.0], 4.0, 1.0).unwrap();
+        let pixels = Pixels::along(&view, 4.0);
+        let distances = [[1.0, 1.0], [4.0, 4.0], [0.5, f64::INFINITY], [0.8, 0.8]];
+        let comparisons = distances.map(|distance| Comparison { value: 1.0, distance });
+        let promised = [Promised::Bound, Promised::Exact];
+        let trust = Trust::paint(&pixels, promised, &comparisons).unwrap();
+        let Measured { smallest, smallest_at, largest, largest_at, open } =
+            trust.measured.unwrap();
+        assert_eq!((smallest, smallest_at), (0.25, [-0.5, 0.0]));
+        assert_eq!((largest, largest_at, open), (1.25, [1.5, 0.0], 0.25));
+        assert_eq!(trust.image.pixels[2], UNKNOWN);
+        assert!(trust.entries([true, true]).iter().any(|entry| entry.text.starts_with("open")));
+        let error = Trust::paint(&pixels, promised, &comparisons[1..]).unwrap_err();
+        assert_eq!(error.to_string(), "the picture compares values at 4 places, got 3");
     }
 }

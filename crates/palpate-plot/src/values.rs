@@ -1,17 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Any numbers over a window in place of the bands, and outlines of other fields.
+//! Any numbers over a window in place of the bands.
 
-use crate::contours::rings;
 use crate::drawing::Image;
-use crate::error::{LARGEST, PlotError};
+use crate::error::PlotError;
 use crate::isolines::{Ground, Isolines};
 use crate::legend::{Entry, Key};
-use crate::sampling::Samples;
+use crate::measured::Measured;
 use crate::scale::{self, Ramp, Scale};
 use crate::slope::Pixels;
-use crate::trust::Measured;
 
 /// Numbers over a window, as colours.
 #[derive(Debug, Clone)]
@@ -20,8 +18,6 @@ pub(crate) struct Values {
     ramp: Ramp,
     pub(crate) image: Image,
     pub(crate) measured: Option<Measured>,
-    /// Whether there is a place without a number.
-    is_missing: bool,
 }
 
 impl Values {
@@ -31,29 +27,23 @@ impl Values {
         scale: Scale,
         field: impl FnMut(&[[f64; 2]], &mut [Option<f64>]),
     ) -> Result<Self, PlotError> {
-        let (mut values, mut measured) = (Vec::new(), None);
+        let mut values = Vec::with_capacity(pixels.number());
         pixels.visit(field, |at, value: &Option<f64>| {
-            if let Some(value) = *value {
-                if value.is_nan() || value.abs() > LARGEST {
-                    return Err(PlotError::Sample { at, value });
-                }
-                Measured::include(&mut measured, at, value);
-            }
-            values.push(*value);
-            Ok(())
+            values.push((at, *value));
+            value.map_or(Ok(()), |value| PlotError::check_sample(at, value))
         })?;
+        let measured = Measured::of(values.iter().copied());
         let largest = measured.map_or(0.0, |m| m.largest.abs().max(m.smallest.abs()));
         let ramp = scale.ramp(largest);
-        let colors = values.iter().map(|value| ramp.color(*value)).collect();
+        let colors = values.iter().map(|(_, value)| ramp.color(*value)).collect();
         let image = Image { width: pixels.width(), pixels: colors };
-        let is_missing = values.iter().any(Option::is_none);
-        Ok(Self { scale, ramp, image, measured, is_missing })
+        Ok(Self { scale, ramp, image, measured })
     }
 
     /// The legend.
     pub(crate) fn entries(&self) -> Vec<Entry> {
         let mut entries = vec![Entry::new(Key::Values(self.ramp), self.scale.label())];
-        if self.is_missing {
+        if self.measured.is_none_or(|measured| measured.open > 0.0) {
             entries.push(Entry::new(Key::Swatch(scale::missing()), self.scale.missing()));
         }
         entries
@@ -76,7 +66,7 @@ impl Isolines {
     /// By how much a square's distance exceeds that of the disc in it:
     ///
     /// ```
-    /// use palpate_plot::{Isolines, Polyline, Sampling, Scale, Slice, View};
+    /// use palpate_plot::{Isolines, Sampling, Scale, Slice, View};
     ///
     /// let view = View::new([0.0, 0.0], 0.2, 0.15)?;
     /// let disc = |p: &[f64; 2]| p[0].hypot(p[1]) - 0.03;
@@ -85,13 +75,10 @@ impl Isolines {
     ///     move |points, values| points.iter().zip(values).for_each(|(p, v)| *v = f(p))
     /// }
     /// let picture = Isolines::sample(&Slice::planar(), &view, Sampling::default(), all(disc))?;
-    /// let outline = Polyline::of_pieces("square", picture.outline(all(square))?)?;
     /// let difference = |points: &[[f64; 2]], values: &mut [Option<f64>]| {
     ///     points.iter().zip(values).for_each(|(p, v)| *v = Some(square(p) - disc(p)));
     /// };
-    /// let picture = picture
-    ///     .with_values(Scale::signed("square less disc", "m"), difference)?
-    ///     .with_polyline(outline);
+    /// let picture = picture.with_values(Scale::signed("square less disc", "m"), difference)?;
     /// let measured = picture.measured().unwrap();
     /// assert!(measured.largest <= 0.0 && measured.largest > -1e-4); // equal along the axes
     /// assert!(measured.smallest < -0.03); // in the corners
@@ -102,36 +89,16 @@ impl Isolines {
         scale: Scale,
         field: impl FnMut(&[[f64; 2]], &mut [Option<f64>]),
     ) -> Result<Self, PlotError> {
-        let values = Values::paint(&Pixels::of(&self.view, self.sampling), scale, field)?;
+        let values = Values::paint(&self.pixels, scale, field)?;
         self.ground = Ground::Values(Box::new(values));
         Ok(self)
-    }
-
-    /// How many pixels coloured numbers or directions have in this window, for progress bars.
-    #[must_use]
-    pub fn pixels(&self) -> usize {
-        Pixels::of(&self.view, self.sampling).number()
-    }
-
-    /// The lines in this window where another field is zero, as pieces of a
-    /// [`Polyline`](crate::Polyline) \[m\]; `field` is called as in [`sample`](Self::sample).
-    ///
-    /// # Errors
-    ///
-    /// [`PlotError::Sample`] for the first value that is NaN, infinite or over 1e150.
-    pub fn outline(
-        &self,
-        field: impl FnMut(&[[f64; 2]], &mut [f64]),
-    ) -> Result<Vec<Vec<[f64; 2]>>, PlotError> {
-        let samples = Samples::new(&self.view, self.sampling, field)?;
-        Ok(rings(&samples, 0.0))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Figure, Polyline, Sampling, Slice, View};
+    use crate::{Figure, Sampling, Slice, View};
 
     fn disc() -> Isolines {
         let view = View::new([0.0, 0.0], 4.0, 4.0).unwrap();
@@ -164,6 +131,8 @@ mod tests {
         let texts: Vec<_> = values.entries().into_iter().map(|entry| entry.text).collect();
         assert_eq!(texts, ["x [m]", "nothing"]);
         assert_eq!(picture.pixels(), 250 * 250);
+        let coarse = picture.with_pixels(Sampling::new(10).unwrap());
+        assert_eq!(coarse.pixels(), 10 * 10);
     }
 
     #[test]
@@ -187,21 +156,5 @@ mod tests {
             svg.matches("aria-label=\"x [m]\"").count()
         };
         assert_eq!((count(1.0), count(10.0)), (1, 2));
-    }
-
-    #[test]
-    fn the_outline_of_another_field_is_where_it_is_zero() {
-        let other = |points: &[[f64; 2]], values: &mut [f64]| {
-            points.iter().zip(values).for_each(|(p, value)| *value = p[0].hypot(p[1]) - 1.5);
-        };
-        let pieces = disc().outline(other).unwrap();
-        let inside = |p: &&[f64; 2]| p.iter().all(|x| x.abs() < 2.0);
-        let points: Vec<_> = pieces.iter().flatten().filter(inside).collect();
-        assert!(points.len() > 100);
-        // A cell of 40 mm, squared, over eight radii.
-        assert!(
-            points.iter().all(|p| (p[0].hypot(p[1]) - 1.5).abs() < 0.04 * 0.04 / 12.0 * 1.01)
-        );
-        assert!(Polyline::of_pieces("other", pieces).is_ok());
     }
 }

@@ -4,8 +4,8 @@
 //! Whole figures: their bytes, their pixels, their words.
 
 use palpate_plot::{
-    Chart, Figure, Isolines, Markers, PlotError, Polyline, Quantity, Sampling, Series, Slice,
-    Slope, View,
+    Body, BoundedField, Cell, Chart, Color, Dash, Figure, Isolines, Markers, Outline,
+    PlotError, Polyline, Quantity, Sampling, Series, Slice, Slope, View,
 };
 
 fn disc(points: &[[f64; 2]], values: &mut [f64]) {
@@ -128,6 +128,114 @@ fn a_curve_without_interior_has_a_surface_line() {
     assert!(svg.contains("<path fill=\"#171a1f\" fill-rule=\"evenodd\" d="));
 }
 
+/// A disc about a point of the x axis.
+struct Disc(f64);
+
+impl Disc {
+    const RADIUS: f64 = 0.03;
+
+    fn value(&self, p: &[f64; 2]) -> f64 {
+        (p[0] - self.0).hypot(p[1]) - Self::RADIUS
+    }
+}
+
+impl BoundedField for Disc {
+    fn values(&mut self, points: &[[f64; 2]], values: &mut [f64]) {
+        points.iter().zip(values).for_each(|(p, value)| *value = self.value(p));
+    }
+
+    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]) {
+        for (p, slope) in points.iter().zip(slopes) {
+            let value = self.value(p);
+            let gradient = [p[0] - self.0, p[1], 0.0].map(|x| x / (value + Self::RADIUS));
+            *slope = Slope { value, gradient };
+        }
+    }
+
+    fn safe_radii(&mut self, points: &[[f64; 2]], radii: &mut [f64]) {
+        self.values(points, radii);
+        radii.iter_mut().for_each(|radius| *radius = radius.abs());
+    }
+
+    fn bounds(&mut self, cells: &[Cell], bounds: &mut [[f64; 2]]) {
+        for (cell, bounds) in cells.iter().zip(bounds) {
+            let (value, change) = (self.value(&cell.centre), 1.5 * cell.half);
+            *bounds = [value - change, value + change];
+        }
+    }
+}
+
+/// Discs about these points of the x axis, called disc 0, disc 1 and so on.
+fn discs(places: &[f64]) -> Result<Figure, PlotError> {
+    let view = View::new([0.0, 0.0], 0.3, 0.1)?;
+    let whole = |points: &[[f64; 2]], values: &mut [f64]| {
+        let value = |p| places.iter().map(|x| Disc(*x).value(p)).fold(f64::INFINITY, f64::min);
+        points.iter().zip(values).for_each(|(p, v)| *v = value(p));
+    };
+    let body = |(number, x): (usize, &f64)| {
+        let outline = Outline::follow(&view, Sampling::new(100)?, Disc(*x))?;
+        Ok(Body::new(format!("disc {number}"), outline).with_note("wood"))
+    };
+    let bodies: Vec<Body> = places.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+    let isolines = Isolines::sample(&Slice::planar(), &view, Sampling::new(100)?, whole)?;
+    Ok(Figure::new("Discs").with_isolines(isolines.with_bodies(bodies)))
+}
+
+#[test]
+fn bodies_have_names_colours_and_a_legend() {
+    let svg = discs(&[-0.1, 0.0, 0.1]).unwrap().to_svg();
+    let found = words(&svg);
+    // Once at the body, once in the legend with the note.
+    for expected in ["disc 0", "disc 1", "disc 2", "wood", "disc 0 (wood)", "disc 2 (wood)"] {
+        assert!(found.contains(&expected), "{expected} in {found:?}");
+    }
+    assert!(!found.contains(&"in several bodies") && !found.contains(&"surface"));
+    // An outline and a key each, in colours that differ and of one width.
+    for color in ["#1b5fb0", "#a82a1a", "#1a7d3c"] {
+        let stroke = format!("stroke=\"{color}\" stroke-width=\"3.2\"");
+        assert_eq!(svg.matches(&stroke).count(), 2, "{color}");
+        assert!(svg.contains(&format!("fill=\"{color}\" fill-rule=\"evenodd\" fill-opacity")));
+    }
+}
+
+#[test]
+fn what_bodies_share_is_hatched_and_outlines_that_meet_differ_in_width() {
+    let svg = discs(&[-0.02, 0.02]).unwrap().to_svg();
+    assert!(words(&svg).contains(&"in several bodies"));
+    assert!(svg.contains("stroke=\"#1b5fb0\" stroke-width=\"3.2\""));
+    assert!(svg.contains("stroke=\"#a82a1a\" stroke-width=\"1.5\""));
+    // Where outlines coincide, the narrow one is drawn last.
+    let svg = discs(&[0.0, 0.0]).unwrap().to_svg();
+    let place = |text: &str| svg.find(text).unwrap();
+    assert!(place("stroke-width=\"3.2\"") < place("stroke-width=\"1.5\""));
+}
+
+#[test]
+fn a_body_alone_is_drawn_in_ink_with_its_name() {
+    let svg = discs(&[0.0]).unwrap().to_svg();
+    assert!(words(&svg).contains(&"surface of disc 0 (wood)"));
+    assert!(svg.contains("stroke=\"#171a1f\" stroke-width=\"2.8\""));
+    assert!(svg.contains("fill=\"#b2d1ea\"") && !svg.contains("fill-opacity"));
+    // Out of sight, it is not in the legend.
+    let beyond = discs(&[9.0]).unwrap().to_svg();
+    assert!(words(&beyond).contains(&"no surface in view"));
+}
+
+#[test]
+fn more_than_twelve_bodies_share_colours_and_the_legend_says_which() {
+    let places: Vec<f64> = (0..14).map(|i| 0.02 * f64::from(i) - 0.13).collect();
+    let svg = discs(&places).unwrap().to_svg();
+    let found = words(&svg);
+    assert!(found.contains(&"disc 0 (wood), disc 12 (wood)"), "{found:?}");
+    assert!(
+        found.contains(&"disc 1 (wood), disc 13 (wood)") && found.contains(&"disc 2 (wood)")
+    );
+    let places: Vec<f64> = (0..62).map(|i| 0.004 * f64::from(i) - 0.13).collect();
+    let svg = discs(&places).unwrap().to_svg();
+    let listed = "disc 0 (wood), disc 12 (wood), disc 24 (wood), disc 36 (wood) and 2 more";
+    assert!(words(&svg).contains(&listed), "{:?}", words(&svg));
+}
+
 #[test]
 fn svg_and_png_are_the_same_picture() {
     let figure = full_figure().unwrap();
@@ -179,6 +287,37 @@ fn a_gradient_has_the_colour_of_its_direction() {
     let words = words(&svg);
     assert!(words.contains(&"x") && words.contains(&"y"), "{words:?}");
     assert!(!words.contains(&"inside") && words.contains(&"surface"), "{words:?}");
+}
+
+#[test]
+fn directions_are_those_of_a_method() {
+    let picture = isolines(100).unwrap().with_directions("dichotomy", slopes).unwrap();
+    let svg = Figure::new("").with_isolines(picture).to_svg();
+    let words = words(&svg);
+    assert!(words.contains(&"direction in which the field grows, as dichotomy finds it"));
+    assert!(words.contains(&"none, or leaning out of the plane"), "{words:?}");
+    assert!(!words.iter().any(|word| word.contains("steeper") || word.contains("rim")));
+}
+
+#[test]
+fn panels_share_axes_and_a_legend() -> Result<(), PlotError> {
+    let finger = |number: usize| {
+        let force = Series::new("force", [[0.0, 0.0], [4.0, 1.0 + number as f64]])?;
+        let force = force.with_color(Color::numbered(number)).with_dash(Dash::Solid);
+        let chart = Chart::new(Quantity::new("time", "s"), Quantity::new("force", "N"));
+        Ok(chart.with_series(force).with_title(format!("finger {number}")))
+    };
+    let fingers = (0..5).map(finger).collect::<Result<Vec<_>, PlotError>>()?;
+    let svg = Figure::new("").with_panels(fingers).to_svg();
+    let found = words(&svg);
+    let count = |text: &str| found.iter().filter(|word| **word == text).count();
+    // The last panel of each column has an axis below it, the first of each row one beside it.
+    assert_eq!(["time [s]", "force [N]", "force"].map(count), [2, 1, 1], "{found:?}");
+    assert_eq!(count("5"), 3, "the largest force is on every axis: {found:?}");
+    assert!((0..5).all(|number| count(&format!("finger {number}")) == 1));
+    // A line in a colour of its own in each panel, explained in ink.
+    assert_eq!(svg.matches("stroke=\"#743aa6\"").count(), 1);
+    Ok(())
 }
 
 #[test]

@@ -71,7 +71,7 @@ pub(crate) struct FeelOptions {
     /// Write every tick to a CSV file.
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
-    /// Write the vibration of all contact points to a WAV file.
+    /// Write what actuators play to a WAV file, with a channel for each contact point.
     #[arg(long, value_name = "WAV")]
     pub(crate) wav: Option<PathBuf>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.

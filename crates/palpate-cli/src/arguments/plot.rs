@@ -96,8 +96,7 @@ pub(crate) enum Map {
     Distance,
     /// The direction of the gradient, and where its length is not one.
     Gradient,
-    /// The promise of each side, and how values compare with it: in the plane, the value over
-    /// the true distance; in space, the length of the gradient.
+    /// The promise of each side, and the value over the true distance, which is searched.
     Promise,
 }
 
@@ -119,8 +118,7 @@ pub(crate) enum PlotMap {
     Distance,
     /// The direction of the gradient, and where its length is not one.
     Gradient,
-    /// The promise of each side, and how values compare with it: in the plane, the value over
-    /// the true distance; in space, the length of the gradient.
+    /// The promise of each side, and the value over the true distance, which is searched.
     Promise,
     /// The difference of two fields (--against), or the angle between a gradient (--gradient) and
     /// the exact one.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use palpate::field::{Aabb, Point};
 use palpate::local::{Descent, ElementMethod, PairMethod};
-use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice};
+use palpate::plot::{Figure, Markers, PlotError, Polyline, Slice};
 use palpate::query::{Certified, Nearest, PairWorkspace, separation};
 use palpate::scene::BuiltScene;
 use serde_json::json;
@@ -119,7 +119,7 @@ impl<const D: usize> Answer<'_, D> {
         let plane = if D < 3 { Slice::planar() } else { Slice::xy(depth)? };
         let on_plane = |p: &Point<D>| plane.project(in_space(*p));
         let view = Dimensions::view(&plane, bounds, picture::MARGIN)?;
-        let mut isolines = picture::isolines(&scene.whole, &plane, &view, Sampling::default())?;
+        let mut isolines = picture::scene(scene, &plane, &view)?;
         for (i, found) in self.found.iter().enumerate() {
             let path = format!("{} {}", self.method, i + 1);
             let path = Polyline::new(path, found.path.iter().map(on_plane))?;

@@ -31,7 +31,7 @@ use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{Dimensions, Drawable};
-use outputs::Outputs;
+use outputs::{Outputs, Ran};
 
 /// The duration of a run without a path and without `--duration` [s].
 const DURATION: f64 = 10.0;
@@ -151,7 +151,12 @@ where
         output::remark("");
     }
 
-    let written = outputs.write(scene, &recorder, options.rate, &report::title(name, &outcome));
+    let ran = Ran {
+        rate: options.rate,
+        title: &report::title(name, &outcome),
+        has_forces: device.profile().max_force > 0.0,
+    };
+    let written = outputs.write(scene, &recorder, &ran);
     let felt = report::Felt {
         name,
         scene,

@@ -6,7 +6,8 @@
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::Recorder;
 
-use super::{figure, vibration};
+use super::figure::Run;
+use super::vibration::Vibration;
 use crate::arguments::FeelOptions;
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
@@ -18,6 +19,15 @@ pub(super) struct Outputs {
     trace: Option<Destination>,
     wav: Option<Destination>,
     plot: Option<Picture>,
+}
+
+/// What else files tell of a run.
+pub(super) struct Ran<'a> {
+    /// Ticks a second [Hz].
+    pub(super) rate: f64,
+    pub(super) title: &'a str,
+    /// `false` for a device without force feedback.
+    pub(super) has_forces: bool,
 }
 
 impl Outputs {
@@ -41,22 +51,25 @@ impl Outputs {
         self.trace.is_some() || self.wav.is_some() || self.plot.is_some()
     }
 
-    /// Writes all files from the ticks at `rate` [Hz]; if one fails, the others are still
-    /// written.
+    /// Writes all files from the ticks; if one fails, the others are still written.
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
         recorder: &Recorder<D>,
-        rate: f64,
-        title: &str,
+        ran: &Ran<'_>,
     ) -> Result<(), Failure>
     where
         Dimensions: Drawable<D>,
     {
+        let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces;
+        let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate));
+        let vibration = vibration.transpose()?;
         let trace =
             self.trace.iter().map(|to| to.write(|out| trace::write(scene, recorder, out)));
-        let wav = self.wav.iter().map(|to| vibration::write(scene, recorder, rate, to));
-        let plot = self.plot.iter().map(|to| figure::draw(scene, recorder, title, to));
+        let wav = self.wav.iter().zip(&vibration).map(|(to, vibration)| vibration.write(to));
+        let vibration = vibration.as_ref().filter(|_| !ran.has_forces);
+        let run = Run { scene, recorder, title: ran.title, vibration };
+        let plot = self.plot.iter().map(|to| run.draw(to));
         Failure::any(trace.chain(wav).chain(plot))
     }
 }

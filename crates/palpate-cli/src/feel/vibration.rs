@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The vibration of a run as a WAV file, for fingers without force feedback.
+//! The vibration of a run, for fingers without force feedback.
 
 use std::io::Cursor;
 
@@ -9,7 +9,7 @@ use palpate::field::Point;
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, TraceRow};
 use palpate::vibration::{
-    Cue, Mapping, MappingOptions, Sensation, Synthesiser, Tap, write_wav,
+    Cue, Mapping, MappingOptions, Sensation, Synthesiser, Tap, Tones, Voice, write_wav,
 };
 
 use crate::outcome::Failure;
@@ -18,37 +18,84 @@ use crate::output::Destination;
 /// The sample rate [Hz]; the skin feels nothing above 1 kHz.
 const SAMPLE_RATE: u32 = 8000;
 
-/// Writes the vibration of all contact points of a run at `rate` [Hz] together.
-pub(super) fn write<const D: usize>(
-    scene: &BuiltScene<D>,
-    recorder: &Recorder<D>,
+/// What the contact points of a run feel, each by an actuator of its own.
+pub(super) struct Vibration {
+    mapping: Mapping,
+    /// The time of each tick [s].
+    times: Vec<f64>,
+    /// The sensations of each contact point in all ticks.
+    points: Vec<Vec<Sensation>>,
+    /// Ticks a second [Hz].
     rate: f64,
-    destination: &Destination,
-) -> Result<(), Failure> {
-    let points = recorder.rows().iter().map(|row| row.point).max().map_or(0, |last| last + 1);
-    let points = points as usize;
-    let mapping = Mapping::new(MappingOptions::default()).map_err(Failure::input)?;
-    let mut synthesiser = Synthesiser::new(&mapping, f64::from(SAMPLE_RATE), points.max(1))
-        .map_err(Failure::input)?;
-    let mut samples = Vec::new();
-    let mut last: Option<&[TraceRow<D>]> = None;
-    let mut sensations = vec![Sensation::default(); points];
-    for tick in recorder.rows().chunks_exact(points.max(1)) {
-        for (i, row) in tick.iter().enumerate() {
-            let cue = cue(scene, row, last.and_then(|last| last.get(i)), rate);
-            sensations[i] = mapping.feel(&cue);
-        }
-        // All samples until the end of the tick, for rates that do not divide the sample rate.
-        let end = ((tick[0].time_s + 1.0 / rate) * f64::from(SAMPLE_RATE)).round() as usize;
-        let start = samples.len();
-        samples.resize(end.max(start), 0.0);
-        synthesiser.render(&sensations, &mut samples[start..]);
-        last = Some(tick);
+}
+
+impl Vibration {
+    /// The vibration of a run at `rate` [Hz].
+    pub(super) fn of<const D: usize>(
+        scene: &BuiltScene<D>,
+        recorder: &Recorder<D>,
+        rate: f64,
+    ) -> Result<Self, Failure> {
+        let rows = recorder.rows();
+        let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last as usize + 1);
+        let mapping = Mapping::new(MappingOptions::default()).map_err(Failure::input)?;
+        let felt = |point: usize| {
+            let of_point = rows.iter().skip(point).step_by(count.max(1));
+            let mut last: Option<&TraceRow<D>> = None;
+            let sensations = of_point.map(|row| {
+                let cue = cue(scene, row, last, rate);
+                last = Some(row);
+                mapping.feel(&cue)
+            });
+            sensations.collect()
+        };
+        let times = rows.iter().step_by(count.max(1)).map(|row| row.time_s).collect();
+        Ok(Self { mapping, times, points: (0..count).map(felt).collect(), rate })
     }
-    // The header holds the length and comes first, so the WAV is complete before it is written.
-    let mut wav = Cursor::new(Vec::new());
-    write_wav(&mut wav, SAMPLE_RATE, samples).map_err(Failure::input)?;
-    destination.write(|out| Ok(out.write_all(wav.get_ref())?))
+
+    /// What the actuator of each contact point plays in all ticks.
+    pub(super) fn tones(&self) -> Result<Vec<Vec<Tones>>, Failure> {
+        let of_point = |sensations: &Vec<Sensation>| {
+            let mut voice = Voice::new(self.rate).map_err(Failure::input)?;
+            Ok(sensations.iter().map(|sensation| voice.step(sensation)).collect())
+        };
+        self.points.iter().map(of_point).collect()
+    }
+
+    /// The times of the ticks [s].
+    pub(super) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Writes a WAV file with a channel for each contact point.
+    pub(super) fn write(&self, destination: &Destination) -> Result<(), Failure> {
+        let channels = self.points.iter().map(|sensations| self.samples(sensations));
+        let channels = channels.collect::<Result<Vec<_>, _>>()?;
+        let length = channels.first().map_or(0, Vec::len);
+        let turns = (0..length).flat_map(|i| channels.iter().map(move |samples| samples[i]));
+        let count = u16::try_from(channels.len().max(1)).map_err(Failure::input)?;
+        // The header holds the length and comes first, so the WAV is complete before it is
+        // written.
+        let mut wav = Cursor::new(Vec::new());
+        write_wav(&mut wav, SAMPLE_RATE, count, turns).map_err(Failure::input)?;
+        destination.write(|out| Ok(out.write_all(wav.get_ref())?))
+    }
+
+    /// The samples of a contact point.
+    fn samples(&self, sensations: &[Sensation]) -> Result<Vec<f32>, Failure> {
+        let mut synthesiser = Synthesiser::new(&self.mapping, f64::from(SAMPLE_RATE), 1)
+            .map_err(Failure::input)?;
+        let mut samples = Vec::new();
+        for (time, sensation) in self.times.iter().zip(sensations) {
+            // All samples until the end of the tick, for rates that do not divide the sample
+            // rate.
+            let end = ((time + 1.0 / self.rate) * f64::from(SAMPLE_RATE)).round() as usize;
+            let start = samples.len();
+            samples.resize(end.max(start), 0.0);
+            synthesiser.render(&[*sensation], &mut samples[start..]);
+        }
+        Ok(samples)
+    }
 }
 
 /// Where a body takes a point between two times [s].

@@ -6,8 +6,9 @@
 use palpate::field::scalar::Model;
 use palpate::field::{BLOCK, Block, Column, Gradients, Rotation, Shape, Vector};
 use palpate::plot::{
-    BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
+    Body, BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
 };
+use palpate::scene::{BuiltBody, BuiltScene};
 
 use super::{Dimensions, Drawable};
 
@@ -87,6 +88,38 @@ where
         models: Column::zero(),
     };
     Outline::follow(view, sampling, flat)
+}
+
+/// The isolines of a scene on `plane`, with its bodies.
+pub(crate) fn scene<const D: usize>(
+    scene: &BuiltScene<D>,
+    plane: &Slice,
+    view: &View,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    noted(scene, plane, view, |_| String::new())
+}
+
+/// The isolines of a scene on `plane`, with its bodies and a `note` below the name of each.
+pub(crate) fn noted<const D: usize>(
+    scene: &BuiltScene<D>,
+    plane: &Slice,
+    view: &View,
+    note: impl Fn(&BuiltBody<D>) -> String,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    let sampling = Sampling::default();
+    let body = |body: &BuiltBody<D>| {
+        let outline = outline(&body.shape, plane, view, sampling)?;
+        Ok(Body::new(&body.name, outline).with_note(note(body)))
+    };
+    let bodies = scene.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+    let isolines = Isolines::sample(plane, view, sampling, values(&scene.whole, plane))?;
+    Ok(isolines.with_bodies(bodies))
 }
 
 /// A shape on a plane.

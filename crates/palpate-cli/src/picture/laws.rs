@@ -7,9 +7,11 @@ use std::collections::HashMap;
 
 use palpate::field::{Aabb, Rotation, Shape, Vector};
 use palpate::plot::{Outline, Sampling, Slice, View};
+use palpate::query::BallWorkspace;
 use palpate_testkit::cases::on_trees;
 
 use super::flat::outline;
+use super::truth::compare;
 use super::{Dimensions, Drawable};
 
 const CELLS: usize = 60;
@@ -134,6 +136,29 @@ fn lines_follow_the_surfaces_of_random_trees_on_slices_of_space() {
     on_trees::<3>(30, 2, |_, _, shape| {
         drawn += 1;
         Ok(follows(shape, &slices[drawn % 3]))
+    });
+}
+
+/// The nearest surface is no farther than what the picture shows of it, and no nearer than the
+/// bounds say.
+#[test]
+fn bounds_of_distances_hold_for_the_lines_of_pictures() {
+    let mut workspace = BallWorkspace::new();
+    on_trees::<2>(40, 3, |_, _, shape| {
+        let drawn = Drawn::of(shape, &Slice::planar());
+        let (points, slack) = (drawn.points(), 2.0 * drawn.edge);
+        let (min, width) = (drawn.view.min(), drawn.view.width());
+        for i in 0..12 {
+            let share = [0.618, 0.414].map(|step| (step * f64::from(i)).fract());
+            let p = [0, 1].map(|k| min[k] + share[k] * width);
+            let found = compare(shape, Vector(p), &mut workspace).distance;
+            let shown = points.iter().map(|q| (p[0] - q[0]).hypot(p[1] - q[1]));
+            let shown = shown.reduce(f64::min).unwrap_or(f64::INFINITY);
+            if found[0] > found[1] || found[0] > shown + slack {
+                return Ok(Err(format!("{found:?} at {p:?}, where {shown} is shown")));
+            }
+        }
+        Ok(Ok(()))
     });
 }
 

@@ -6,11 +6,12 @@
 mod flat;
 #[cfg(test)]
 mod laws;
+mod truth;
 
 use std::path::Path;
 
-use palpate::field::{Aabb, Quality, Rotation, Shape, Vector};
-use palpate::plot::{Figure, Gauge, Isolines, PlotError, Promised, Slice, View};
+use palpate::field::{Aabb, Rotation, Shape, Vector};
+use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
 
 use palpate::scene::{AnyScene, BuiltScene};
 
@@ -18,7 +19,8 @@ use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
 
-pub(crate) use flat::{isolines, outline, slopes, values};
+use flat::slopes;
+pub(crate) use flat::{isolines, noted, outline, scene, values};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
@@ -35,8 +37,9 @@ pub(crate) trait Drawable<const D: usize> {
     /// The point of space at plane coordinates.
     fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
 
-    /// The number that a picture compares with the promise.
-    const GAUGE: Gauge;
+    /// Cells along the longer side of a picture at which values are compared with true distances:
+    /// as many as samples in the plane, and fewer in space, where searches take longer.
+    const COMPARED: usize;
 
     /// The parts of a gradient to the right, up, and towards the viewer.
     fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
@@ -61,7 +64,7 @@ impl Drawable<2> for Dimensions {
         Vector(st)
     }
 
-    const GAUGE: Gauge = Gauge::Distance;
+    const COMPARED: usize = 420;
 
     fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
         [x, y, 0.0]
@@ -88,8 +91,7 @@ impl Drawable<3> for Dimensions {
         Vector(plane.point(st))
     }
 
-    /// The nearest surface may lie outside the slice.
-    const GAUGE: Gauge = Gauge::Steepness;
+    const COMPARED: usize = 128;
 
     fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
         plane.project_gradient(gradient.0)
@@ -120,29 +122,30 @@ pub(crate) fn in_space<const D: usize>(point: Vector<f64, D>) -> [f64; 3] {
     point.in_space().0
 }
 
-/// The picture of `shape` on `plane` with the colours of `map`.
+/// What the colours of a picture show, and how it is found.
+#[derive(Clone, Copy)]
+pub(crate) struct Colours<'a> {
+    pub(crate) map: Map,
+    /// Where values are compared with true distances.
+    pub(crate) grid: Sampling,
+    /// Is told of each of these places, and says whether to go on.
+    pub(crate) watch: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// The picture of `shape` on `plane` with these colours; `None` if it is ended before.
 pub(crate) fn mapped<const D: usize>(
     shape: &Shape<D>,
     plane: &Slice,
     isolines: Isolines,
-    map: Map,
-) -> Result<Isolines, PlotError>
+    colours: Colours<'_>,
+) -> Result<Option<Isolines>, PlotError>
 where
     Dimensions: Drawable<D>,
 {
-    match map {
-        Map::Distance => Ok(isolines),
-        Map::Gradient => isolines.with_gradient(slopes(shape, plane)),
-        Map::Promise => {
-            let promise = shape.promise();
-            let promised = [promise.outside, promise.inside].map(|quality| match quality {
-                Quality::Exact => Promised::Exact,
-                Quality::Bound => Promised::Bound,
-                Quality::Lipschitz => Promised::Lipschitz(promise.lipschitz),
-            });
-            let gauge = <Dimensions as Drawable<D>>::GAUGE;
-            isolines.with_promise(promised, gauge, slopes(shape, plane))
-        }
+    match colours.map {
+        Map::Distance => Ok(Some(isolines)),
+        Map::Gradient => isolines.with_gradient(slopes(shape, plane)).map(Some),
+        Map::Promise => truth::with_promise(shape, plane, isolines, colours),
     }
 }
 

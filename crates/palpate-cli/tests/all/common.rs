@@ -8,11 +8,19 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The path of a file of the repository.
+pub(crate) fn root(file: &str) -> String {
+    repository().join(file).to_str().unwrap().to_owned()
+}
+
 /// The program in the root of the repository, about to start.
 pub(crate) fn program(arguments: &[&str]) -> Command {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
-    command.args(arguments).current_dir(repository);
+    command.args(arguments).current_dir(repository());
     command
 }
 

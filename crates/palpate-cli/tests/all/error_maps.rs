@@ -30,7 +30,7 @@ fn the_difference_of_two_discs_is_that_of_their_radii() {
     let words = words(&picture);
     for word in [
         "difference of values: small − large [m]",
-        "surface",
+        "surface of disc",
         "surface of small",
         "−0.50",
         "0.50",
@@ -77,6 +77,20 @@ fn the_angles_of_a_gradient_are_drawn() {
         caption.contains("gradient by dichotomy, offset 3.000e-6 m, double precision"),
         "{caption}"
     );
+    let directions = text(&palpate(&[
+        "plot",
+        &scene,
+        "--map",
+        "gradient",
+        "--gradient",
+        "closest_vector",
+        "--output",
+        &svg,
+    ]));
+    assert!(directions.ends_with("directions of the gradient\n"), "{directions}");
+    let picture = std::fs::read_to_string(&svg).unwrap();
+    let legend = "direction in which the field grows, as closest_vector finds it";
+    assert!(words(&picture).contains(&legend), "{:?}", words(&picture));
     assert_eq!(number(&plot("exact")["error_degrees"]["largest"]), 0.0);
     let closest = plot("closest_vector");
     assert!(number(&closest["error_degrees"]["largest"]) > 179.999, "{closest}");

@@ -3,7 +3,7 @@
 
 //! The program as its users run it.
 
-use crate::common::{Folder, errors, json, palpate, status, text};
+use crate::common::{Folder, errors, json, palpate, root, status, text};
 use crate::pictures::words;
 use serde_json::Value;
 
@@ -262,24 +262,48 @@ fn plot_shows_where_a_union_is_loose() {
     for expected in [
         "outside exact: the value is the distance",
         "inside bound: true distance may be larger",
-        "measured: value over true distance",
+        "value over true distance: 1 where it is exact",
     ] {
         assert!(words.contains(&expected), "{expected} in {words:?}");
     }
 }
 
-/// Of a slice through space nothing but the gradient's length can be known.
+/// The nearest surface may lie outside the slice: the wall behind it is searched for too.
 #[test]
-fn plot_shows_promises_of_a_slice() {
+fn plot_compares_values_on_a_slice_with_distances_in_space() {
     let folder = Folder::new();
-    let png = folder.name("terrain.png");
-    let answer =
-        json(&["plot", "scenes/terrain.json", "--map", "promise", "--output", &png, "--json"]);
-    assert!(answer["value_over_distance"].is_null());
-    let [smallest, largest] =
-        ["smallest", "largest"].map(|key| answer["steepness"][key].as_f64().unwrap());
-    assert!(smallest < 1.0 && largest > 1.5 && largest <= 2.0, "{smallest} {largest}");
-    assert_eq!(answer["steepness"]["largest_at_m"].as_array().unwrap().len(), 3);
+    // Half the distance to a wall 0.1 m behind the slice, and a ball far to the right.
+    let scene = folder.write(
+        "wall.json",
+        r#"{ "palpate": 1, "dimension": 3, "bodies": [
+            { "name": "wall", "shape": { "translate": [0, 0, -0.2], "of":
+                { "scale": [1, 1, 2], "of": { "cuboid": { "size": [2, 2, 0.1] } } } } } ] }"#,
+    );
+    let svg = folder.name("promise.svg");
+    let view = ["--plane", "xy", "--centre", "0,0,0", "--size", "0.2", "--map", "promise"];
+    let answer = json(&[&["plot", &scene, "--output", &svg, "--json"][..], &view].concat());
+    let measured = &answer["value_over_distance"];
+    // The box is stretched about its middle: 0.1 m from it, the value is half the distance.
+    for key in ["smallest", "largest"] {
+        assert!((measured[key].as_f64().unwrap() - 0.5).abs() < 0.006, "{measured}");
+        assert_eq!(measured[format!("{key}_at_m")].as_array().unwrap().len(), 3);
+    }
+    assert_eq!(measured["open_share"], 0.0);
+    let svg = std::fs::read_to_string(&svg).unwrap();
+    let words = words(&svg);
+    assert!(words.contains(&"outside bound: true distance may be larger"), "{words:?}");
+    assert!(words.contains(&"no surface in view"), "{words:?}");
+}
+
+#[test]
+fn plot_without_an_answer_leaves_no_picture() {
+    let folder = Folder::new();
+    let (scene, picture) = (root("scenes/memoir_star.json"), folder.name("star.svg"));
+    let interrupt = palpate_cli::Interrupt::new();
+    interrupt.asked().store(true, std::sync::atomic::Ordering::Relaxed);
+    let plot = ["palpate", "plot", &scene, "--map", "promise", "--output", &picture];
+    assert_eq!(palpate_cli::run_until(plot, &interrupt), 130);
+    assert!(!folder.path("star.svg").exists());
 }
 
 #[test]

@@ -58,7 +58,14 @@ fn feel_reports_traces_and_draws() {
          normal_x,normal_y,normal_z,contact,body,slipping,taken_j,given_j,kept_j,\
          evaluations,cost_ns,lateness_ns"
     );
-    assert!(std::fs::read_to_string(&plot).unwrap().starts_with("<svg"));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    // A colour and a panel a finger, and the bodies with their materials.
+    let found = words(&svg);
+    for word in ["proxy 0", "proxy 9", "hand of each", "point 0", "point 9", "force [N]"] {
+        assert!(found.contains(&word), "{word} in {found:?}");
+    }
+    assert!(svg.contains("stroke=\"#5cb8f0\""), "the tenth colour");
+    assert!(found.contains(&"sphere") && found.contains(&"1000 N/m"), "{found:?}");
     let again = json(&arguments);
     for key in ["ticks", "contact_time", "largest_force", "largest_depth", "evaluations"] {
         assert_eq!(report[key], again[key], "{key}");
@@ -91,6 +98,7 @@ fn a_scene_in_space_is_drawn_on_two_slices_and_says_so() {
     for once in ["inside", "behind the slice", "in front of the slice", "proxy", "hand"] {
         assert_eq!(words.iter().filter(|word| **word == once).count(), 1, "{once}");
     }
+    assert!(has("surface of cup (800 N/m)"), "{words:?}");
 }
 
 #[test]
@@ -147,7 +155,7 @@ fn feel_follows_a_hand_of_several_points() {
 #[test]
 fn a_glove_feels_what_it_vibrates_like() {
     let folder = Folder::new();
-    let wav = folder.name("touch.wav");
+    let (wav, plot) = (folder.name("touch.wav"), folder.name("glove.svg"));
     let report = json(&[
         "feel",
         "--device",
@@ -157,15 +165,31 @@ fn a_glove_feels_what_it_vibrates_like() {
         "--fast",
         "--wav",
         &wav,
+        "--plot",
+        &plot,
         "--json",
     ]);
     assert_eq!((&report["points"], &report["largest_force"]), (&10.into(), &0.0.into()));
     let bytes = std::fs::read(&wav).unwrap();
-    // A header of 44 bytes, and 8000 samples of two bytes for each second.
-    assert_eq!(&bytes[..4], b"RIFF");
+    // A header of 68 bytes, and for each actuator 8000 samples of two bytes a second.
+    assert_eq!((&bytes[..4], &bytes[22..24]), (&b"RIFF"[..], &[10, 0][..]));
     let seconds = report["duration"].as_f64().unwrap();
-    assert_eq!(bytes.len(), 44 + 2 * (8000.0 * seconds) as usize);
-    assert!(bytes[44..].iter().any(|byte| *byte != 0), "silence");
+    assert_eq!(bytes.len(), 68 + 10 * 2 * (8000.0 * seconds) as usize);
+    let (samples, _) = bytes[68..].as_chunks::<2>();
+    let channel = |number: usize| {
+        let samples = samples.iter().skip(number).step_by(10);
+        Vec::from_iter(samples.map(|sample| i16::from_le_bytes(*sample)))
+    };
+    let sounding = (0..10).filter(|number| channel(*number).iter().any(|sample| *sample != 0));
+    assert!(sounding.count() > 1, "silence");
+    assert_ne!(channel(0), channel(1));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    let words = words(&svg);
+    for word in ["actuator 0", "actuator 9", "level [1 = largest]", "pressure", "slide", "tap"]
+    {
+        assert!(words.contains(&word), "{word} in {words:?}");
+    }
+    assert!(!words.contains(&"force [N]"), "{words:?}");
 }
 
 #[test]
@@ -286,6 +310,10 @@ fn a_stylus_tours_a_cup_and_is_drawn() {
     let words = words(&svg);
     for word in ["stylus in cup, felt with a tool", "tool's origin", "torque [mN·m]"] {
         assert!(words.contains(&word), "{word} is not among {words:?}");
+    }
+    for start in ["tool, first touch: ", "tool, deepest: ", "tool, last touch: "] {
+        let found = words.iter().filter(|word| word.starts_with(start) && word.ends_with(" s"));
+        assert_eq!(found.count(), 1, "{start} in {words:?}");
     }
     let again = json(&arguments);
     for key in ["contact_time", "largest_force", "evaluations", "tool"] {

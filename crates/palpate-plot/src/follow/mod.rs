@@ -79,9 +79,8 @@ pub struct Cell {
 ///
 /// let view = View::new([0.0, 0.0], 0.1, 0.1)?;
 /// let wire = Outline::follow(&view, Sampling::default(), Wire)?;
-/// assert!(!wire.lines().is_empty());
-/// let mut points = wire.lines().iter().flatten();
-/// assert!(points.all(|p| (p[0].hypot(p[1]) - 0.03).abs() < 1e-6));
+/// assert!(wire.lines().iter().any(|line| line.len() > 300));
+/// assert!(wire.lines().iter().flatten().all(|p| (p[0].hypot(p[1]) - 0.03).abs() < 1e-6));
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 pub trait BoundedField {
