@@ -225,6 +225,27 @@ fn ten_points_feel_a_flat_scene() {
 }
 
 #[test]
+fn more_points_than_colours_are_drawn_alike_and_more_than_panels_together() {
+    let folder = Folder::new();
+    let plot = folder.name("many.svg");
+    let drawn = |points: &str| {
+        let run = ["feel", "scenes/wrench.json", "--fast", "--duration", "0.5", "--json"];
+        json(&[&run[..], &["--points", points, "--plot", &plot]].concat());
+        std::fs::read_to_string(&plot).unwrap()
+    };
+    for (points, expected, missing) in [
+        ("10", ["proxy 9", "point 9"], "proxy"),
+        ("11", ["proxy", "point 10"], "proxy 0"),
+        ("25", ["proxy", "largest force on one of 25 points"], "point 0"),
+    ] {
+        let svg = drawn(points);
+        let words = words(&svg);
+        assert!(expected.iter().all(|word| words.contains(word)), "{points}: {words:?}");
+        assert!(!words.contains(&missing), "{points}: {words:?}");
+    }
+}
+
+#[test]
 fn jitter_measures_every_way_to_wait_and_advises() {
     let answer = json(&["jitter", "--rate", "4000", "--duration", "0.03", "--json"]);
     assert_eq!(answer["rate_hz"], 4000.0);
