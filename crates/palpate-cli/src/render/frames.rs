@@ -4,6 +4,7 @@
 //! The pictures of a run, and their files.
 
 use std::f64::consts::TAU;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -13,7 +14,7 @@ use super::stage::Stage;
 use crate::arguments::RenderOptions;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
-use crate::output::{self, Destination, Files};
+use crate::output::{self, Destination, Files, shown};
 
 /// The most pictures of a turntable.
 const MOST_PICTURES: u32 = 3600;
@@ -122,6 +123,9 @@ impl Frames {
                 Self::Many(files) => {
                     let file = &files[picture as usize];
                     file.write(|out| image.write_png(out).map_err(failed))?;
+                    if !stage.options.json {
+                        bar.suspend(|| say(file.name()))?;
+                    }
                     drawn.files.push(file.name().to_owned());
                 }
             }
@@ -212,6 +216,11 @@ fn check(options: &RenderOptions, pictures: u32) -> Result<(), Failure> {
         )));
     }
     Ok(())
+}
+
+/// Prints a line for a picture that is written.
+fn say(path: &Path) -> Result<(), Failure> {
+    Ok(writeln!(output::answer(), "{}", shown(&path.display().to_string()))?)
 }
 
 fn failed(error: RenderError) -> Failure {

@@ -11,4 +11,5 @@ mod motions;
 mod outputs;
 mod pictures;
 mod program;
+mod render;
 mod touch;

@@ -10,6 +10,7 @@
 
 mod balls;
 mod models;
+mod pieces;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +19,7 @@ use palpate_query::{Limits, Ray, Stop, cast_ray};
 
 use crate::beam::Beam;
 use crate::surfaces::Surfaces;
-use models::Models;
+use pieces::{Cells, Pieces};
 
 /// Rounds by balls: a ray that needs more grazes a surface, which models pass in longer steps.
 const ROUNDS_BY_BALLS: u32 = 24;
@@ -30,6 +31,10 @@ const ROUNDS_BY_MODELS: u32 = 400;
 /// `f / L`, where models follow the slope that the field has there.
 const STEEP: f64 = 1.5;
 
+/// Samples along a ray that may meet any surface, and where the first is, in gaps.
+const SAMPLES: u32 = 16;
+const FIRST_SAMPLE: f64 = 16.0;
+
 /// How a ray ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
@@ -39,6 +44,17 @@ pub(crate) enum End {
     Surface,
     /// The budget was spent before.
     Undecided,
+}
+
+/// What is to be found out about a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Goal {
+    /// The first surface that it meets.
+    First,
+    /// Whether it meets a surface, first or not.
+    Any,
+    /// Whether its cone is free; if it is not, the ray may end anywhere.
+    Cone,
 }
 
 /// What a ray met.
@@ -57,8 +73,9 @@ struct Lane {
     /// The number of its beam.
     beam: usize,
     distance: f64,
-    /// The length of the next step by a model [m].
+    /// The length of the next step by models, and the last one that was too long [m].
     step: f64,
+    too_long: f64,
     /// `true` from where the cone was not proven free.
     is_near: bool,
     /// `true` where the ray has left a surface that may have been in its cone.
@@ -94,43 +111,104 @@ impl Work {
 /// Traces beams, a block at a time.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a> {
-    shape: &'a Shape<3>,
+    surfaces: &'a Surfaces,
+    /// What the rays may meet; `None` if that is nothing.
+    shape: Option<Shape<3>>,
+    /// Its pieces, once they are needed.
+    pieces: Option<Pieces>,
     limits: Limits,
     is_steep: bool,
     lanes: Vec<Lane>,
     block: Block<f64, 3, BLOCK>,
     values: Column<f64, BLOCK>,
-    models: Models,
+    cells: Cells,
     pub(crate) work: Work,
 }
 
 impl<'a> Tracer<'a> {
     /// Through `surfaces`, with a budget of evaluations for each ray.
     pub(crate) fn new(surfaces: &'a Surfaces, budget: u32) -> Self {
-        let promise = surfaces.whole.promise();
         Self {
-            shape: &surfaces.whole,
+            surfaces,
+            shape: None,
+            pieces: None,
             limits: Limits::new(surfaces.gap).with_budget(budget),
-            is_steep: promise.outside == Quality::Lipschitz && promise.lipschitz > STEEP,
+            is_steep: false,
             lanes: Vec::with_capacity(BLOCK),
             block: Block::zero(),
             values: Column::zero(),
-            models: Models::new(),
+            cells: Cells::new(),
             work: Work::default(),
         }
     }
 
-    /// Traces at most [`BLOCK`] beams, and puts what each met into `met`, in their order.
-    pub(crate) fn trace(&mut self, beams: &[Beam], met: &mut Vec<Met>) {
+    /// Gets ready for lines in these beams.
+    pub(crate) fn aim(&mut self, beams: &[Beam]) {
+        self.shape = self.surfaces.along(beams);
+        self.pieces = None;
+        self.is_steep = self.shape.as_ref().is_some_and(|shape| {
+            let promise = shape.promise();
+            promise.outside == Quality::Lipschitz && promise.lipschitz > STEEP
+        });
+    }
+
+    /// Traces at most [`BLOCK`] beams within those that it was [aimed](Self::aim) along, and puts
+    /// what each met into `met`, in their order.
+    pub(crate) fn trace(&mut self, goal: Goal, beams: &[Beam], met: &mut Vec<Met>) {
+        self.begin(beams, met);
+        if goal == Goal::Any && self.is_steep {
+            self.sample(beams, met);
+        }
+        self.finish(goal, beams, met);
+    }
+
+    /// All beams at their beginning.
+    fn begin(&mut self, beams: &[Beam], met: &mut Vec<Met>) {
         met.clear();
         self.lanes.clear();
         self.work.rays += beams.len() as u64;
         for (number, beam) in beams.iter().enumerate() {
             met.push(Met { end: End::Free, distance: beam.far, is_beside: false });
-            if beam.near < beam.far {
+            if beam.near < beam.far && self.shape.is_some() {
                 self.lanes.push(Lane::new(number, beam));
             }
         }
+    }
+
+    /// Ends rays with a surface where the field is sampled.
+    fn sample(&mut self, beams: &[Beam], met: &mut [Met]) {
+        let Self { lanes, block, values, work, limits, .. } = self;
+        let Some(shape) = &self.shape else { return };
+        let first = FIRST_SAMPLE * limits.tolerance;
+        for sample in 0..SAMPLES {
+            let place = |lane: &Lane| {
+                let Beam { near, far, .. } = beams[lane.beam];
+                let length = far - near;
+                // In even ratios, up to the end.
+                let share = libm::pow(first / length, f64::from(sample) / f64::from(SAMPLES));
+                near + length * share
+            };
+            block.fill(lanes.len(), |i| beams[lanes[i].beam].at(place(&lanes[i])));
+            shape.block_distances(block, lanes.len(), values);
+            work.evaluations += lanes.len() as u64;
+            let mut number = 0;
+            lanes.retain(|lane| {
+                let is_free = values.get(number) > limits.tolerance;
+                number += 1;
+                if !is_free {
+                    let (end, distance) = (End::Surface, place(lane));
+                    met[lane.beam] = Met { end, distance, is_beside: false };
+                }
+                is_free
+            });
+            if lanes.is_empty() {
+                return;
+            }
+        }
+    }
+
+    /// Advances rays to their ends.
+    fn finish(&mut self, goal: Goal, beams: &[Beam], met: &mut [Met]) {
         let mut budget = self.limits.budget;
         let mut rounds = |most: u32| {
             let rounds = most.min(budget);
@@ -140,9 +218,11 @@ impl<'a> Tracer<'a> {
         let by_balls = rounds(if self.is_steep { 0 } else { ROUNDS_BY_BALLS });
         for _ in 0..by_balls {
             self.round(beams, met, false);
+            self.give_up(goal, met);
         }
         for _ in 0..rounds(ROUNDS_BY_MODELS) {
             self.round(beams, met, true);
+            self.give_up(goal, met);
         }
         for lane in std::mem::take(&mut self.lanes) {
             let end = self.cast(&beams[lane.beam], lane, budget);
@@ -153,10 +233,10 @@ impl<'a> Tracer<'a> {
 
     /// Ends rays that are at a surface, and advances the others.
     fn round(&mut self, beams: &[Beam], met: &mut [Met], by_models: bool) {
-        if self.lanes.is_empty() {
+        let Some(shape) = self.shape.as_ref().filter(|_| !self.lanes.is_empty()) else {
             return;
-        }
-        let Self { shape, lanes, block, values, models, work, limits, .. } = self;
+        };
+        let Self { lanes, block, values, pieces, cells, work, limits, .. } = self;
         block.fill(lanes.len(), |i| beams[lanes[i].beam].at(lanes[i].distance));
         shape.block_distances(block, lanes.len(), values);
         work.evaluations += lanes.len() as u64;
@@ -176,8 +256,9 @@ impl<'a> Tracer<'a> {
         }
         lanes.truncate(kept);
         if by_models {
-            models.advance(shape, beams, lanes);
-            work.evaluations += lanes.len() as u64;
+            let pieces = pieces.get_or_insert_with(|| Pieces::of(shape));
+            models::advance(pieces, beams, lanes, cells);
+            work.evaluations += std::mem::take(&mut cells.evaluations);
         }
         lanes.retain(|lane| {
             let beam = &beams[lane.beam];
@@ -190,6 +271,19 @@ impl<'a> Tracer<'a> {
         });
     }
 
+    /// Ends rays of which all is known that is to be found out.
+    fn give_up(&mut self, goal: Goal, met: &mut [Met]) {
+        if goal == Goal::Cone {
+            self.lanes.retain(|lane| {
+                if lane.is_near {
+                    let (end, distance) = (End::Surface, lane.distance);
+                    met[lane.beam] = Met { end, distance, is_beside: true };
+                }
+                !lane.is_near
+            });
+        }
+    }
+
     /// Casts what is left of a ray.
     fn cast(&mut self, beam: &Beam, lane: Lane, budget: u32) -> Met {
         self.work.grazing += 1;
@@ -197,9 +291,8 @@ impl<'a> Tracer<'a> {
         let undecided = Met { end: End::Undecided, distance, is_beside: true };
         let ray = Ray::new(beam.at(distance), beam.direction, beam.far - distance);
         let limits = self.limits.with_budget(budget);
-        let Ok(found) = ray.and_then(|ray| cast_ray(self.shape, &ray, &limits)) else {
-            return undecided;
-        };
+        let Some((shape, ray)) = self.shape.as_ref().zip(ray.ok()) else { return undecided };
+        let Ok(found) = cast_ray(shape, &ray, &limits) else { return undecided };
         self.work.evaluations += u64::from(found.evaluations);
         match (found.stop, found.best) {
             (Stop::SignKnown, _) => {
@@ -219,6 +312,7 @@ impl Lane {
             beam: number,
             distance: beam.near,
             step: models::first_step(beam),
+            too_long: f64::INFINITY,
             is_near: false,
             is_beside: false,
             is_thin: false,
