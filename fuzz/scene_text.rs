@@ -26,7 +26,10 @@ pub fn check(text: &str) -> Option<Scene> {
         }
         Err(error) => {
             let lines = text.split('\n').count();
-            assert!((1..=lines).contains(&error.line), "{error}: a text of {lines} lines");
+            for problem in error.problems() {
+                let line = problem.line;
+                assert!((1..=lines).contains(&line), "{error}: a text of {lines} lines");
+            }
             assert!(error.to_string().len() < 20_000);
             None
         }

@@ -6,32 +6,34 @@
 use std::io::Write;
 
 use palpate::field::Shape;
-use palpate::scene::{AnyScene, Scene};
+use palpate::scene::{AnyScene, Scene, SceneProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::CheckOptions;
-use crate::input::{promise_in_words, text};
+use crate::emptiness::is_empty;
+use crate::input::{bytes, other_than_scene, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
-    let text = text(&options.scene)?;
+    let bytes = bytes(&options.scene)?;
     let mut out = output::answer();
     let name = options.scene.display().to_string();
     let name = shown(&name);
-    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Err(error) => {
+            let other = other_than_scene(&options.scene, &bytes);
             if options.json {
-                let answer = json!({
-                    "ok": false,
-                    "path": error.path,
-                    "line": error.line,
-                    "column": error.column,
-                    "problem": error.problem,
-                });
-                out.json(&answer)?;
+                let problems: Vec<_> = match &other {
+                    Some(other) => {
+                        vec![json!({ "path": "", "line": 0, "column": 0, "problem": other })]
+                    }
+                    None => error.problems().map(told).collect(),
+                };
+                let more = other.is_none() && !error.is_all();
+                out.json(&json!({ "ok": false, "problems": problems, "maybe_more": more }))?;
             } else {
-                writeln!(out, "{name}: {}", shown(&error.to_string()))?;
+                writeln!(out, "{name}: {}", other.unwrap_or_else(|| error.to_string()))?;
             }
             Ok(Outcome::No)
         }
@@ -47,12 +49,26 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 writeln!(out, "{name}: good, {dimension}D, {} bodies", bodies.len())?;
                 for body in &bodies {
                     let text = |key: &str| body[key].as_str().unwrap_or_default().to_owned();
-                    writeln!(out, "  {}: {}", shown(&text("name")), text("promise"))?;
+                    let empty = match body["empty"].as_bool() {
+                        Some(false) => "",
+                        Some(true) => "; empty: no point is in it, which is proven",
+                        None => "; may be empty: no point was found in it",
+                    };
+                    writeln!(out, "  {}: {}{empty}", shown(&text("name")), text("promise"))?;
                 }
             }
             Ok(Outcome::Yes)
         }
     }
+}
+
+fn told(problem: &SceneProblem) -> Value {
+    json!({
+        "path": problem.path,
+        "line": problem.line,
+        "column": problem.column,
+        "problem": problem.problem,
+    })
 }
 
 fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Value> {
@@ -65,6 +81,7 @@ fn described<const D: usize>(bodies: &[palpate::scene::BuiltBody<D>]) -> Vec<Val
                 "lipschitz": body.shape.promise().lipschitz,
                 "bounds": bounds(&body.shape),
                 "depth": body.shape.depth(),
+                "empty": is_empty(&body.shape_in_body),
             })
         })
         .collect()

@@ -47,6 +47,7 @@ struct Work<'a> {
 }
 
 pub(crate) fn run(options: &GalleryOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    picture::check_width(options.format, options.width)?;
     let planar = catalogue(Entry::<2>::ALL)?;
     let spatial = catalogue(Entry::<3>::ALL)?;
     let operators = operators()?;
@@ -193,7 +194,7 @@ impl Work<'_> {
         picture: &Picture,
         shapes: Vec<String>,
     ) -> Result<Written, Failure> {
-        picture.save(figure, self.options.width)?;
+        picture.save(figure, self.options.width.unwrap_or(picture::WIDTH))?;
         Ok(Written { path: picture.path().to_owned(), shapes })
     }
 }

@@ -6,8 +6,10 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
-use palpate::scene::{AnyScene, BuiltScene, Scene};
+use palpate::local::GradientMethod;
+use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name};
 
+use crate::kind::Kind;
 use crate::outcome::Failure;
 
 /// The built-in gallery, which `palpate feel` feels if no scene is named.
@@ -24,37 +26,130 @@ pub(crate) struct Named {
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
 pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
-    let (name, text) = match path {
-        None => ("the built-in gallery".to_owned(), GALLERY.to_owned()),
-        Some(path) => (path.display().to_string(), text(path)?),
+    let (name, bytes) = match path {
+        None => ("the built-in gallery".to_owned(), GALLERY.as_bytes().to_owned()),
+        Some(path) => (path.display().to_string(), bytes(path)?),
     };
-    match Scene::from_json(&text).and_then(|scene| scene.build()) {
+    match Scene::from_bytes(&bytes).and_then(|scene| scene.build()) {
         Ok(scene) => Ok(Named { name, scene }),
-        Err(error) => Err(Failure::input(format!("{name}: {error}"))),
+        Err(error) => {
+            Err(Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error))))
+        }
     }
 }
 
-/// The text of a file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| Failure::file(path, error))
+/// Why a file is no scene: what it is instead, or what is wrong with it.
+fn no_scene(path: Option<&Path>, bytes: &[u8], error: &SceneError) -> String {
+    let other = path.and_then(|path| other_than_scene(path, bytes));
+    other.unwrap_or_else(|| error.to_string())
+}
+
+/// What a file holds that is no scene, and what to do with it; `None` if that is not known.
+pub(crate) fn other_than_scene(path: &Path, bytes: &[u8]) -> Option<String> {
+    match Kind::of(bytes)? {
+        Kind::Scene => None,
+        Kind::Empty => Some(format!("it is an empty file; a small scene is {SMALL}")),
+        kind => Some(format!("{kind}, not a scene; {}", kind.advice(path))),
+    }
+}
+
+/// A scene to begin with.
+const SMALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "bead", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
+
+/// The bytes of a file.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    if path.is_dir() {
+        return Err(Failure::file(path, "is a folder; name a file in it"));
+    }
+    std::fs::read(path).map_err(|error| Failure::file(path, error))
+}
+
+/// The numbers of the bodies with these names, each once.
+pub(crate) fn bodies(asked: &[String], names: &[&str]) -> Result<Vec<usize>, Failure> {
+    let number = |name: &String| {
+        let found = names.iter().position(|known| known == name);
+        found.ok_or_else(|| {
+            Failure::input(format!("--body: {}", unknown_name("body", name, names)))
+        })
+    };
+    let mut bodies = asked.iter().map(number).collect::<Result<Vec<_>, _>>()?;
+    bodies.sort_unstable();
+    bodies.dedup();
+    Ok(bodies)
+}
+
+/// The scene at a time [s].
+pub(crate) fn at<const D: usize>(
+    scene: &BuiltScene<D>,
+    time: f64,
+) -> Result<BuiltScene<D>, Failure> {
+    scene.at(time).map_err(Failure::input)
 }
 
 /// The point that `text` names: as many numbers as dimensions, joined by commas.
 pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failure> {
-    let wrong =
-        || Failure::input(format!("a point needs {D} numbers joined by commas, got {text:?}"));
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|number| number.trim().parse().map_err(|_| wrong()))
-        .collect::<Result<_, _>>()?;
-    let numbers: [f64; D] = numbers.try_into().map_err(|_| wrong())?;
-    for x in numbers {
-        if x.is_nan() || x.abs() > LARGEST_LENGTH {
-            let rule = format!("a coordinate must be at most {LARGEST_LENGTH:e} m, got {x}");
-            return Err(Failure::input(rule));
+    let axes = AXES[..D].join(",");
+    let wrong = |got: String| {
+        Failure::input(format!(
+            "the scene is {D}D: a point is {D} numbers {axes} joined by commas, got {got}"
+        ))
+    };
+    let parts: Vec<_> = text.split(',').collect();
+    let number = |part: &str| part.trim().parse::<f64>().ok();
+    let numbers: Option<Vec<f64>> = parts.iter().copied().map(number).collect();
+    let numbers: [f64; D] = match numbers.map(TryInto::try_into) {
+        Some(Ok(numbers)) => numbers,
+        Some(Err(numbers)) if numbers.len() == 2 * D => {
+            let got = format!("{} in {text:?}", numbers.len());
+            return Err(wrong(format!("{got}; a decimal comma is written as a point")));
         }
+        Some(Err(numbers)) => return Err(wrong(format!("{} in {text:?}", numbers.len()))),
+        None if text.contains([';', ' ']) && !text.contains(',') => {
+            return Err(wrong(format!("{text:?}; numbers are joined by commas alone")));
+        }
+        None => return Err(wrong(format!("{text:?}"))),
+    };
+    // Written so that NaN is refused.
+    let is_good = |x: &f64| x.abs() <= LARGEST_LENGTH;
+    match numbers.iter().position(|x| !is_good(x)) {
+        None => Ok(Vector(numbers)),
+        Some(axis) => Err(Failure::input(format!(
+            "{} must be finite and at most {LARGEST_LENGTH:e} m in size, got {} m",
+            AXES[axis], numbers[axis]
+        ))),
     }
-    Ok(Vector(numbers))
+}
+
+/// A point of a scene as the command line writes it, for an example: the middle of its box.
+pub(crate) fn example_point<const D: usize>(scene: &BuiltScene<D>) -> String {
+    let middle = scene.bounds().map_or(Vector::ZERO, |bounds| bounds.centre());
+    written_point(middle)
+}
+
+/// A point as the command line writes it, to three digits.
+pub(crate) fn written_point<const D: usize>(point: Vector<f64, D>) -> String {
+    // Adding zero turns −0 into 0.
+    let rounded = point.0.map(|x| format!("{x:.2e}").parse::<f64>().unwrap_or(x) + 0.0);
+    rounded.map(|x| x.to_string()).join(",")
+}
+
+/// The numbers that `text` lists, joined by commas, if there are `N`.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers = text.split(',').map(|number| number.trim().parse().ok());
+    numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// The way to a gradient of this name, for `D` dimensions.
+pub(crate) fn gradient<const D: usize>(name: &str) -> Result<GradientMethod, Failure> {
+    let method: GradientMethod =
+        name.parse().map_err(|error| Failure::input(format!("--gradient: {error}")))?;
+    if D > 2 && method.is_planar() {
+        return Err(Failure::input(format!(
+            "--gradient {method} turns in the plane, and this scene is in 3D: \
+             take differences, closest_vector or exact"
+        )));
+    }
+    Ok(method)
 }
 
 /// Numbers as one text, joined by commas.
@@ -68,6 +163,11 @@ pub(crate) const NO_BOUNDS: &str = "the scene must have a body with bounds";
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
     scene.bounds().ok_or_else(|| Failure::input(NO_BOUNDS))
+}
+
+/// The longest edge of a box [m].
+pub(crate) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
+    2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
 }
 
 /// A promise in a few words: "exact outside, bound inside".

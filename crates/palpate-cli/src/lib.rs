@@ -11,13 +11,17 @@ mod check;
 mod contact;
 mod descend;
 mod devices;
+mod emptiness;
+mod error_map;
 mod eval;
 mod feel;
 mod gallery;
+mod gradients;
 mod hand_csv;
 mod input;
 mod interrupt;
 mod jitter;
+mod kind;
 mod mass;
 mod mesh;
 mod outcome;
@@ -95,6 +99,7 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Eval(options) => eval::run(options, interrupt),
         Command::Contact(options) => contact::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
+        Command::Gradients(options) => gradients::run(options),
         Command::Plot(options) => plot::run(options),
         Command::Render(options) => render::run(options, interrupt),
         Command::Gallery(options) => gallery::run(options, interrupt),

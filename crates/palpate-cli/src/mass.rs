@@ -13,6 +13,7 @@ use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::MassOptions;
+use crate::emptiness::is_empty;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -48,7 +49,8 @@ fn report<const D: usize>(
         };
         let name = &body.name;
         let mass = mass.map_err(|error| Failure::input(format!("body {name:?}: {error}")))?;
-        if mass.volume_error > options.tolerance * mass.volume {
+        let is_open = mass.volume_error > options.tolerance * mass.volume;
+        if is_open {
             outcome = Outcome::No;
         }
         if options.json {
@@ -56,6 +58,16 @@ fn report<const D: usize>(
             continue;
         }
         writeln!(out, "{}, at {} kg/m³ ({} cells)", shown(name), options.density, mass.cells)?;
+        if mass.is_zero() {
+            writeln!(
+                out,
+                "  empty: no point is in it, its volume is proven to be 0 {volume_unit}"
+            )?;
+            continue;
+        }
+        if is_open && is_empty(&body.shape).is_none() {
+            writeln!(out, "  may be empty: no point was found in it")?;
+        }
         let line = |what: &str, value: f64, error: f64, unit: &str| {
             format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
         };
@@ -108,7 +120,7 @@ fn weighed<const D: usize>(
     }
 }
 
-/// Writes infinite errors as null.
+/// Writes infinite errors as null, and so the centroid of what is empty.
 fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
     let rows: Vec<_> = mass.second_moments.iter().map(|row| row.to_vec()).collect();
     json!({
@@ -117,7 +129,8 @@ fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
         "volume_error": mass.volume_error,
         "mass": mass.mass(),
         "mass_error": mass.mass_error(),
-        "centroid_m": mass.centroid.0.to_vec(),
+        "empty": mass.is_zero(),
+        "centroid_m": (!mass.is_zero()).then(|| mass.centroid.0.to_vec()),
         "centroid_error_m": mass.centroid_error,
         "second_moments": rows,
         "second_moments_error": mass.second_moments_error,

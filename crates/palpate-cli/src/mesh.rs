@@ -4,17 +4,19 @@
 //! `palpate mesh`: checks a mesh file.
 
 use std::io::Write;
+use std::path::Path;
 
-use palpate::mesh::{Report, read_file};
+use palpate::mesh::{Format, ReadError, ReadProblem, Report, read_file};
 use serde_json::json;
 
 use crate::arguments::MeshOptions;
+use crate::kind::Kind;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
 /// Reports on a mesh; the answer is no if it is not watertight or has degenerate triangles.
 pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
-    let mut mesh = read_file(&options.file).map_err(Failure::input)?;
+    let mut mesh = read_file(&options.file).map_err(|error| refused(&options.file, &error))?;
     if let Some(scale) = options.scale {
         mesh = mesh.scaled(scale).map_err(|error| Failure::file(&options.file, error))?;
     }
@@ -32,6 +34,27 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
         writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report))?;
     }
     Ok(if is_good { Outcome::Yes } else { Outcome::No })
+}
+
+/// Why a file is no mesh: what it is instead, or what is wrong with it.
+fn refused(path: &Path, error: &ReadError) -> Failure {
+    if path.is_dir() {
+        return Failure::file(path, "is a folder; name a file in it");
+    }
+    let named = Format::of(path);
+    let bytes = match &error.problem {
+        ReadProblem::Unreadable(_) => return Failure::input(error),
+        _ => std::fs::read(path).unwrap_or_default(),
+    };
+    match Kind::of(&bytes) {
+        Some(kind @ Kind::Mesh(format)) if named != Some(format) => {
+            Failure::file(path, format_args!("{kind}; {}", kind.advice(path)))
+        }
+        None | Some(Kind::Mesh(_)) => Failure::input(error),
+        Some(kind) => {
+            Failure::file(path, format_args!("{kind}, not a mesh; {}", kind.advice(path)))
+        }
+    }
 }
 
 fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {

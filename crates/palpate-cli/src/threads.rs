@@ -11,10 +11,10 @@ use crate::outcome::Failure;
 use crate::output;
 
 /// The requested number of threads, but no more than the machine runs at once: further ones
-/// would wait, each with memory of its own. Zero means as many as the machine runs.
+/// would wait, each with memory of its own.
 pub(crate) fn pool(asked: Option<usize>) -> Result<ThreadPool, Failure> {
-    let asked = asked.unwrap_or(0);
     let most = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let asked = asked.unwrap_or(most);
     if asked > most {
         output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
     }

@@ -51,7 +51,8 @@ impl<const D: usize> Entry<D> {
         all(planar).or_else(|| all(spatial)).unwrap_or(&[])
     }
 
-    /// The primitive called `name`, in the catalogue or in [`ALIASES`].
+    /// The primitive called `name`, in the catalogue or in [`ALIASES`]; an alias may have
+    /// parameters of its own.
     ///
     /// ```
     /// use palpate_field::catalogue::Entry;
@@ -113,7 +114,7 @@ impl<const D: usize> Entry<D> {
 }
 
 /// Another name of a primitive in one dimension.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Alias {
     /// The other name.
@@ -122,14 +123,46 @@ pub struct Alias {
     pub of: &'static str,
     /// The dimension in which it is one.
     pub dimension: usize,
+    /// Its parameters, if they are not those of the primitive.
+    pub parameters: Option<&'static [Parameter]>,
 }
+
+impl Alias {
+    const fn new(name: &'static str, of: &'static str, dimension: usize) -> Self {
+        Self { name, of, dimension, parameters: None }
+    }
+
+    /// A name with one number for the size along all axes.
+    const fn regular(name: &'static str, of: &'static str, dimension: usize) -> Self {
+        Self { parameters: Some(&[EDGE]), ..Self::new(name, of, dimension) }
+    }
+
+    /// The arguments of the primitive, from those of the other name: where it has parameters of
+    /// its own, a number holds along all axes.
+    #[must_use]
+    pub fn arguments(&self, given: Vec<Argument>) -> Vec<Argument> {
+        let along_all = |argument| match argument {
+            Argument::Number(number) if self.parameters.is_some() => {
+                Argument::Vector(vec![number; self.dimension])
+            }
+            other => other,
+        };
+        given.into_iter().map(along_all).collect()
+    }
+}
+
+/// The parameter of a square and of a cube.
+const EDGE: Parameter =
+    Parameter { name: "size", kind: ParameterKind::Length, about: "the length of every edge" };
 
 /// The names that many people look for first.
 pub const ALIASES: &[Alias] = &[
-    Alias { name: "circle", of: "ball", dimension: 2 },
-    Alias { name: "rectangle", of: "cuboid", dimension: 2 },
-    Alias { name: "sphere", of: "ball", dimension: 3 },
-    Alias { name: "box", of: "cuboid", dimension: 3 },
+    Alias::new("circle", "ball", 2),
+    Alias::new("rectangle", "cuboid", 2),
+    Alias::regular("square", "cuboid", 2),
+    Alias::new("sphere", "ball", 3),
+    Alias::new("box", "cuboid", 3),
+    Alias::regular("cube", "cuboid", 3),
 ];
 
 // Statics, and not constants, so that the code of all primitives is in this crate

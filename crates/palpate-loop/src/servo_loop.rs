@@ -14,10 +14,10 @@ use std::time::Duration;
 use palpate_field::Vector;
 
 use crate::clock::Clock;
-use crate::pacer::{Pacer, nanoseconds};
+use crate::pacer::{Pace, Pacer, nanoseconds};
 use crate::recorder::{Recorder, TickTimes};
 use crate::report::{Ending, RunReport, Tally};
-use crate::run::{Motion, Pace};
+use crate::run::Motion;
 
 /// How long before a tick its rehearsals begin: the first loads the caches, the others train
 /// the branch predictors.

@@ -34,6 +34,16 @@ fn one_tetrahedron_is_the_same_in_every_format() {
 }
 
 #[test]
+fn formats_are_known_by_their_content() {
+    for (format, bytes) in all() {
+        assert_eq!(Format::of_content(&bytes), Some(format));
+    }
+    for other in ["", "{ \"palpate\": 1 }", "x_m,y_m\n0,1\n", "solid ground\n", "v\n"] {
+        assert_eq!(Format::of_content(other.as_bytes()), None, "{other}");
+    }
+}
+
+#[test]
 fn objects_groups_textures_and_signs_of_obj_are_understood() {
     let text = "# a comment\nmtllib none.mtl\no one\nv 0 0 0 1 0 0\nv 1 0 0\n\
                 v 1 1 0 # another\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nusemtl red\n\

@@ -50,11 +50,26 @@ impl<T> Certified<T> {
 pub enum Stop {
     /// The bounds are no farther apart than the tolerance.
     Converged,
-    /// The sign of the value is proven, or that it exceeds the largest value asked for.
+    /// The sign of the value is proven, or the value is proven to exceed the margin.
     SignKnown,
-    /// The budget of evaluations or the room of the workspace ended first, or rounding allows no
-    /// closer bounds.
+    /// The budget of evaluations ended first: a larger one may help.
     BudgetSpent,
+    /// The room of the workspace ended first: a larger budget does not help, a larger tolerance
+    /// may.
+    MemoryFull,
+    /// Rounding allows no closer bounds.
+    RoundingReached,
+}
+
+impl Stop {
+    /// `true` if the search ended before its question was answered; its bounds hold all the same.
+    #[must_use]
+    pub fn is_early(self) -> bool {
+        match self {
+            Self::Converged | Self::SignKnown => false,
+            Self::BudgetSpent | Self::MemoryFull | Self::RoundingReached => true,
+        }
+    }
 }
 
 /// How far a search goes: to a tolerance, and to a budget of evaluations at most.

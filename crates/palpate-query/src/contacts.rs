@@ -70,9 +70,9 @@ impl<const D: usize> ElementContacts<D> {
 /// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
 ///   lies a barrier: every path on the element from one to the other passes a point where
 ///   the field is larger than at both, by more than the tolerance. That is proven.
-/// - **Nothing is missed**, unless the search stopped with [`Stop::BudgetSpent`]: from every
-///   point within the gap a path on the element leads to a contact at least as deep, up to the
-///   tolerance, over cells that no bound proves to be higher than the point.
+/// - **Nothing is missed**, unless the search stopped [early](Stop::is_early): every point
+///   within the gap belongs to the basin of a contact that is at least as deep, up to the
+///   tolerance. Basins that no bound proves apart count as one.
 ///
 /// Not promised: two minima closer to each other than an eighth of a triangle's edge,
 /// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two
@@ -181,7 +181,7 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
         }
         if patches.cells.is_empty() {
             let is_known = self.dropped > 0.0;
-            let stop = if is_known { Stop::SignKnown } else { Stop::BudgetSpent };
+            let stop = if is_known { Stop::SignKnown } else { Stop::RoundingReached };
             return self.answer(self.dropped, stop);
         }
         let is_whole = patches.cells.len() == 1 && patches.cells[0].level == 0;
@@ -199,8 +199,8 @@ impl<const N: usize, const D: usize> ElementSearch<'_, N, D> {
                 (all.upper, all.best) = (answer.upper, answer.best);
             }
             all.lower = all.lower.min(answer.lower);
-            if answer.stop == Stop::BudgetSpent {
-                all.stop = Stop::BudgetSpent;
+            if answer.stop.is_early() {
+                all.stop = answer.stop;
             }
         }
         Certified { evaluations: self.sampler.evaluations, ..all }

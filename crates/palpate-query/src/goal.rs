@@ -12,24 +12,31 @@ pub(crate) struct Goal {
     pub(crate) tolerance: f64,
     /// Stop once the minimum is proven above this [m].
     pub(crate) apart: f64,
+    /// How far apart the bounds may be while the largest value asked for lies between them [m].
+    finest: f64,
     /// Stop once the minimum is proven to be at most zero.
     is_sign: bool,
 }
 
+/// While the largest value asked for lies between the bounds, they may be apart by this share of
+/// the tolerance. With the whole of it, pairs near the margin would stay undecided; without any, a
+/// pair at the margin would spend its budget.
+const FINEST: f64 = 1.0 / 64.0;
+
 impl Goal {
     /// The least value.
     pub(crate) fn least(tolerance: f64) -> Self {
-        Self { tolerance, apart: f64::INFINITY, is_sign: false }
+        Self { tolerance, apart: f64::INFINITY, finest: tolerance, is_sign: false }
     }
 
-    /// The least value, if it is at most `apart`.
+    /// The least value, if it is at most `apart`, which is to be decided.
     pub(crate) fn least_within(apart: f64, tolerance: f64) -> Self {
-        Self { tolerance, apart, is_sign: false }
+        Self { tolerance, apart, finest: FINEST * tolerance, is_sign: false }
     }
 
     /// Whether anything is at most zero.
     pub(crate) fn sign(tolerance: f64) -> Self {
-        Self { tolerance, apart: 0.0, is_sign: true }
+        Self { tolerance, apart: 0.0, finest: tolerance, is_sign: true }
     }
 
     /// `true` if a minimum of at most zero ends the search.
@@ -39,7 +46,8 @@ impl Goal {
 
     /// Cells with a lower bound from this on are closed.
     pub(crate) fn threshold(self, upper: f64) -> f64 {
-        (upper - self.tolerance).min(self.apart + self.apart * f64::EPSILON + f64::MIN_POSITIVE)
+        let tolerance = if upper > self.apart { self.finest } else { self.tolerance };
+        (upper - tolerance).min(self.apart + self.apart * f64::EPSILON + f64::MIN_POSITIVE)
     }
 
     /// Places with values above this cannot matter, when the best value is `upper`.

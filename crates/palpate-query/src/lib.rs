@@ -27,8 +27,9 @@
 //!
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
-//!   region in which they touch; [`escape`] bounds the minimum translation from above. [`Track`] follows
-//!   a pair that moves, [`World`] many bodies.
+//!   region in which they touch; [`separating_translation`] bounds the minimum translation from
+//!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
+//! - [`any_point`] decides whether a shape has any point.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
 //!   surface along a [`Ray`], by balls that are free of it ([`free_radius`]).
@@ -46,6 +47,7 @@
 //! Features, both on by default: `parallel` shares batches and worlds among threads; `world`
 //! adds [`World`].
 
+mod any_point;
 mod ball;
 mod certified;
 mod contact;
@@ -57,6 +59,8 @@ mod element_search;
 mod engine;
 mod error;
 mod goal;
+#[doc(hidden)]
+pub mod internal;
 mod larger;
 mod manifold;
 mod mesh;
@@ -72,6 +76,7 @@ mod track;
 #[cfg(feature = "world")]
 mod world;
 
+pub use any_point::any_point;
 pub use ball::{BallWorkspace, contact_ball, touches_ball};
 pub use certified::{Certified, Limits, Stop};
 pub use contact::Contact;
@@ -85,8 +90,8 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    DistanceBound, Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    escape, minimax_step, overlap, proof, rates, separation,
+    DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
+    SeparatingTranslation, overlap, proof, rates, separating_translation, separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};

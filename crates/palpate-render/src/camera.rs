@@ -42,8 +42,7 @@ impl Sight {
         if !azimuth.is_finite() {
             return Err(wrong("azimuth", "finite", azimuth));
         }
-        // Written so that NaN is refused.
-        if !(elevation.abs() <= FRAC_PI_2) {
+        if elevation.is_nan() || elevation.abs() > FRAC_PI_2 {
             return Err(wrong("elevation", "from -pi/2 to pi/2", elevation));
         }
         let (sin_a, cos_a) = (libm::sin(azimuth), libm::cos(azimuth));

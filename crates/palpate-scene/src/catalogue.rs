@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-use palpate_field::catalogue::{ALIASES, Entry};
+use palpate_field::catalogue::{ALIASES, Alias, Entry};
 use palpate_field::kernel::{Parameter, ParameterKind};
 
 use crate::scene::Dimension;
@@ -17,12 +17,14 @@ pub(crate) struct Signature {
     pub(crate) name: &'static str,
     pub(crate) about: &'static str,
     pub(crate) parameters: &'static [Parameter],
+    /// The other name of which this is.
+    pub(crate) alias: Option<&'static Alias>,
 }
 
 impl Signature {
     fn of<const D: usize>(dimension: Dimension, entry: &Entry<D>) -> Self {
         let Entry { name, about, parameters, .. } = *entry;
-        Self { dimension, name, about, parameters }
+        Self { dimension, name, about, parameters, alias: None }
     }
 
     /// The parameter whose key in files is `key`: for an angle that with `_degrees`, or the
@@ -37,7 +39,9 @@ pub(crate) fn signatures() -> impl Iterator<Item = Signature> {
     primitives().chain(ALIASES.iter().filter_map(|alias| {
         let is_meant =
             |s: &Signature| (s.name, s.dimension.count()) == (alias.of, alias.dimension);
-        primitives().find(is_meant).map(|primitive| Signature { name: alias.name, ..primitive })
+        let primitive = primitives().find(is_meant)?;
+        let parameters = alias.parameters.unwrap_or(primitive.parameters);
+        Some(Signature { name: alias.name, parameters, alias: Some(alias), ..primitive })
     }))
 }
 

@@ -9,8 +9,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive, positive_if};
+use crate::error::SceneError;
 use crate::pose::{direction, position};
 use crate::problem::Problem;
+use crate::problems::Problems;
 use crate::schema::VectorSchema;
 
 /// A force that guides the hand: towards a point, a line, a plane or a curve, or into a well.
@@ -35,6 +37,7 @@ use crate::schema::VectorSchema;
     { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
 ]))]
+#[non_exhaustive]
 pub struct WrittenGuide {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -174,35 +177,44 @@ pub struct GuideWell {
 
 impl WrittenGuide {
     /// Checks the numbers, in a scene of `dimension`.
-    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
-        positive("stiffness", self.stiffness, "N/m")?;
-        at_least("damping", self.damping, 0.0, "N·s/m")?;
-        positive_if("snap_distance", self.snap_distance, "m")?;
-        positive_if("release_distance", self.release_distance, "m")?;
-        positive("max_force", self.max_force, "N")?;
-        self.check_release()?;
-        self.check_one_target()?;
-        if let Some(point) = &self.point {
-            position(point, dimension).map_err(|problem| problem.under("point"))?;
-        }
-        if let Some(line) = &self.line {
-            check_straight((&line.through, "direction", &line.direction), dimension)
-                .map_err(|problem| problem.under("line"))?;
-        }
-        if let Some(plane) = &self.plane {
-            check_straight((&plane.through, "normal", &plane.normal), dimension)
-                .map_err(|problem| problem.under("plane"))?;
-        }
-        if let Some(segment) = &self.segment {
-            segment.check(dimension).map_err(|problem| problem.under("segment"))?;
-        }
-        if let Some(curve) = &self.curve {
-            curve.check(dimension).map_err(|problem| problem.under("curve"))?;
-        }
-        if let Some(well) = &self.well {
-            self.check_well(well, dimension).map_err(|problem| problem.under("well"))?;
-        }
-        Ok(())
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problems> {
+        let numbers = [
+            positive("stiffness", self.stiffness, "N/m"),
+            at_least("damping", self.damping, 0.0, "N·s/m"),
+            positive_if("snap_distance", self.snap_distance, "m"),
+            positive_if("release_distance", self.release_distance, "m"),
+            positive("max_force", self.max_force, "N"),
+        ];
+        // Only numbers that are good are compared with one another.
+        let numbers = Problems::all(numbers).and_then(|()| Ok(self.check_release()?));
+        Problems::all([
+            numbers,
+            self.check_one_target().map_err(Problems::from),
+            self.check_target(dimension),
+        ])
+    }
+
+    /// Checks each target that is there.
+    fn check_target(&self, dimension: usize) -> Result<(), Problems> {
+        let point = self.point.as_ref().map_or(Ok(()), |point| position(point, dimension));
+        let line = self.line.as_ref().map_or(Ok(()), |line| {
+            check_straight(&line.through, "direction", &line.direction, dimension)
+        });
+        let plane = self.plane.as_ref().map_or(Ok(()), |plane| {
+            check_straight(&plane.through, "normal", &plane.normal, dimension)
+        });
+        let segment = self.segment.as_ref().map_or(Ok(()), |segment| segment.check(dimension));
+        let curve = self.curve.as_ref().map_or(Ok(()), |curve| curve.check(dimension));
+        let well = self.well.as_ref().map_or(Ok(()), |well| self.check_well(well, dimension));
+        let targets = [
+            ("point", point.map_err(Problems::from)),
+            ("line", line),
+            ("segment", segment),
+            ("plane", plane),
+            ("curve", curve),
+            ("well", well.map_err(Problems::from)),
+        ];
+        Problems::all(targets.map(|(key, target)| target.map_err(|p| p.under(key))))
     }
 
     fn check_release(&self) -> Result<(), Problem> {
@@ -256,44 +268,48 @@ impl WrittenGuide {
 
 /// Checks a point and a direction, which has a name of its own.
 fn check_straight(
-    (through, key, along): (&[f64], &str, &[f64]),
+    through: &[f64],
+    key: &str,
+    along: &[f64],
     dimension: usize,
-) -> Result<(), Problem> {
-    position(through, dimension).map_err(|problem| problem.under("through"))?;
-    direction(along, dimension).map_err(|problem| problem.under(key))
+) -> Result<(), Problems> {
+    Problems::all([
+        position(through, dimension).map_err(|problem| problem.under("through")),
+        direction(along, dimension).map_err(|problem| problem.under(key)),
+    ])
 }
 
 impl GuideSegment {
-    fn check(&self, dimension: usize) -> Result<(), Problem> {
-        position(&self.from, dimension).map_err(|problem| problem.under("from"))?;
-        position(&self.to, dimension).map_err(|problem| problem.under("to"))?;
+    fn check(&self, dimension: usize) -> Result<(), Problems> {
+        Problems::all([
+            position(&self.from, dimension).map_err(|problem| problem.under("from")),
+            position(&self.to, dimension).map_err(|problem| problem.under("to")),
+        ])?;
         if differ(&self.from, &self.to) {
             return Ok(());
         }
-        Err(Problem::about("must not be where the segment begins").under("to"))
+        Err(Problem::about("must not be where the segment begins").under("to").into())
     }
 }
 
 impl GuideCurve {
-    fn check(&self, dimension: usize) -> Result<(), Problem> {
+    fn check(&self, dimension: usize) -> Result<(), Problems> {
         let most = if self.smooth { 65 } else { 1025 };
         let count = self.points.len();
         if !(2..=most).contains(&count) {
             let message = format!("must have 2 to {most} points, got {count}");
-            return Err(Problem::about(message).under("points"));
+            return Err(Problem::about(message).under("points").into());
         }
-        for (i, point) in self.points.iter().enumerate() {
-            position(point, dimension).map_err(|problem| problem.at(i).under("points"))?;
-        }
-        for (i, pair) in self.points.windows(2).enumerate() {
-            if let [before, point] = pair
-                && !differ(before, point)
-            {
-                let message = "must not be where the point before it is";
-                return Err(Problem::about(message).at(i + 1).under("points"));
+        let points = self.points.iter().enumerate();
+        let good = points.map(|(i, point)| position(point, dimension).map_err(|p| p.at(i)));
+        let apart = self.points.windows(2).enumerate().map(|(i, pair)| match pair {
+            [before, point] if !differ(before, point) => {
+                Err(Problem::about("must not be where the point before it is").at(i + 1))
             }
-        }
-        Ok(())
+            _ => Ok(()),
+        });
+        let checked = Problems::all(good).and_then(|()| Problems::all(apart));
+        checked.map_err(|problems| problems.under("points"))
     }
 }
 
@@ -307,9 +323,8 @@ impl WrittenGuide {
     ///
     /// # Errors
     ///
-    /// As the constructor of its kind; [`HapticsError::GuideTargets`] without exactly one target,
-    /// [`HapticsError::Number`] if a vector has not `D` numbers. A scene that was built has
-    /// neither.
+    /// If there is not exactly one target, a vector has not `D` numbers, or the constructor of its
+    /// kind refuses a number. A scene that was built has none of these.
     ///
     /// ```
     /// use palpate_field::Vector;
@@ -328,7 +343,12 @@ impl WrittenGuide {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, HapticsError> {
+    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, SceneError> {
+        self.built().map_err(|problem| problem.located(None).into())
+    }
+
+    /// The guide with these numbers.
+    pub(crate) fn built<const D: usize>(&self) -> Result<Guide<D>, Problem> {
         let options = GuideOptions::default()
             .with_stiffness(self.stiffness)
             .with_damping(self.damping)
@@ -366,10 +386,10 @@ impl WrittenGuide {
             .map(|well| Guide::well(vector("center", &well.center)?, well.reach, options));
         let mut guides = point.chain(line).chain(segment).chain(plane).chain(curve).chain(well);
         match (guides.next(), guides.count()) {
-            (Some(guide), 0) => guide,
+            (Some(guide), 0) => guide.map_err(|error| Problem::new(error.to_string())),
             (guide, more) => {
                 let count = usize::from(guide.is_some()) + more;
-                Err(HapticsError::GuideTargets { count })
+                Err(Problem::new(format!("a guide needs one target, got {count}")))
             }
         }
     }
@@ -380,12 +400,12 @@ fn vector<const D: usize>(
     numbers: &[f64],
 ) -> Result<Vector<f64, D>, HapticsError> {
     let components = numbers.try_into().map_err(|_| {
-        HapticsError::Number(NumberError {
+        HapticsError::Number(NumberError::new(
             parameter,
-            rule: "one number for each dimension",
-            value: numbers.len() as f64,
-            unit: "numbers",
-        })
+            "one number for each dimension",
+            numbers.len() as f64,
+            "numbers",
+        ))
     })?;
     Ok(Vector(components))
 }

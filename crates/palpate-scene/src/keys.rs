@@ -6,6 +6,9 @@
 
 use palpate_field::operator::Profile;
 
+use crate::catalogue;
+use crate::scene::Dimension;
+
 /// `{ "union": [..] }`.
 pub(crate) const UNION: &str = "union";
 /// `{ "intersection": [..] }`.
@@ -113,6 +116,9 @@ pub(crate) const UNARY: [(&str, &str); 15] = [
 /// The operators of [`UNARY`] that may be there together.
 pub(crate) const MOVES: [&str; 3] = [TRANSLATE, ROTATE_DEGREES, ROTATION];
 
+/// The operators of [`UNARY`] that are in 3D alone.
+pub(crate) const SOLID: [&str; 4] = [TWIST_DEGREES, TWIST, EXTRUDE, REVOLVE];
+
 /// The keys that make no shape by themselves.
 pub(crate) const OTHERS: [&str; 6] = [WIDTH, PROFILE, HEIGHT, PROGRESS, OF, DESCRIPTION];
 
@@ -150,13 +156,15 @@ pub(crate) fn is_one_of(operators: &[(&str, &str)], key: &str) -> bool {
     operators.iter().any(|(operator, _)| *operator == key)
 }
 
-/// Every key that the object of a shape may have, the primitives' names included.
-pub(crate) fn all_keys() -> Vec<&'static str> {
+/// Every key that the object of a shape of a dimension may have, the primitives' names included.
+pub(crate) fn all_keys(dimension: Dimension) -> Vec<&'static str> {
+    let is_there = |key: &&str| dimension == Dimension::Three || !SOLID.contains(key);
     let lists = LISTS.iter().map(|(key, _)| *key);
-    let unary = UNARY.iter().map(|(key, _)| *key);
-    let primitives = crate::catalogue::signatures().map(|signature| signature.name);
+    let unary = UNARY.iter().map(|(key, _)| *key).filter(is_there);
+    let primitives = catalogue::signatures().filter(|s| s.dimension == dimension);
     let others = OTHERS.into_iter().chain([SHAPE]);
-    let mut keys: Vec<_> = primitives.chain(lists).chain(unary).chain(others).collect();
+    let names = primitives.map(|signature| signature.name);
+    let mut keys: Vec<_> = names.chain(lists).chain(unary).chain(others).collect();
     keys.sort_unstable();
     keys.dedup();
     keys

@@ -38,19 +38,23 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod advice;
 mod angle;
 mod attitude;
 mod build;
 mod catalogue;
 mod check;
+mod encoding;
 mod error;
 mod guide;
 mod json;
 mod keys;
 mod material;
 mod motion;
+mod names;
 mod pose;
 mod problem;
+mod problems;
 mod scene;
 mod schema;
 mod shape;
@@ -61,9 +65,11 @@ mod write;
 mod written_material;
 
 pub use build::{AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool};
-pub use error::{SceneCause, SceneError};
+pub use encoding::{NotUtf8, utf8};
+pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
+pub use names::unknown as unknown_name;
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};

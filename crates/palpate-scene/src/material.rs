@@ -7,6 +7,7 @@ use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture};
 
 use crate::check::{at_least, positive, positive_if};
 use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// [N/m]
 const STIFFNESS: &str = "N/m";
@@ -14,27 +15,24 @@ const STIFFNESS: &str = "N/m";
 const DAMPING: &str = "N·s/m";
 
 /// What is wrong with the numbers of a material, in a scene of `dimension`.
-pub(crate) fn check(material: &Material, dimension: usize) -> Result<(), Problem> {
-    at_least("stiffness", material.stiffness, 0.0, STIFFNESS)?;
-    at_least("damping", material.damping, 0.0, DAMPING)?;
-    at_least("static_friction", material.static_friction, 0.0, "")?;
-    at_least("dynamic_friction", material.dynamic_friction, 0.0, "")?;
-    at_least("viscosity", material.viscosity, 0.0, DAMPING)?;
-    check_frictions(material.static_friction, material.dynamic_friction)?;
-    if let Some(magnet) = &material.magnet {
-        check_magnet(magnet).map_err(|problem| problem.under("magnet"))?;
-    }
-    if let Some(pop) = &material.pop_through {
-        check_pop_through(pop).map_err(|problem| problem.under("pop_through"))?;
-    }
-    check_layers(material).map_err(|problem| problem.under("layers"))?;
-    if let Some(texture) = &material.texture {
-        check_texture(texture, dimension).map_err(|problem| problem.under("texture"))?;
-    }
-    if let Some(impact) = &material.impact {
-        check_impact(impact).map_err(|problem| problem.under("impact"))?;
-    }
-    Ok(())
+pub(crate) fn check(material: &Material, dimension: usize) -> Result<(), Problems> {
+    let numbers = [
+        at_least("stiffness", material.stiffness, 0.0, STIFFNESS),
+        at_least("damping", material.damping, 0.0, DAMPING),
+        at_least("static_friction", material.static_friction, 0.0, ""),
+        at_least("dynamic_friction", material.dynamic_friction, 0.0, ""),
+        at_least("viscosity", material.viscosity, 0.0, DAMPING),
+        check_frictions(material.static_friction, material.dynamic_friction),
+    ];
+    let parts = [
+        ("magnet", material.magnet.as_ref().map_or(Ok(()), check_magnet)),
+        ("pop_through", material.pop_through.as_ref().map_or(Ok(()), check_pop_through)),
+        ("layers", check_layers(material)),
+        ("texture", material.texture.as_ref().map_or(Ok(()), |t| check_texture(t, dimension))),
+        ("impact", material.impact.as_ref().map_or(Ok(()), check_impact)),
+    ];
+    let parts = parts.map(|(key, part)| part.map_err(|problems| problems.under(key)));
+    Problems::all([Problems::all(numbers), Problems::all(parts)])
 }
 
 fn check_frictions(static_friction: f64, dynamic_friction: f64) -> Result<(), Problem> {
@@ -47,62 +45,70 @@ fn check_frictions(static_friction: f64, dynamic_friction: f64) -> Result<(), Pr
     Err(Problem::about(message).under("dynamic_friction"))
 }
 
-fn check_layers(material: &Material) -> Result<(), Problem> {
+fn check_layers(material: &Material) -> Result<(), Problems> {
+    let mut wrong = Problems::default();
     let mut above = 0.0;
     let (mut fixed, mut slipping) = (material.static_friction, material.dynamic_friction);
     for (i, layer) in material.layers.iter().enumerate() {
-        check_layer(layer, above).map_err(|problem| problem.at(i))?;
+        wrong.kept(check_layer(layer, above).map_err(|problems| problems.at(i)));
         above = layer.depth;
         fixed = layer.static_friction.unwrap_or(fixed);
         slipping = layer.dynamic_friction.unwrap_or(slipping);
-        check_frictions(fixed, slipping).map_err(|problem| problem.at(i))?;
+        wrong.kept(check_frictions(fixed, slipping).map_err(|problem| problem.at(i)));
     }
-    Ok(())
+    wrong.end(Ok(()))
 }
 
-fn check_layer(layer: &Layer, above: f64) -> Result<(), Problem> {
-    positive("depth", layer.depth, "m")?;
-    if layer.depth <= above {
-        let message = format!(
-            "must be more than that of the layer above, {above} m, got {} m",
-            layer.depth
-        );
-        return Err(Problem::about(message).under("depth"));
-    }
-    for (key, value, unit) in [
+fn check_layer(layer: &Layer, above: f64) -> Result<(), Problems> {
+    let depth = positive("depth", layer.depth, "m").and_then(|()| {
+        if layer.depth > above {
+            return Ok(());
+        }
+        let rule = format!("must be more than that of the layer above, {above} m");
+        Err(Problem::about(format!("{rule}, got {} m", layer.depth)).under("depth"))
+    });
+    let numbers = [
         ("stiffness", layer.stiffness, STIFFNESS),
         ("damping", layer.damping, DAMPING),
         ("static_friction", layer.static_friction, ""),
         ("dynamic_friction", layer.dynamic_friction, ""),
         ("viscosity", layer.viscosity, DAMPING),
-    ] {
-        value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))?;
-    }
-    match &layer.pop_through {
-        Some(pop) => check_pop_through(pop).map_err(|problem| problem.under("pop_through")),
-        None => Ok(()),
-    }
+    ];
+    let numbers = numbers.map(|(key, value, unit)| {
+        value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))
+    });
+    let pop = layer.pop_through.as_ref().map_or(Ok(()), check_pop_through);
+    Problems::all([
+        Problems::all(numbers.into_iter().chain([depth])),
+        pop.map_err(|problems| problems.under("pop_through")),
+    ])
 }
 
-fn check_magnet(magnet: &Magnet) -> Result<(), Problem> {
-    positive("force", magnet.force, "N")?;
-    positive("distance", magnet.distance, "m")
+fn check_magnet(magnet: &Magnet) -> Result<(), Problems> {
+    let force = positive("force", magnet.force, "N");
+    Problems::all([force, positive("distance", magnet.distance, "m")])
 }
 
-fn check_pop_through(pop: &PopThrough) -> Result<(), Problem> {
-    positive("force", pop.force, "N")?;
-    at_least("distance", pop.distance, 0.0, "m")
+fn check_pop_through(pop: &PopThrough) -> Result<(), Problems> {
+    let force = positive("force", pop.force, "N");
+    Problems::all([force, at_least("distance", pop.distance, 0.0, "m")])
 }
 
-fn check_texture(texture: &Texture, dimension: usize) -> Result<(), Problem> {
-    positive("amplitude", texture.amplitude, "m")?;
-    positive("wavelength", texture.wavelength, "m")?;
-    let Some(direction) = &texture.direction else { return Ok(()) };
-    crate::pose::direction(direction, dimension).map_err(|problem| problem.under("direction"))
+fn check_texture(texture: &Texture, dimension: usize) -> Result<(), Problems> {
+    let direction = texture.direction.as_ref().map_or(Ok(()), |direction| {
+        crate::pose::direction(direction, dimension).map_err(|p| p.under("direction"))
+    });
+    Problems::all([
+        positive("amplitude", texture.amplitude, "m"),
+        positive("wavelength", texture.wavelength, "m"),
+        direction,
+    ])
 }
 
-fn check_impact(impact: &Impact) -> Result<(), Problem> {
-    at_least("amplitude", impact.amplitude, 0.0, DAMPING)?;
-    positive_if("frequency", Some(impact.frequency), "Hz")?;
-    at_least("decay", impact.decay, 0.0, "1/s")
+fn check_impact(impact: &Impact) -> Result<(), Problems> {
+    Problems::all([
+        at_least("amplitude", impact.amplitude, 0.0, DAMPING),
+        positive_if("frequency", Some(impact.frequency), "Hz"),
+        at_least("decay", impact.decay, 0.0, "1/s"),
+    ])
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive};
 use crate::pose::WrittenPose;
-use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// A screw motion of a body from a pose to another, at constant speed.
 ///
@@ -28,6 +28,7 @@ use crate::problem::Problem;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct Motion {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -55,6 +56,23 @@ pub struct Motion {
     pub repeat: Repeat,
 }
 
+impl Motion {
+    /// A motion of the body of this name from its own pose, which takes one second.
+    #[must_use]
+    pub fn new(body: impl Into<String>, to: WrittenPose) -> Self {
+        Self {
+            description: None,
+            body: body.into(),
+            from: None,
+            to,
+            start: 0.0,
+            duration: one_second(),
+            turns: 0,
+            repeat: Repeat::default(),
+        }
+    }
+}
+
 fn one_second() -> f64 {
     1.0
 }
@@ -77,8 +95,8 @@ pub enum Repeat {
 
 impl Motion {
     /// Checks the numbers; body and poses are checked by the scene.
-    pub(crate) fn check(&self) -> Result<(), Problem> {
-        at_least("start", self.start, 0.0, "s")?;
-        positive("duration", self.duration, "s")
+    pub(crate) fn check(&self) -> Result<(), Problems> {
+        let start = at_least("start", self.start, 0.0, "s");
+        Problems::all([start, positive("duration", self.duration, "s")])
     }
 }

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 pub(crate) use crate::attitude::Attitude;
 use crate::problem::Problem;
+use crate::problems::Problems;
 use crate::schema::{TurnSchema, VectorSchema};
 
 /// A rotation and then a translation, as a file gives them.
@@ -29,6 +30,7 @@ use crate::schema::{TurnSchema, VectorSchema};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PoseFile", into = "PoseFile")]
+#[non_exhaustive]
 pub struct WrittenPose {
     /// A note for readers of the file.
     pub description: Option<String>,
@@ -40,6 +42,7 @@ pub struct WrittenPose {
 
 /// A rotation, as a file gives it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WrittenRotation {
     /// In the plane: an angle from x towards y [°].
     Degrees(f64),
@@ -326,26 +329,27 @@ pub(crate) fn vector<const D: usize>(numbers: &[f64]) -> Result<Vector<f64, D>, 
 pub(crate) fn pose<const D: usize>(
     translation: (&str, Option<&[f64]>),
     rotation: Option<&WrittenRotation>,
-) -> Result<Pose<D>, Problem>
+) -> Result<Pose<D>, Problems>
 where
     Turns: Turning<D>,
 {
     let (key, translation) = translation;
     let translation = match translation {
-        Some(numbers) => vector(numbers).map_err(|problem| problem.under(key))?,
-        None => Vector::ZERO,
+        Some(numbers) => vector(numbers).map_err(|problem| problem.under(key)),
+        None => Ok(Vector::ZERO),
     };
     let rotation = match rotation {
         Some(written) => <Turns as Turning<D>>::rotation(written)
-            .map_err(|problem| problem.under(written.key()))?,
-        None => Rotation::identity(),
+            .map_err(|problem| problem.under(written.key())),
+        None => Ok(Rotation::identity()),
     };
+    let (translation, rotation) = Problems::both(translation, rotation)?;
     Ok(Pose::new(rotation, translation))
 }
 
 impl WrittenPose {
     /// The pose in `D` dimensions.
-    pub(crate) fn built<const D: usize>(&self) -> Result<Pose<D>, Problem>
+    pub(crate) fn built<const D: usize>(&self) -> Result<Pose<D>, Problems>
     where
         Turns: Turning<D>,
     {

@@ -9,8 +9,9 @@ use serde::de::{self, Expected, Unexpected};
 
 use palpate_field::ShapeError;
 
-use crate::error::{SceneCause, SceneError};
+use crate::error::{SceneCause, SceneError, SceneProblem};
 use crate::json::Position;
+use crate::names::{shortened, unknown};
 
 /// One step down into a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,10 +29,10 @@ pub(crate) struct Problem {
     steps: Vec<Step>,
     /// `true` if the message lacks its subject: the name of the place.
     wants_subject: bool,
-    /// `true` if the outermost step begins at the root.
-    rooted: bool,
     /// `true` if the other dimension may accept what is wrong here.
     of_dimension: bool,
+    /// The key that is missing, if that is what is wrong.
+    missing: Option<String>,
     message: String,
     cause: Option<Box<SceneCause>>,
 }
@@ -41,11 +42,18 @@ impl Problem {
         Self {
             steps: Vec::new(),
             wants_subject: false,
-            rooted: false,
             of_dimension: false,
+            missing: None,
             message: message.into(),
             cause: None,
         }
+    }
+
+    /// A key that must be there, and what it is for.
+    pub(crate) fn missing(key: &str, about: &str) -> Self {
+        let colon = if about.is_empty() { "" } else { ": " };
+        let problem = Self::new(format!("missing key `{key}`{colon}{about}"));
+        Self { missing: Some(key.to_owned()), ..problem }
     }
 
     /// What a shape refuses.
@@ -66,24 +74,14 @@ impl Problem {
 
     /// The same problem, seen from the object that has it under `key`.
     pub(crate) fn under(mut self, key: &str) -> Self {
-        if !self.rooted {
-            self.steps.push(Step::Key(key.to_owned()));
-        }
+        self.steps.push(Step::Key(key.to_owned()));
         self
     }
 
     /// The same problem, seen from the list that has it at `index`.
     pub(crate) fn at(mut self, index: usize) -> Self {
-        if !self.rooted {
-            self.steps.push(Step::Index(index));
-        }
+        self.steps.push(Step::Index(index));
         self
-    }
-
-    /// The same problem, whose path is complete: it was found by following a
-    /// reference, and what refers to it is no part of the way.
-    pub(crate) fn rooted(self) -> Self {
-        Self { rooted: true, ..self }
     }
 
     /// The same problem, which the other dimension may not have.
@@ -101,6 +99,16 @@ impl Problem {
         Self { of_dimension: false, ..self }
     }
 
+    /// The key that is missing, if that is what is wrong.
+    pub(crate) fn missing_key(&self) -> Option<&str> {
+        self.missing.as_deref()
+    }
+
+    /// `true` if a shape refused to be made.
+    pub(crate) fn is_of_shape(&self) -> bool {
+        self.cause.is_some()
+    }
+
     /// What is wrong, without the place.
     pub(crate) fn message(&self) -> &str {
         &self.message
@@ -111,8 +119,16 @@ impl Problem {
         self.steps.iter().rev()
     }
 
+    /// The same problem, each step of its path replaced, from the root to the place.
+    pub(crate) fn with_steps(mut self, change: impl FnMut(Step) -> Step) -> Self {
+        let mut steps: Vec<_> = self.steps.into_iter().rev().map(change).collect();
+        steps.reverse();
+        self.steps = steps;
+        self
+    }
+
     /// The error for users, at `position` if it is known.
-    pub(crate) fn located(self, position: Option<Position>) -> SceneError {
+    pub(crate) fn located(self, position: Option<Position>) -> SceneProblem {
         let path = display(self.steps.iter().rev());
         let problem = if self.wants_subject {
             let named = self.steps.iter().position(|step| matches!(step, Step::Key(_)));
@@ -125,7 +141,7 @@ impl Problem {
             self.message
         };
         let (line, column) = position.map_or((0, 0), |p| (p.line, p.column));
-        SceneError { path, line, column, problem, cause: self.cause }
+        SceneProblem { path, line, column, problem, cause: self.cause, ..Default::default() }
     }
 }
 
@@ -152,52 +168,6 @@ fn display<'a>(steps: impl Iterator<Item = &'a Step>) -> String {
     path
 }
 
-/// The longest text from a file that a message repeats, in characters.
-const LONGEST_QUOTE: usize = 60;
-
-/// The beginning of `text`, fit for a message.
-pub(crate) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(LONGEST_QUOTE) {
-        Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
-        None => text.to_owned(),
-    }
-}
-
-/// "unknown key `raduis`, did you mean `radius`?", or the list of `known`.
-pub(crate) fn unknown(what: &str, found: &str, known: &[&str]) -> String {
-    let found = shortened(found);
-    let letters = found.chars().count();
-    // A third of the letters may be wrong: more, and the guess is none.
-    let distance = |candidate: &str| {
-        let allowed = candidate.chars().take(2 * LONGEST_QUOTE).count() / 3;
-        let is_near = candidate.len().abs_diff(letters) <= LONGEST_QUOTE;
-        let distance = is_near.then(|| strsim::osa_distance(&found, candidate));
-        distance.filter(|distance| *distance <= allowed)
-    };
-    let near = known.iter().filter_map(|c| distance(c).map(|distance| (distance, c)));
-    match near.min_by_key(|(distance, _)| *distance) {
-        Some((_, nearest)) => format!("unknown {what} `{found}`, did you mean `{nearest}`?"),
-        None if known.is_empty() => format!("unknown {what} `{found}`; there are none here"),
-        None => format!("unknown {what} `{found}`; known are {}", listed(known)),
-    }
-}
-
-/// The most names that a message lists.
-const LONGEST_LIST: usize = 16;
-
-/// "`a`, `b` and `c`".
-fn listed(names: &[&str]) -> String {
-    let shown = names.iter().take(LONGEST_LIST);
-    let mut quoted: Vec<_> = shown.map(|name| format!("`{}`", shortened(name))).collect();
-    if names.len() > LONGEST_LIST {
-        quoted.push(format!("{} more", names.len() - LONGEST_LIST));
-    }
-    match quoted.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-        _ => quoted.concat(),
-    }
-}
-
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
@@ -205,6 +175,13 @@ impl fmt::Display for Problem {
 }
 
 impl std::error::Error for Problem {}
+
+impl From<Problem> for SceneError {
+    /// Of a scene that does not come from a file.
+    fn from(problem: Problem) -> Self {
+        problem.located(None).into()
+    }
+}
 
 impl de::Error for Problem {
     fn custom<T: fmt::Display>(message: T) -> Self {
@@ -232,7 +209,13 @@ impl de::Error for Problem {
     }
 
     fn missing_field(field: &'static str) -> Self {
-        Self::new(format!("missing key `{field}`"))
+        let about = match field {
+            "palpate" => "the version of the format, 1",
+            "dimension" => "2 for the plane, 3 for space",
+            "bodies" => "what is there to be touched",
+            _ => "",
+        };
+        Self::missing(field, about)
     }
 
     fn duplicate_field(field: &'static str) -> Self {
@@ -280,18 +263,5 @@ mod tests {
         let problem = Problem::about("must be short").at(1).at(0).under("a.b").under("shapes");
         let error = problem.located(None);
         assert_eq!(error.to_string(), r#"shapes."a.b"[0][1]: "a.b"[0][1] must be short"#);
-    }
-
-    #[test]
-    fn far_names_are_listed_near_ones_proposed() {
-        let known = ["radius", "height"];
-        assert_eq!(
-            unknown("key", "raduis", &known),
-            "unknown key `raduis`, did you mean `radius`?"
-        );
-        assert_eq!(
-            unknown("key", "colour", &known),
-            "unknown key `colour`; known are `radius` and `height`"
-        );
     }
 }

@@ -12,11 +12,13 @@ use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::build::{self, AnyScene};
-use crate::error::{SceneCause, SceneError};
+use crate::encoding::utf8;
+use crate::error::{SceneCause, SceneError, SceneProblem};
 use crate::guide::WrittenGuide;
-use crate::json::{self, Document};
+use crate::json::{self, Document, Source};
 use crate::motion::Motion;
 use crate::pose::WrittenPose;
+use crate::problem::Problem;
 use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
 use crate::view::View;
@@ -70,6 +72,7 @@ impl fmt::Display for Dimension {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct Scene {
     /// The version of the format: 1.
     palpate: Version,
@@ -104,6 +107,7 @@ pub struct Scene {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[schemars(rename = "Body")]
+#[non_exhaustive]
 pub struct WrittenBody {
     /// The name, unlike that of any other body.
     #[schemars(length(min = 1))]
@@ -147,34 +151,46 @@ impl Scene {
     }
 
     /// Reads a scene and checks it as [`build`](Self::build) does, its unused
-    /// shapes too.
+    /// shapes too. A byte order mark is passed over.
     ///
     /// # Errors
     ///
-    /// What is wrong, with its path, line and column.
+    /// All that is wrong, with paths, lines and columns.
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
-        let document = Document::parse(text)?;
-        let scene: Self = document.read().map_err(|problem| document.locate(problem))?;
-        build::world(&scene).map_err(|problem| document.locate(problem))?;
-        Ok(scene)
+        let source = Source::of(text);
+        Document::parse(&source)?.scene(|scene| build::world(scene).map(drop))
     }
 
-    /// Reads a scene from the file at `path`, as [`from_json`](Self::from_json).
+    /// Reads a scene from the bytes of a file, as [`from_json`](Self::from_json).
     ///
     /// # Errors
     ///
-    /// As `from_json`; if the file cannot be read, an error without place that
+    /// As `from_json`; if the bytes are not UTF-8, an error that says what they are.
+    ///
+    /// ```
+    /// use palpate_scene::Scene;
+    ///
+    /// let error = Scene::from_bytes(b"{ \"palpate\": 1, \"description\": \"caf\xe9\" }").unwrap_err();
+    /// assert!(error.to_string().starts_with("the file is not UTF-8: byte 35, in line 1, is 0xe9"));
+    /// ```
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SceneError> {
+        Self::from_json(utf8(bytes).map_err(|error| Problem::new(error.to_string()))?)
+    }
+
+    /// Reads a scene from the file at `path`, as [`from_bytes`](Self::from_bytes).
+    ///
+    /// # Errors
+    ///
+    /// As `from_bytes`; if the file cannot be read, an error without place that
     /// names it.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|error| SceneError {
-            path: String::new(),
-            line: 0,
-            column: 0,
+        let bytes = std::fs::read(path).map_err(|error| SceneProblem {
             problem: format!("cannot read {}: {error}", path.display()),
             cause: Some(Box::new(SceneCause::File(error.kind()))),
+            ..SceneProblem::default()
         })?;
-        Self::from_json(&text)
+        Self::from_bytes(&bytes)
     }
 
     /// The scene as a file: its keys in a fixed order, those of shapes as they were read.
@@ -198,10 +214,10 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// What is wrong, with its path; lines are known to
+    /// All that is wrong, with paths; lines are known to
     /// [`from_json`](Self::from_json) alone.
     pub fn build(&self) -> Result<AnyScene, SceneError> {
-        build::world(self).map_err(|problem| problem.located(None))
+        Ok(build::world(self)?)
     }
 }
 

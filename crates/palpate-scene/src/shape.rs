@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::build;
 use crate::error::SceneError;
-use crate::json::{self, Document};
+use crate::json::{self, Document, Source};
 use crate::write::Writer;
 
 /// A shape as a file gives it: an object that makes it, or the name of another shape.
@@ -49,7 +49,7 @@ impl WrittenShape {
     /// If the text is no JSON, repeats a key or has a number beyond the range of `f64`. Whether it
     /// makes a shape is checked by [`Scene::build`](crate::Scene::build).
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
-        Document::parse(text).map(|document| Self::new(document.into_value()))
+        Document::parse(&Source::of(text))?.into_value().map(Self::new)
     }
 
     /// A shape made in code, as a file holds it: the same node, and the same bits of every
@@ -72,7 +72,7 @@ impl WrittenShape {
     /// # }
     /// ```
     pub fn of<const D: usize>(shape: &Shape<D>) -> Result<Self, SceneError> {
-        Writer::new(IndexMap::new()).shape(shape).map_err(|problem| problem.located(None))
+        Ok(Writer::new(IndexMap::new()).shape(shape)?)
     }
 
     /// Makes the shape, which must not refer to another by name.
@@ -81,7 +81,7 @@ impl WrittenShape {
     ///
     /// What is wrong, with its path; [`ShapeError`](palpate_field::ShapeError)s as they say.
     pub fn build<const D: usize>(&self) -> Result<Shape<D>, SceneError> {
-        build::alone(self).map_err(|problem| problem.located(None))
+        Ok(build::alone(self)?)
     }
 
     /// The JSON text, as it stands in a scene file.

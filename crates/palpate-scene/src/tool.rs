@@ -7,9 +7,10 @@ use palpate_haptics::ToolOptions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::check::{at_least, positive, positive_if};
+use crate::check::{at_least, positive_if};
 use crate::pose::WrittenPose;
 use crate::problem::Problem;
+use crate::problems::Problems;
 use crate::schema::VectorSchema;
 use crate::shape::WrittenShape;
 
@@ -32,6 +33,7 @@ use crate::shape::WrittenShape;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Tool")]
+#[non_exhaustive]
 pub struct WrittenTool {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,6 +67,7 @@ pub struct WrittenTool {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Coupling")]
+#[non_exhaustive]
 pub struct WrittenCoupling {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,6 +94,7 @@ pub struct WrittenCoupling {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Workspace")]
+#[non_exhaustive]
 pub struct WrittenWorkspace {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -111,41 +115,37 @@ impl Default for WrittenWorkspace {
 }
 
 impl WrittenTool {
-    /// Checks the numbers; the shape and the pose are checked when they are built.
-    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
-        at_least("radius", self.radius, 0.0, "m")?;
-        for (i, point) in self.points.iter().enumerate() {
-            crate::pose::position(point, dimension)
-                .map_err(|problem| problem.at(i).under("points"))?;
-        }
-        if self.shape.is_some() && !self.points.is_empty() {
-            return Err(
-                Problem::new("a tool has either contact points or a shape").under("points")
-            );
-        }
-        positive_if("max_force", self.max_force, "N")?;
-        if let Some(coupling) = &self.coupling {
-            coupling.check().map_err(|problem| problem.under("coupling"))?;
-        }
-        if let Some(workspace) = &self.workspace {
-            positive("scale", workspace.scale, "")
-                .map_err(|problem| problem.under("workspace"))?;
-        }
-        Ok(())
+    /// Checks the numbers; the shape and the workspace are checked when they are built.
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problems> {
+        let points = self.points.iter().enumerate().map(|(i, point)| {
+            crate::pose::position(point, dimension).map_err(|p| p.at(i).under("points"))
+        });
+        let is_both = self.shape.is_some() && !self.points.is_empty();
+        let both = Problem::new("a tool has either contact points or a shape").under("points");
+        let numbers = [
+            at_least("radius", self.radius, 0.0, "m"),
+            if is_both { Err(both) } else { Ok(()) },
+            positive_if("max_force", self.max_force, "N"),
+        ];
+        let coupling = self.coupling.as_ref().map_or(Ok(()), WrittenCoupling::check);
+        Problems::all([
+            Problems::all(numbers.into_iter().chain(points)),
+            coupling.map_err(|problems| problems.under("coupling")),
+        ])
     }
 }
 
 impl WrittenCoupling {
-    fn check(&self) -> Result<(), Problem> {
-        positive_if("stiffness", self.stiffness, "N/m")?;
-        positive_if("angular_stiffness", self.angular_stiffness, "N·m/rad")?;
-        for (key, value, unit) in [
-            ("damping", self.damping, "N·s/m"),
-            ("angular_damping", self.angular_damping, "N·m·s/rad"),
-        ] {
-            value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))?;
-        }
-        Ok(())
+    fn check(&self) -> Result<(), Problems> {
+        let at_least_zero = |key, value: Option<f64>, unit| {
+            value.map_or(Ok(()), |value| at_least(key, value, 0.0, unit))
+        };
+        Problems::all([
+            positive_if("stiffness", self.stiffness, "N/m"),
+            positive_if("angular_stiffness", self.angular_stiffness, "N·m/rad"),
+            at_least_zero("damping", self.damping, "N·s/m"),
+            at_least_zero("angular_damping", self.angular_damping, "N·m·s/rad"),
+        ])
     }
 }
 
@@ -159,11 +159,10 @@ impl WrittenTool {
         let options = default
             .with_stiffness(coupling.stiffness.unwrap_or(default.stiffness))
             .with_damping(coupling.damping.unwrap_or(default.damping))
-            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping))
-            .with_max_force(self.max_force.unwrap_or(default.max_force));
-        match coupling.angular_stiffness {
-            Some(stiffness) => options.with_angular_stiffness(stiffness),
-            None => options,
-        }
+            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping));
+        let stiffness = coupling.angular_stiffness;
+        let options =
+            stiffness.map_or(options, |stiffness| options.with_angular_stiffness(stiffness));
+        self.max_force.map_or(options, |max_force| options.with_max_force(max_force))
     }
 }

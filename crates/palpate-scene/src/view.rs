@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use crate::check::positive_if;
 use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// A picture of a scene: a window on a plane through it.
 ///
@@ -29,6 +30,7 @@ use crate::problem::Problem;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct View {
     /// The name, unlike that of any other view.
     #[schemars(length(min = 1))]
@@ -58,6 +60,23 @@ pub struct View {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub spacing: Option<f64>,
+}
+
+impl View {
+    /// A view whose plane and window are chosen so that the scene fills the picture.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            description: None,
+            plane: None,
+            at: None,
+            center: None,
+            width: None,
+            height: None,
+            spacing: None,
+        }
+    }
 }
 
 /// A plane through space.
@@ -140,34 +159,51 @@ impl<'de> Visitor<'de> for PlaneVisitor {
 
 impl View {
     /// Checks the numbers, in a scene of `dimension`.
-    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problem> {
-        positive_if("width", self.width, "m")?;
-        positive_if("height", self.height, "m")?;
-        positive_if("spacing", self.spacing, "m")?;
-        if let Some(center) = &self.center {
-            crate::pose::position(center, 2).map_err(|problem| problem.under("center"))?;
-        }
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), Problems> {
+        let center = self.center.as_ref().map_or(Ok(()), |center| {
+            crate::pose::position(center, 2).map_err(|problem| problem.under("center"))
+        });
+        let numbers = [
+            positive_if("width", self.width, "m"),
+            positive_if("height", self.height, "m"),
+            positive_if("spacing", self.spacing, "m"),
+            center,
+        ];
+        let planes =
+            if dimension == 2 { self.check_no_plane() } else { self.check_plane_in_space() };
+        Problems::all([Problems::all(numbers), planes])
+    }
+
+    /// A scene in the plane has one plane.
+    fn check_no_plane(&self) -> Result<(), Problems> {
+        let keys = [("plane", self.plane.is_some()), ("at", self.at.is_some())];
+        Problems::all(keys.map(|(key, is_there)| match is_there {
+            true => Err(Problem::new("a scene in 2D has one plane").under(key)),
+            false => Ok(()),
+        }))
+    }
+
+    fn check_plane_in_space(&self) -> Result<(), Problems> {
         // Written so that NaN is refused.
-        let accepted = |at: &f64| at.abs() <= LARGEST_LENGTH;
-        if let Some(at) = self.at.filter(|at| !accepted(at)) {
-            let message = format!("must be finite and at most 1e15 in size, got {at} m");
-            return Err(Problem::about(message).under("at"));
-        }
-        match (&self.plane, self.at) {
-            (Some(_), _) if dimension == 2 => {
-                Err(Problem::new("a scene in 2D has one plane").under("plane"))
-            }
-            (_, Some(_)) if dimension == 2 => {
-                Err(Problem::new("a scene in 2D has one plane").under("at"))
-            }
+        let is_accepted = |at: &f64| at.abs() <= LARGEST_LENGTH;
+        let at = match (&self.plane, self.at) {
             (Some(ViewPlane::Free(_)), Some(_)) => {
-                Err(Problem::new("goes with a plane along two axes; move `origin`").under("at"))
+                Err(Problem::new("goes with a plane along two axes; move `origin`"))
             }
-            (Some(ViewPlane::Free(plane)), None) => {
-                plane.check().map_err(|problem| problem.under("plane"))
+            (_, Some(at)) if !is_accepted(&at) => {
+                let message = format!("must be finite and at most 1e15 in size, got {at} m");
+                Err(Problem::about(message))
             }
             _ => Ok(()),
-        }
+        };
+        let plane = match &self.plane {
+            Some(ViewPlane::Free(plane)) => plane.check(),
+            _ => Ok(()),
+        };
+        Problems::all([
+            at.map_err(|problem| problem.under("at").into()),
+            plane.map_err(|problems| problems.under("plane")),
+        ])
     }
 }
 
@@ -176,17 +212,18 @@ impl View {
 const LEAST_SINE: f64 = 1e-6;
 
 impl FreePlane {
-    fn check(&self) -> Result<(), Problem> {
-        crate::pose::position(&self.origin, 3).map_err(|problem| problem.under("origin"))?;
-        for (key, direction) in [("right", &self.right), ("up", &self.up)] {
-            crate::pose::direction(direction, 3).map_err(|problem| problem.under(key))?;
-        }
+    fn check(&self) -> Result<(), Problems> {
+        let origin = crate::pose::position(&self.origin, 3).map_err(|p| p.under("origin"));
+        let directions = [("right", &self.right), ("up", &self.up)].map(|(key, direction)| {
+            crate::pose::direction(direction, 3).map_err(|problem| problem.under(key))
+        });
+        Problems::all(directions.into_iter().chain([origin]))?;
         let unit = |v: [f64; 3]| Vector(v).normalized().unwrap_or(Vector::ZERO);
         let (right, up) = (unit(self.right), unit(self.up));
         let across = up - right * right.dot(up);
         if across.norm() >= LEAST_SINE {
             return Ok(());
         }
-        Err(Problem::about("must not be along `right`").under("up"))
+        Err(Problem::about("must not be along `right`").under("up").into())
     }
 }

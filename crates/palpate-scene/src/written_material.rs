@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use palpate_haptics::Material;
 
-use crate::problem::{Problem, unknown};
+use crate::names::unknown;
+use crate::problem::Problem;
 
 /// What a body feels like: the name of a preset, or numbers of its own.
 ///
@@ -27,6 +28,7 @@ use crate::problem::{Problem, unknown};
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WrittenMaterial {
     /// The name of a preset.
     Preset(String),
@@ -41,7 +43,7 @@ impl WrittenMaterial {
     ///
     /// If there is no preset of that name: those there are.
     pub fn material(&self) -> Result<Material, crate::SceneError> {
-        self.known().map_err(|problem| problem.located(None))
+        Ok(self.known()?)
     }
 
     /// As [`material`](Self::material), with a problem that has no place yet.

@@ -3,7 +3,7 @@
 
 //! One error for programs that use several crates of palpate.
 
-use palpate_devices::{DeviceLost, UnknownDevice};
+use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
 use palpate_mesh::MeshError;
@@ -16,7 +16,8 @@ use palpate_scene::SceneCause;
 /// Each error of those crates becomes one by `?`, with the same text. What an error knows is there
 /// as data: its [`kind`](Self::kind), the [`parameter`](Self::parameter) with the
 /// [`rule`](Self::rule) it breaks and its [`value`](Self::value); in a scene file the
-/// [`path`](Self::path), [`line`](Self::line) and [`column`](Self::column).
+/// [`path`](Self::path), [`line`](Self::line) and [`column`](Self::column). Of a scene with several
+/// problems these are of the first one; [`Error::Scene`] holds them all.
 ///
 /// ```
 /// use palpate::{Error, ErrorKind};
@@ -54,6 +55,8 @@ pub enum Error {
     Query(#[from] QueryError),
     /// Something cannot be touched as asked.
     Haptics(#[from] HapticsError),
+    /// A hand path, a hand or a device cannot be made.
+    Device(#[from] DeviceError),
     /// Vertices and faces are no mesh.
     Mesh(#[from] MeshError),
     /// A mesh file cannot be read.
@@ -74,12 +77,18 @@ pub enum Error {
     UnknownMaterial(#[from] UnknownMaterial),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
+    /// A thread for a servo did not start.
+    #[cfg(feature = "std-loop")]
+    Start(palpate_loop::StartError),
     /// A run of a servo did not end as asked.
     #[cfg(feature = "std-loop")]
     Run(#[from] palpate_loop::RunError),
     /// There is no local search of that name.
     #[cfg(feature = "local")]
     UnknownMethod(#[from] palpate_local::UnknownMethod),
+    /// Numbers are no barycentric weights.
+    #[cfg(feature = "local")]
+    Weights(#[from] palpate_local::WeightsError),
     /// A file cannot be read or written.
     File(#[from] std::io::Error),
 }
@@ -94,6 +103,8 @@ pub enum ErrorKind {
     Query,
     /// Something cannot be touched as asked.
     Haptics,
+    /// A hand path, a hand or a device cannot be made.
+    Device,
     /// Vertices and faces are no mesh, or a mesh file cannot be read.
     Mesh,
     /// A scene cannot be read or built.
@@ -104,6 +115,8 @@ pub enum ErrorKind {
     UnknownName,
     /// A device no longer answers.
     DeviceLost,
+    /// A thread for a servo did not start.
+    Thread,
     /// The loop of a servo panicked, which is a defect.
     Panicked,
     /// A file cannot be read or written.
@@ -118,11 +131,13 @@ impl ErrorKind {
             Self::Shape => "shape",
             Self::Query => "query",
             Self::Haptics => "haptics",
+            Self::Device => "device",
             Self::Mesh => "mesh",
             Self::Scene => "scene",
             Self::Plot => "plot",
             Self::UnknownName => "unknown_name",
             Self::DeviceLost => "device_lost",
+            Self::Thread => "thread",
             Self::Panicked => "panicked",
             Self::File => "file",
         }
@@ -137,11 +152,12 @@ impl Error {
             Self::Shape(_) => ErrorKind::Shape,
             Self::Query(_) => ErrorKind::Query,
             Self::Haptics(_) => ErrorKind::Haptics,
+            Self::Device(_) => ErrorKind::Device,
             Self::Mesh(_) => ErrorKind::Mesh,
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,
             #[cfg(feature = "scene")]
-            Self::Scene(error) => match error.cause.as_deref() {
+            Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::File(_)) => ErrorKind::File,
                 _ => ErrorKind::Scene,
             },
@@ -152,11 +168,15 @@ impl Error {
             Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
+            Self::Start(_) => ErrorKind::Thread,
+            #[cfg(feature = "std-loop")]
             Self::Run(palpate_loop::RunError::DeviceLost(_)) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
             Self::Run(_) => ErrorKind::Panicked,
             #[cfg(feature = "local")]
             Self::UnknownMethod(_) => ErrorKind::UnknownName,
+            #[cfg(feature = "local")]
+            Self::Weights(_) => ErrorKind::Query,
             Self::File(_) => ErrorKind::File,
         }
     }
@@ -169,9 +189,8 @@ impl Error {
                 ShapeError::Number { parameter, .. } | ShapeError::Count { parameter, .. },
             ) => Some(parameter),
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { parameter, .. })) => {
-                    Some(parameter)
-                }
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.parameter),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     limit, ..
                 })) => Some(limit),
@@ -191,7 +210,8 @@ impl Error {
                 Some(rule)
             }
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { rule, .. })) => Some(rule),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.rule),
                 _ => None,
             },
         }
@@ -204,7 +224,8 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.0),
             Some(ShapeError::Count { count, .. }) => Some(*count as f64),
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { value, .. })) => Some(*value),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.value),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     device,
                     ..
@@ -226,10 +247,11 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.1.symbol()),
             Some(ShapeError::Count { .. }) => Some(""),
             _ => match self {
-                Self::Haptics(
-                    HapticsError::Number(NumberError { unit, .. })
-                    | HapticsError::Safety(SafetyError::OtherDevice { unit, .. }),
-                ) => Some(unit),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.unit),
+                Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
+                    unit, ..
+                })) => Some(unit),
                 Self::Query(
                     QueryError::Coordinate { .. }
                     | QueryError::Setting { .. }
@@ -245,7 +267,7 @@ impl Error {
     pub fn path(&self) -> Option<&str> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if !error.path.is_empty() => Some(&error.path),
+            Self::Scene(error) if !error.first().path.is_empty() => Some(&error.first().path),
             _ => None,
         }
     }
@@ -255,7 +277,7 @@ impl Error {
     pub fn line(&self) -> Option<usize> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if error.line > 0 => Some(error.line),
+            Self::Scene(error) if error.first().line > 0 => Some(error.first().line),
             _ => None,
         }
     }
@@ -265,7 +287,7 @@ impl Error {
     pub fn column(&self) -> Option<usize> {
         match self {
             #[cfg(feature = "scene")]
-            Self::Scene(error) if error.column > 0 => Some(error.column),
+            Self::Scene(error) if error.first().column > 0 => Some(error.first().column),
             _ => None,
         }
     }
@@ -274,7 +296,7 @@ impl Error {
         match self {
             Self::Shape(error) | Self::Haptics(HapticsError::Shape(error)) => Some(error),
             #[cfg(feature = "scene")]
-            Self::Scene(error) => match error.cause.as_deref() {
+            Self::Scene(error) => match error.first().cause.as_deref() {
                 Some(SceneCause::Shape(error)) => Some(error),
                 _ => None,
             },
@@ -286,6 +308,16 @@ impl Error {
 impl From<SafetyError> for Error {
     fn from(error: SafetyError) -> Self {
         Self::Haptics(error.into())
+    }
+}
+
+#[cfg(feature = "std-loop")]
+impl From<palpate_loop::StartError> for Error {
+    fn from(error: palpate_loop::StartError) -> Self {
+        match error {
+            palpate_loop::StartError::Haptics(error) => Self::Haptics(error),
+            error => Self::Start(error),
+        }
     }
 }
 

@@ -27,7 +27,7 @@
 //! let touch = query.manifold(&plate, &ball)?;
 //! assert_eq!(touch.contacts.len(), 1);
 //!
-//! let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
+//! let hand = Hand::resting([0.0, 0.05, 0.0])?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let mut servo = Servo::for_device([Body::new(plate, Material::wood())?], &device)?;
 //! let report = servo.run(&mut device, Seconds(0.01))?.unless_failed()?; // in real time

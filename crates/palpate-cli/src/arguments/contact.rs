@@ -7,15 +7,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::{at_least, length, length_or_zero, zero_or_more};
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate contact scenes/peg_in_hole.json
   palpate contact scenes/nut_on_bolt.json --margin 0.0002 --json
   palpate contact scenes/gears.json --tolerance 1e-6
+  palpate contact scenes/peg_in_hole.json --body peg --every-pair
+  palpate contact scenes/peg_in_hole.json --time 0.5
 
 The separation of bodies that are exact outside is their distance; that of bodies that
 overlap is minus the diameter of the largest ball inside both. It lies between the printed
-bounds, which include rounding. A pair that the budget leaves open is undecided.";
+bounds, which include rounding. A pair touches if the upper bound is at most the margin, is
+apart if the lower bound is more than the margin, and is undecided otherwise.";
 
 /// The options of `palpate contact`.
 #[derive(Args, Debug)]
@@ -24,10 +29,17 @@ pub(crate) struct ContactOptions {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) question: ContactQuestion,
-    /// List pairs that are apart too, with the bounds of their separation; always on for scenes
-    /// of at most 12 bodies.
+    /// List pairs that are apart too, with the bounds of their separation; always on where at
+    /// most 66 pairs are asked about, those of 12 bodies.
     #[arg(long)]
-    pub(crate) all: bool,
+    pub(crate) every_pair: bool,
+    /// Only pairs with this body; may be given more than once.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Vec<String>,
+    /// The time at which the bodies are where their motions have taken them [s]; before all
+    /// motions if left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("s"))]
+    pub(crate) time: Option<f64>,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -38,16 +50,17 @@ pub(crate) struct ContactOptions {
 pub(crate) struct ContactQuestion {
     /// The largest gap at which bodies count as touching [m]; 0.2 % of the smallest body if
     /// left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) margin: Option<f64>,
     /// The size of the smallest boxes in a region of contact [m]; 4 % of the smallest body if
     /// left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) spacing: Option<f64>,
     /// How far apart the bounds of a separation may be [m]; half the margin if left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) tolerance: Option<f64>,
-    /// The budget: the most evaluations of fields for each pair.
-    #[arg(long, default_value_t = 200_000)]
-    pub(crate) budget: u32,
+    /// The budget: the most evaluations of fields for each pair; 200000 if left out. The round
+    /// that reaches it is finished.
+    #[arg(long, allow_negative_numbers = true, value_parser = at_least(1_u32))]
+    pub(crate) budget: Option<u32>,
 }

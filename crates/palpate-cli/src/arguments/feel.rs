@@ -7,7 +7,13 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser};
-use palpate::devices::{DeviceProfile, profile_named};
+use palpate::devices::{DeviceProfile, PROFILES, profile_named};
+use palpate::scene::unknown_name;
+
+use super::numbers::{count, length_or_zero, positive, zero_or_more};
+
+/// The most contact points: more than any device has.
+const MOST_CONTACTS: usize = 1000;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -22,10 +28,10 @@ pub(crate) struct FeelOptions {
     /// The scene file; the built-in gallery if left out.
     pub(crate) scene: Option<PathBuf>,
     /// Ticks a second [Hz].
-    #[arg(long, default_value_t = 1000.0)]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
     pub(crate) rate: f64,
     /// How long to feel [s]; the length of the hand path, or else 10 s, if left out.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) duration: Option<f64>,
     /// The hand's path, with the columns time_s,x_m,y_m[,z_m] and optionally point; a built-in
     /// tour of the surfaces if left out.
@@ -39,24 +45,25 @@ pub(crate) struct FeelOptions {
     pub(crate) device: Option<DeviceChoice>,
     /// The number of contact points of the built-in hand; if left out, that of the scene's
     /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
-    #[arg(long, alias = "contacts", conflicts_with = "path")]
+    #[arg(long, alias = "contacts", conflicts_with = "path", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
     pub(crate) points: Option<usize>,
-    /// Refuse bodies that the device cannot render stably, instead of making them softer.
+    /// Refuse bodies that the device cannot render stably, instead of making them softer. Not for
+    /// a glove, which has no forces; nor are the next three.
     #[arg(long)]
     pub(crate) strict: bool,
     /// Stiffness of the surface [N/m]; that of each body if left out.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N/m"))]
     pub(crate) stiffness: Option<f64>,
     /// Damping of the surface [N·s/m]; that of each body if left out.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N·s/m"))]
     pub(crate) damping: Option<f64>,
-    /// The force limit of a contact point [N]; if left out, that of the tool or of the
-    /// simulated device, or else 3.3 N.
-    #[arg(long)]
+    /// The force limit of a contact point [N], at most that of the device; if left out, that of
+    /// the tool or of the simulated device, or else 3.3 N.
+    #[arg(long, allow_negative_numbers = true, value_parser = positive("N"))]
     pub(crate) max_force: Option<f64>,
     /// The radius of the probe, or of the balls that cover a tool with a shape [m]; the tool's,
     /// or else 2 mm, if left out.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]
     pub(crate) radius: Option<f64>,
     /// Run the ticks without waiting for the clock.
     #[arg(long)]
@@ -90,14 +97,18 @@ impl FromStr for DeviceChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let names = PROFILES.each_ref().map(|(name, _)| *name);
         match text.split_once(':') {
             None if text == "recorded" => Ok(Self::Recorded),
             None if text == "glove" => Ok(Self::Glove),
-            Some(("simulated", name)) => {
-                let profile = profile_named(name).map_err(|unknown| unknown.to_string())?;
-                Ok(Self::Simulated(Box::new(profile)))
+            None if names.contains(&text) => {
+                Err(format!("a device of this name is written simulated:{text}"))
             }
-            _ => Err(format!("must be recorded, simulated:NAME or glove, got {text:?}")),
+            Some(("simulated", name)) => match profile_named(name) {
+                Ok(profile) => Ok(Self::Simulated(Box::new(profile))),
+                Err(_) => Err(unknown_name("device", name, &names)),
+            },
+            _ => Err("must be recorded, simulated:NAME or glove".to_owned()),
         }
     }
 }

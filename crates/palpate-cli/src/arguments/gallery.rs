@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::Map;
+use super::numbers::count;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -34,9 +35,9 @@ pub(crate) struct GalleryOptions {
     /// The format of the pictures.
     #[arg(long, value_enum, default_value_t = Format::Png)]
     pub(crate) format: Format,
-    /// The width of a PNG [pixels].
-    #[arg(long, default_value_t = 1200)]
-    pub(crate) width: u32,
+    /// The width of a PNG [pixels]; 1200 if left out.
+    #[arg(long, allow_negative_numbers = true, value_parser = count(64, 16384_u32))]
+    pub(crate) width: Option<u32>,
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,

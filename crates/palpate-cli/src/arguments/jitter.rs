@@ -5,6 +5,8 @@
 
 use clap::Args;
 
+use super::numbers::positive;
+
 pub(super) const EXAMPLES: &str =
     "Examples:\n  palpate jitter\n  palpate jitter --rate 4000 --duration 20 --json";
 
@@ -12,10 +14,10 @@ pub(super) const EXAMPLES: &str =
 #[derive(Args, Debug)]
 pub(crate) struct JitterOptions {
     /// Ticks a second, at most 10 kHz [Hz].
-    #[arg(long, default_value_t = 1000.0)]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
     pub(crate) rate: f64,
     /// How long to measure in all, shared by the ways to wait [s].
-    #[arg(long, default_value_t = 5.0)]
+    #[arg(long, allow_negative_numbers = true, default_value = "5", value_parser = positive("s"))]
     pub(crate) duration: f64,
     /// Print JSON.
     #[arg(long)]

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::{at_least, positive};
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate mass scenes/cup.json
@@ -22,13 +24,13 @@ pub(crate) struct MassOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     /// The density of all bodies [kg/m³].
-    #[arg(long, default_value_t = 1000.0)]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("kg/m³"))]
     pub(crate) density: f64,
     /// The relative error of the volume at which to stop.
-    #[arg(long, default_value_t = 1e-3)]
+    #[arg(long, allow_negative_numbers = true, default_value = "0.001", value_parser = positive(""))]
     pub(crate) tolerance: f64,
     /// The budget: the most cells; a million take 160 MB.
-    #[arg(long, default_value_t = 3_000_000)]
+    #[arg(long, allow_negative_numbers = true, default_value = "3000000", value_parser = at_least(1_usize))]
     pub(crate) cells: usize,
     /// Print JSON.
     #[arg(long)]

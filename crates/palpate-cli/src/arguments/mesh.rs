@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::length;
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate mesh testdata/meshes/nut.ply
@@ -20,7 +22,7 @@ pub(crate) struct MeshOptions {
     /// The mesh file: .obj, .stl, .ply or .glb.
     pub(crate) file: PathBuf,
     /// The unit of the file in metres: 0.001 for millimetres.
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = length)]
     pub(crate) scale: Option<f64>,
     /// Merge vertices that are exactly equal, as is always done for STL.
     #[arg(long)]

@@ -10,9 +10,11 @@ mod devices;
 mod eval;
 mod feel;
 mod gallery;
+mod gradients;
 mod jitter;
 mod mass;
 mod mesh;
+mod numbers;
 mod plot;
 mod render;
 mod shapes;
@@ -26,10 +28,11 @@ pub(crate) use devices::DevicesOptions;
 pub(crate) use eval::EvalOptions;
 pub(crate) use feel::{DeviceChoice, FeelOptions};
 pub(crate) use gallery::{Format, GalleryOptions, Plane};
+pub(crate) use gradients::GradientsOptions;
 pub(crate) use jitter::JitterOptions;
 pub(crate) use mass::MassOptions;
 pub(crate) use mesh::MeshOptions;
-pub(crate) use plot::{Map, PlotOptions};
+pub(crate) use plot::{Map, PlotMap, PlotOptions};
 pub(crate) use render::{RenderOptions, ShadowChoice};
 pub(crate) use shapes::{Dimension, ShapesOptions};
 
@@ -69,7 +72,10 @@ pub(crate) enum Command {
     /// proven minimum.
     #[command(after_help = descend::EXAMPLES)]
     Descend(DescendOptions),
-    /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
+    /// Compare ways to the gradient of a field with the exact one.
+    #[command(after_help = gradients::EXAMPLES)]
+    Gradients(GradientsOptions),
+    /// Draw a scene on a plane, as SVG or PNG: isolines, gradients, promises or errors.
     #[command(after_help = plot::EXAMPLES)]
     Plot(PlotOptions),
     /// Draw a scene in space, lit, as PNG; no surface is missed.

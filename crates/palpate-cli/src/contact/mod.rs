@@ -11,17 +11,21 @@ use palpate::query::Verdict;
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::ContactOptions;
+use crate::emptiness;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 
-use question::{Pair, Question};
+use question::{Asked, Question};
 
 pub(crate) use overlay::Touched;
 
-/// Reports list every pair of scenes of at most so many bodies, and only near pairs of others.
+/// Pictures show every pair of scenes of at most so many bodies, and only near pairs of others.
 const FEW: usize = 12;
+
+/// Reports list every pair of at most so many, those of 12 bodies, and only near ones of more.
+const FEW_PAIRS: usize = FEW * (FEW - 1) / 2;
 
 /// Finds the pairs that touch; the answer is no if none do.
 pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
@@ -37,14 +41,29 @@ fn answer<const D: usize>(
     scene: &BuiltScene<D>,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let question = Question::of(&options.question, scene)?;
-    let mut pairs: Vec<Pair<D>> = question.near(scene)?;
-    if options.all || scene.bodies.len() <= FEW {
-        interrupt.heed();
-        pairs.extend(question.apart(scene, &pairs, interrupt)?);
-    }
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let report = report::Report { question: &question, names: &names, pairs: &pairs };
+    if let [name] = names[..] {
+        return Err(Failure::input(format!(
+            "contact is about two bodies or more, and the scene has only {name:?}; add another to \
+             its `bodies`"
+        )));
+    }
+    emptiness::warn(scene);
+    let question = Question::of(&options.question, scene);
+    let bodies = input::bodies(&options.body, &names)?;
+    let moved = options.time.map(|time| input::at(scene, time)).transpose()?;
+    let scene = moved.as_ref().unwrap_or(scene);
+    let count = pairs_of(names.len(), bodies.len());
+    let asked = Asked { bodies: &bodies, is_every: options.every_pair || count <= FEW_PAIRS };
+    let pairs = question.pairs(scene, &asked, interrupt)?;
+    let report = report::Report {
+        question: &question,
+        names: &names,
+        pairs: &pairs,
+        count,
+        time: options.time,
+        is_still: scene.motions.is_empty(),
+    };
     if options.json {
         report.print_json()?;
     } else {
@@ -56,4 +75,10 @@ fn answer<const D: usize>(
     }
     let touch = pairs.iter().any(|pair| pair.verdict == Verdict::Touching);
     Ok(if touch { Outcome::Yes } else { Outcome::No })
+}
+
+/// How many pairs `all` bodies have with one of `asked`; all of them if none is asked for.
+fn pairs_of(all: usize, asked: usize) -> usize {
+    let pairs = |bodies: usize| bodies * bodies.saturating_sub(1) / 2;
+    if asked == 0 { pairs(all) } else { pairs(all) - pairs(all - asked) }
 }

@@ -9,7 +9,7 @@ use palpate::query::{Contact, Proof, Verdict};
 use palpate::scene::BuiltScene;
 
 use super::FEW;
-use super::question::{Pair, Question};
+use super::question::{Asked, Pair, Question};
 use crate::arguments::ContactQuestion;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
@@ -30,12 +30,10 @@ impl<const D: usize> Touched<D> {
         scene: &BuiltScene<D>,
         with_proof: bool,
     ) -> Result<Self, Failure> {
-        let question = Question::of(asked, scene)?;
-        let mut pairs = question.near(scene)?;
-        if scene.bodies.len() <= FEW {
-            // Not interruptible: a picture of some pairs would be taken for one of all pairs.
-            pairs.extend(question.apart(scene, &pairs, &Interrupt::new())?);
-        }
+        let question = Question::of(asked, scene);
+        let asked = Asked { bodies: &[], is_every: scene.bodies.len() <= FEW };
+        // Not interruptible: a picture of some pairs would be taken for one of all pairs.
+        let pairs = question.pairs(scene, &asked, &Interrupt::new())?;
         let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
         let proofs = shown.map(|pair| question.proof(scene, pair.bodies));
         let proofs = proofs.collect::<Result<_, _>>()?;

@@ -5,10 +5,9 @@
 
 use std::collections::BTreeSet;
 
-use palpate::field::LARGEST_LENGTH;
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, PairWorkspace, Placed, Proof,
-    Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, QueryError,
+    Stop, Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -34,79 +33,100 @@ pub(crate) struct Pair<const D: usize> {
     pub(crate) groups: Vec<usize>,
     /// The number of dropped contacts.
     pub(crate) dropped: usize,
-    /// `false` if the budget was spent before the whole region was searched.
-    pub(crate) is_whole: bool,
+    /// Why the search of the region ended; `Converged` if the region is whole.
+    pub(crate) region_stop: Stop,
+}
+
+/// The pairs of a scene that are asked about.
+pub(crate) struct Asked<'a> {
+    /// Those with one of these bodies; all if there are none.
+    pub(crate) bodies: &'a [usize],
+    /// Whether pairs that are apart are searched too.
+    pub(crate) is_every: bool,
+}
+
+impl Asked<'_> {
+    /// `true` if a pair of bodies is asked about.
+    fn has(&self, pair: [usize; 2]) -> bool {
+        self.bodies.is_empty() || pair.iter().any(|body| self.bodies.contains(body))
+    }
 }
 
 impl Question {
     /// Lengths that the command line leaves out are shares of the smallest body.
-    pub(crate) fn of<const D: usize>(
-        asked: &ContactQuestion,
-        scene: &BuiltScene<D>,
-    ) -> Result<Self, Failure> {
-        let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
-        let margin = length("--margin", asked.margin.unwrap_or(usual.margin), 0.0)?;
+    pub(crate) fn of<const D: usize>(asked: &ContactQuestion, scene: &BuiltScene<D>) -> Self {
+        let usual = scene.world_settings().manifold;
+        let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
-        let spacing = length("--spacing", spacing, f64::MIN_POSITIVE)?;
-        let tolerance = length("--tolerance", asked.tolerance.unwrap_or(0.5 * margin), 0.0)?;
+        let tolerance = asked.tolerance.unwrap_or(0.5 * margin);
         let manifold = usual.with_margin(margin).with_spacing(spacing);
-        let limits = Limits::new(tolerance).with_budget(asked.budget);
-        Ok(Self { settings: WorldSettings::new(manifold, limits) })
+        let limits = Limits::new(tolerance).with_budget(asked.budget.unwrap_or(Limits::BUDGET));
+        Self { settings: WorldSettings::new(manifold, limits) }
     }
 
-    /// All pairs that touch or are undecided.
-    pub(crate) fn near<const D: usize>(
+    /// The pairs that touch or are undecided; and, if asked for, those that are apart: fewer of
+    /// them if interrupted.
+    pub(crate) fn pairs<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
+        asked: &Asked<'_>,
+        interrupt: &Interrupt,
     ) -> Result<Vec<Pair<D>>, Failure> {
         let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
-        let margin = self.settings.manifold.margin;
-        let pairs = world.step().into_iter().map(|found| {
-            let manifold = found.manifold.as_ref();
-            Pair {
-                bodies: found.bodies.map(|body| body.index()),
-                verdict: found.verdict(margin),
-                separation: manifold.map(|manifold| manifold.separation),
-                contacts: found.contacts().to_vec(),
-                groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
-                dropped: manifold.map_or(0, |manifold| manifold.dropped),
-                is_whole: manifold.is_none_or(|manifold| manifold.is_whole),
+        let ids = world.bodies().collect::<Vec<_>>();
+        if !asked.bodies.is_empty() {
+            for (i, id) in ids.iter().enumerate() {
+                // Bodies of the second group touch those of the first alone.
+                let (groups, mask) =
+                    if asked.bodies.contains(&i) { (1, u32::MAX) } else { (2, 1) };
+                world.set_groups(*id, groups, mask).map_err(Failure::input)?;
             }
-        });
-        Ok(pairs.collect())
+        }
+        let margin = self.settings.manifold.margin;
+        let mut pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
+        if asked.is_every {
+            interrupt.heed();
+            let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
+            let is_left = |bodies: &[usize; 2]| asked.has(*bodies) && !known.contains(bodies);
+            let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
+            pairs.extend(self.apart(scene, is_left, lower, interrupt)?);
+        }
+        Ok(pairs)
     }
 
-    /// All pairs but those in `near`, each with the separation that proves it apart; fewer if
-    /// interrupted.
-    pub(crate) fn apart<const D: usize>(
+    /// The pairs that are left, each with its separation and a `lower` bound of it that is known;
+    /// fewer if interrupted.
+    fn apart<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        near: &[Pair<D>],
+        is_left: impl Fn(&[usize; 2]) -> bool,
+        lower: impl Fn([usize; 2]) -> Result<f64, QueryError>,
         interrupt: &Interrupt,
     ) -> Result<Vec<Pair<D>>, Failure> {
         let mut workspace = PairWorkspace::new();
-        let near: BTreeSet<[usize; 2]> = near.iter().map(|pair| pair.bodies).collect();
-        let mut apart = Vec::new();
-        for k in 0..scene.bodies.len() {
-            for i in (0..k).filter(|i| !near.contains(&[*i, k])) {
-                if interrupt.is_asked() {
-                    return Ok(apart);
-                }
-                let [a, b] = [i, k].map(|i| placed(&scene.bodies[i]));
-                let found = separation(a, b, &self.settings.limits, &mut workspace)
-                    .map_err(Failure::input)?;
-                apart.push(Pair {
-                    bodies: [i, k],
-                    verdict: Verdict::Apart,
-                    separation: Some(found),
-                    contacts: found.best.contact(a, b).into_iter().collect(),
-                    groups: Vec::new(),
-                    dropped: 0,
-                    is_whole: true,
-                });
+        let mut pairs = Vec::new();
+        let all = (0..scene.bodies.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
+        for bodies in all.filter(is_left) {
+            if interrupt.is_asked() {
+                return Ok(pairs);
             }
+            let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
+            let mut found = separation(a, b, &self.settings.limits, &mut workspace)
+                .map_err(Failure::input)?;
+            // What is proven stays proven, whatever the budget allowed now.
+            found.lower = found.lower.max(lower(bodies).map_err(Failure::input)?);
+            let margin = self.settings.manifold.margin;
+            pairs.push(Pair {
+                bodies,
+                verdict: Verdict::of_bounds([found.lower, found.upper], margin),
+                contacts: found.best.contact(a, b).into_iter().collect(),
+                separation: Some(found),
+                groups: Vec::new(),
+                dropped: 0,
+                region_stop: Stop::Converged,
+            });
         }
-        Ok(apart)
+        Ok(pairs)
     }
 
     /// The separation of two bodies with its proof.
@@ -120,16 +140,20 @@ impl Question {
     }
 }
 
-fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
-    Placed::new(&body.shape_in_body, body.world_from_body)
+/// A pair that the world found.
+fn near<const D: usize>(found: &Neighbours<D>, margin: f64) -> Pair<D> {
+    let manifold = found.manifold.as_ref();
+    Pair {
+        bodies: found.bodies.map(|body| body.index()),
+        verdict: found.verdict(margin),
+        separation: manifold.map(|manifold| manifold.separation),
+        contacts: found.contacts().to_vec(),
+        groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),
+        dropped: manifold.map_or(0, |manifold| manifold.dropped),
+        region_stop: manifold.map_or(Stop::Converged, |manifold| manifold.region_stop),
+    }
 }
 
-/// A length on the command line, at least `least`.
-fn length(option: &str, value: f64, least: f64) -> Result<f64, Failure> {
-    if (least..=LARGEST_LENGTH).contains(&value) {
-        return Ok(value);
-    }
-    let rule = if least > 0.0 { "positive" } else { "not negative" };
-    let rule = format!("{rule} and at most {LARGEST_LENGTH:e} m, got {value:?} m");
-    Err(Failure::input(format!("{option} must be {rule}")))
+fn placed<const D: usize>(body: &BuiltBody<D>) -> Placed<'_, D> {
+    Placed::new(&body.shape_in_body, body.world_from_body)
 }

@@ -5,7 +5,7 @@
 
 use std::io::Write;
 
-use palpate::query::Verdict;
+use palpate::query::{Contact, Stop, Verdict};
 use serde_json::{Value, json};
 
 use super::question::{Pair, Question};
@@ -18,72 +18,130 @@ pub(super) struct Report<'a, const D: usize> {
     /// The names of the bodies.
     pub(super) names: &'a [&'a str],
     pub(super) pairs: &'a [Pair<D>],
+    /// How many pairs were asked about.
+    pub(super) count: usize,
+    /// The time that was asked for [s].
+    pub(super) time: Option<f64>,
+    /// Whether no body moves.
+    pub(super) is_still: bool,
 }
 
 impl<const D: usize> Report<'_, D> {
     pub(super) fn print(&self) -> Result<(), Failure> {
         let mut out = output::answer();
+        if let Some(time) = self.time {
+            let still = if self.is_still { ", as at any time: no body moves" } else { "" };
+            writeln!(out, "at {time} s{still}")?;
+        }
         for pair in self.pairs {
-            let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
-            write!(out, "{a} – {b}: {}", pair.verdict)?;
-            match &pair.separation {
-                Some(found) => writeln!(
-                    out,
-                    ", separation {} to {} mm ({}, {} evaluations)",
-                    millimetres(found.lower),
-                    millimetres(found.upper),
-                    found.stop,
-                    found.evaluations
-                )?,
-                None => writeln!(out, ": undecided, neither has bounds")?,
-            }
-            if pair.verdict == Verdict::Apart {
-                continue;
-            }
-            for contact in &pair.contacts {
-                writeln!(
-                    out,
-                    "  {:>3}  gap {} mm  at ({})  normal ({})",
-                    contact.id,
-                    millimetres(contact.gap),
-                    joined(contact.point_a.0, 6),
-                    joined(contact.normal.0, 4)
-                )?;
-            }
-            if pair.dropped > 0 {
-                writeln!(out, "       and {} more within these", pair.dropped)?;
-            }
-            if !pair.is_whole {
-                writeln!(
-                    out,
-                    "       and maybe others: the budget of {} evaluations is spent; raise --budget or --spacing",
-                    self.question.settings.limits.budget
-                )?;
-            }
+            writeln!(out, "{}", self.in_words(pair))?;
+        }
+        let early = |pair: &&Pair<D>| pair.separation.is_some_and(|s| s.stop.is_early());
+        if self.pairs.iter().any(|pair| early(&pair)) {
+            let tolerance = millimetres(self.question.settings.limits.tolerance);
+            writeln!(
+                out,
+                "Each separation lies between its bounds; of searches that ended early they are \
+                 farther apart than the tolerance, {tolerance} mm."
+            )?;
         }
         let count = |verdict| self.pairs.iter().filter(|pair| pair.verdict == verdict).count();
         let [touching, open] = [Verdict::Touching, Verdict::Undecided].map(count);
-        let bodies = self.names.len();
-        let apart = bodies * bodies.saturating_sub(1) / 2 - touching - open;
         writeln!(
             out,
-            "{bodies} bodies: {touching} pairs touch (gap up to {} mm), {apart} are apart, {open} undecided",
-            millimetres(self.question.settings.manifold.margin)
+            "{} bodies: {touching} pairs touch (gap up to {} mm), {} are apart, {open} undecided",
+            self.names.len(),
+            millimetres(self.question.settings.manifold.margin),
+            self.count - touching - open,
         )?;
         Ok(())
+    }
+
+    /// A pair with its contacts, a line each.
+    fn in_words(&self, pair: &Pair<D>) -> String {
+        let [a, b] = pair.bodies.map(|i| shown(self.names[i]));
+        let mut words = format!("{a} – {b}: {}", pair.verdict);
+        words += &match &pair.separation {
+            Some(found) => format!(
+                ", separation {} to {} mm ({}, {} evaluations)",
+                millimetres(found.lower),
+                millimetres(found.upper),
+                found.stop,
+                found.evaluations
+            ),
+            None => ", neither has bounds".to_owned(),
+        };
+        if let (Verdict::Undecided, Some(why)) = (pair.verdict, self.undecided(pair)) {
+            words += &format!("\n       undecided: {why}");
+        }
+        if pair.verdict == Verdict::Apart {
+            return words;
+        }
+        words.extend(pair.contacts.iter().map(contact_in_words));
+        if pair.dropped > 0 {
+            words += &format!("\n       and {} more within these", pair.dropped);
+        }
+        if let Some(why) = self.cut_off(pair.region_stop) {
+            words += &format!("\n       and maybe others: {why}");
+        }
+        words
+    }
+
+    /// Why the bounds of a pair do not tell, and what helps.
+    fn undecided(&self, pair: &Pair<D>) -> Option<String> {
+        let found = pair.separation.as_ref()?;
+        let budget = self.question.settings.limits.budget;
+        Some(match found.stop {
+            Stop::BudgetSpent => {
+                format!("the budget of {budget} evaluations is spent; raise --budget")
+            }
+            Stop::MemoryFull => {
+                "the memory of the search is full, and a larger --budget does not \
+                 help; another --margin may"
+                    .to_owned()
+            }
+            Stop::RoundingReached => {
+                "rounding allows no closer bounds; another --margin decides".to_owned()
+            }
+            Stop::Converged | Stop::SignKnown => format!(
+                "the margin of {} mm lies between the bounds; lower --tolerance, or take another \
+                 --margin",
+                millimetres(self.question.settings.manifold.margin)
+            ),
+        })
+    }
+
+    /// Why the region of contact was not searched to its end, and what helps; `None` if it was.
+    fn cut_off(&self, stop: Stop) -> Option<String> {
+        let budget = self.question.settings.limits.budget;
+        match stop {
+            Stop::Converged | Stop::SignKnown => None,
+            Stop::BudgetSpent => Some(format!(
+                "the budget of {budget} evaluations is spent; raise --budget or --spacing"
+            )),
+            Stop::MemoryFull | Stop::RoundingReached => Some(
+                "the memory of the search is full, and a larger --budget does not help; raise \
+                 --spacing"
+                    .to_owned(),
+            ),
+        }
     }
 
     /// Writes infinite bounds as null.
     pub(super) fn print_json(&self) -> Result<(), Failure> {
         let settings = &self.question.settings;
         let pairs: Vec<Value> = self.pairs.iter().map(|pair| self.described(pair)).collect();
-        let answer = json!({
+        let mut answer = json!({
             "margin_m": settings.manifold.margin,
             "spacing_m": settings.manifold.spacing,
             "tolerance_m": settings.limits.tolerance,
+            "budget": settings.limits.budget,
             "bodies": self.names,
             "pairs": pairs,
         });
+        if let Some(time) = self.time {
+            answer["time_s"] = json!(time);
+        }
         output::answer().json(&answer)?;
         Ok(())
     }
@@ -106,7 +164,7 @@ impl<const D: usize> Report<'_, D> {
             "bodies": pair.bodies.map(|i| self.names[i]),
             "verdict": pair.verdict.to_string(),
             "dropped": pair.dropped,
-            "is_whole": pair.is_whole,
+            "is_whole": !pair.region_stop.is_early(),
             "groups": pair.groups,
         });
         let key = if pair.verdict == Verdict::Apart { "witnesses" } else { "contacts" };
@@ -118,6 +176,17 @@ impl<const D: usize> Report<'_, D> {
         }
         said
     }
+}
+
+/// A contact, on a line that follows another.
+fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
+    format!(
+        "\n  {:>3}  gap {} mm  at ({})  normal ({})",
+        contact.id,
+        millimetres(contact.gap),
+        joined(contact.point_a.0, 6),
+        joined(contact.normal.0, 4)
+    )
 }
 
 fn millimetres(length: f64) -> String {

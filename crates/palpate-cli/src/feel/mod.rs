@@ -19,11 +19,12 @@ use std::time::Duration;
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
 use palpate::field::{Pose, Vector};
-use palpate::haptics::{Acceptance, Probe, Progress, ToolOptions};
+use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
+use crate::emptiness;
 use crate::hand_csv;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
@@ -44,9 +45,6 @@ const MOST_ROWS: f64 = 3.6e6;
 
 /// The most ticks of a run: eleven days at 1 kHz.
 const MOST_TICKS: f64 = 1e9;
-
-/// The most contact points: more than any device has.
-const MOST_CONTACTS: usize = 1000;
 
 /// The contact points of the built-in hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
@@ -76,6 +74,7 @@ fn feel<const D: usize>(
 where
     Dimensions: Drawable<D>,
 {
+    emptiness::warn(scene);
     let name = named.name.as_str();
     let choice = match (&options.device, &options.scene) {
         (Some(choice), _) => choice.clone(),
@@ -84,6 +83,7 @@ where
             DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
         }
     };
+    check_forces(&choice, options)?;
     let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     // Checked before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
@@ -102,7 +102,8 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
+    let device = held::device(&choice, &paths, turns.as_ref(), &map);
+    let mut device = device.map_err(Failure::input)?;
     let acceptance = if options.strict { Acceptance::Strict } else { Acceptance::Scaled };
     let settings = ServoSettings::default().with_rate(options.rate).with_acceptance(acceptance);
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
@@ -166,7 +167,7 @@ where
         _ if !outcome.is_released => Outcome::No,
         Ending::Finished => Outcome::Yes,
         Ending::Interrupted => Outcome::Interrupted,
-        Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
+        _ => Outcome::No,
     })
 }
 
@@ -181,6 +182,36 @@ fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
     Ok(ticks)
 }
 
+/// Refuses forces that the device does not give.
+fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Failure> {
+    match (choice, options.max_force) {
+        (DeviceChoice::Glove, _) => {
+            let given = [
+                ("--max-force", options.max_force.is_some()),
+                ("--stiffness", options.stiffness.is_some()),
+                ("--damping", options.damping.is_some()),
+                ("--strict", options.strict),
+            ];
+            let given = given.iter().filter(|(_, is_given)| *is_given);
+            let given: Vec<_> = given.map(|(option, _)| *option).collect();
+            if given.is_empty() {
+                return Ok(());
+            }
+            let have = if given.len() == 1 { "has" } else { "have" };
+            let given = given.join(", ");
+            let problem = format!("{given} {have} no meaning for a glove, which has no forces");
+            Err(Failure::input(problem))
+        }
+        (DeviceChoice::Simulated(profile), Some(force)) if force > profile.max_force => {
+            Err(Failure::input(format!(
+                "--max-force must be at most {} N, the largest force of the {}, got {force} N",
+                profile.max_force, profile.name
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The scene, with materials and tool replaced by those of the command line.
 fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltScene<D> {
     let mut scene = scene.clone();
@@ -190,16 +221,10 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         material.damping = options.damping.unwrap_or(material.damping);
     }
     if options.radius.is_some() || options.max_force.is_some() {
-        let tool = scene.tool.get_or_insert_with(|| BuiltTool {
-            radius: Probe::default().radius(),
-            points: Vec::new(),
-            shape: None,
-            options: ToolOptions::default(),
-            max_force: None,
-        });
+        let radius = Probe::default().radius();
+        let tool = scene.tool.get_or_insert_with(|| BuiltTool::of_radius(radius));
         tool.radius = options.radius.unwrap_or(tool.radius);
-        tool.max_force = options.max_force.or(tool.max_force);
-        tool.options.max_force = options.max_force.unwrap_or(tool.options.max_force);
+        tool.options.max_force = options.max_force.or(tool.options.max_force);
     }
     scene
 }
@@ -216,10 +241,6 @@ fn paths<const D: usize>(
     let beside = if options.points.is_some() { Vec::new() } else { beside(scene) };
     let default = if options.scene.is_none() { FINGERS } else { 1 };
     let points = if beside.is_empty() { options.points.unwrap_or(default) } else { 1 };
-    if points > MOST_CONTACTS {
-        let problem = format!("--points must be at most {MOST_CONTACTS}, got {points}");
-        return Err(Failure::input(problem));
-    }
     let duration = options.duration.unwrap_or(DURATION);
     let lag = LAG * points.saturating_sub(1) as f64;
     let radius = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);

@@ -8,7 +8,7 @@ use palpate::field::Aabb;
 use palpate::plot::{Color, Dash, Isolines, PlotError, Polyline, Sampling, Slice, View};
 use palpate::scene::BuiltScene;
 
-use crate::picture::{Dimensions, Drawable};
+use crate::picture::{self, Dimensions, Drawable};
 
 /// Times between the beginning and the end at which bodies are drawn, as shares of the run.
 const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
@@ -65,16 +65,12 @@ where
     let mut lines = Vec::new();
     for body in scene.moving() {
         let pose = scene.pose_at(body, time);
-        let shape = &scene.bodies[body].shape_in_body;
-        let outline = Isolines::sample(plane, view, Sampling::default(), |st, distances| {
-            let in_body = pose.inverse();
-            let points: Vec<_> = st
-                .iter()
-                .map(|st| in_body.transform_point(Dimensions::point(plane, *st)))
-                .collect();
-            shape.distances(&points, distances);
-        })?;
-        lines.extend(outline.outline());
+        // A pose that a scene accepted places every shape: `feel` has been there.
+        let Ok(shape) = scene.bodies[body].shape_in_body.clone().placed(&pose) else {
+            continue;
+        };
+        let outline = picture::outline(&shape, plane, view, Sampling::default())?;
+        lines.extend(outline.lines().iter().cloned());
     }
     Ok(lines)
 }

@@ -152,10 +152,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         Ending::Interrupted => {
             writeln!(out, "  interrupted: this report covers the run until then")?
         }
-        Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
-        Ending::Panicked { message } => {
-            writeln!(out, "  the servo panicked, zero forces were written: {message}")?;
-        }
+        ending => writeln!(out, "  {}", shown(&ending.to_string()))?,
     }
     if !report.is_released {
         writeln!(out, "  the device did not take the zero forces at the end")?;
@@ -301,6 +298,9 @@ fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
 
 /// A number with four significant digits.
 fn rounded(number: f64) -> String {
+    if number.abs() < f64::MIN_POSITIVE {
+        return "0".to_owned();
+    }
     let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
     let unit = 10.0_f64.powi(-digits);
     let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);

@@ -60,9 +60,10 @@ pub(crate) fn usage(refused: &clap::Error) -> Result<u8, Failure> {
     Ok(u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS))
 }
 
-/// Prints on standard error why a command fails.
+/// Prints on standard error why a command fails, in one line or several.
 pub(crate) fn complain(problem: impl fmt::Display) {
-    remark(format_args!("palpate: {problem}"));
+    // Ignored: there is nowhere else to say it.
+    let _ = writeln!(io::stderr(), "palpate: {}", shown_lines(&problem.to_string()));
 }
 
 /// Prints a remark beside the answer, on standard error.

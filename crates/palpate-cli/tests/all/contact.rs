@@ -116,7 +116,167 @@ fn two_bodies_without_bounds_are_undecided_and_said_to_be() {
     let scene = folder.write("walls.json", walls);
     let said = palpate(&["contact", &scene]);
     assert_eq!(status(&said), 1);
-    assert!(text(&said).contains("floor – wall: undecided"), "{}", text(&said));
+    assert_eq!(
+        text(&said),
+        "floor – wall: undecided, neither has bounds\n\
+         2 bodies: 0 pairs touch (gap up to 2.0000 mm), 0 are apart, 1 undecided\n"
+    );
+}
+
+/// Two balls, `gap` apart.
+fn balls(gap: f64) -> String {
+    format!(
+        r#"{{ "palpate": 1, "dimension": 2, "bodies": [
+        {{ "name": "still", "shape": {{ "ball": {{ "radius": 0.5 }} }} }},
+        {{ "name": "moved", "shape": {{ "ball": {{ "radius": 0.5 }} }},
+          "pose": {{ "translation": [{}, 0] }} }} ],
+        "motions": [ {{ "body": "moved", "to": {{ "translation": [1, 0] }}, "duration": 2 }} ] }}"#,
+        1.0 + gap
+    )
+}
+
+#[test]
+fn verdicts_are_shown_by_their_bounds() {
+    let folder = Folder::new();
+    for (gap, margin, expected) in [
+        (0.001, "0.0008", "apart"),
+        (0.001, "0.0012", "touching"),
+        (0.001, "0.001", "undecided"),
+    ] {
+        let scene = folder.write("balls.json", &balls(gap));
+        let output = palpate(&["contact", &scene, "--margin", margin, "--json"]);
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let pair = &answer["pairs"][0];
+        assert_eq!(pair["verdict"], expected, "{margin}: {pair}");
+        let margin: f64 = margin.parse().unwrap();
+        let bounds = &pair["separation_m"];
+        let [lower, upper] = ["lower", "upper"].map(|key| number(&bounds[key]));
+        assert!(lower <= gap && gap <= upper, "{pair}");
+        let shown = match expected {
+            "apart" => lower > margin,
+            "touching" => upper <= margin,
+            _ => lower <= margin && margin < upper,
+        };
+        assert!(shown, "{pair}");
+    }
+    let scene = folder.write("balls.json", &balls(0.001));
+    let said = text(&palpate(&["contact", &scene, "--margin", "0.001"]));
+    let why = "       undecided: the margin of 1.0000 mm lies between the bounds; lower --tolerance, \
+               or take another --margin\n";
+    assert!(said.contains(why), "{said}");
+}
+
+/// Once a second search dropped what the first had proven.
+#[test]
+fn what_is_apart_is_proven_for_any_budget() {
+    for budget in ["1", "100", "1000"] {
+        let scene = "scenes/peg_in_hole.json";
+        let answer = json(&["contact", scene, "--budget", budget, "--json"]);
+        let margin = number(&answer["margin_m"]);
+        for pair in answer["pairs"].as_array().unwrap() {
+            let bounds = &pair["separation_m"];
+            let lower = bounds["lower"].as_f64().unwrap_or(f64::NEG_INFINITY);
+            let upper = bounds["upper"].as_f64().unwrap_or(f64::INFINITY);
+            match pair["verdict"].as_str().unwrap() {
+                "apart" => assert!(lower > margin, "{pair}"),
+                "touching" => assert!(upper <= margin, "{pair}"),
+                _ => assert!(lower <= margin && margin < upper, "{pair}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn full_memory_is_told_apart_from_a_spent_budget() {
+    let options = ["contact", "scenes/nut_on_bolt.json", "--budget", "20000000"];
+    let said = text(&palpate(&options));
+    assert!(said.contains("(memory full, "), "{said}");
+    let small = text(&palpate(&["contact", "scenes/nut_on_bolt.json", "--budget", "1000"]));
+    assert!(small.contains("(budget spent, "), "{small}");
+    assert!(small.contains("raise --budget"), "{small}");
+}
+
+#[test]
+fn the_pairs_of_a_body_are_asked_about_alone() {
+    let folder = Folder::new();
+    let scene = folder.write("row.json", &row(0.001));
+    let answer = json(&["contact", &scene, "--body", "middle", "--body", "middle", "--json"]);
+    let pairs = answer["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 3);
+    for pair in pairs {
+        assert!(pair["bodies"].as_array().unwrap().contains(&"middle".into()), "{pair}");
+    }
+    let said = text(&palpate(&["contact", &scene, "--body", "middle", "--body", "floor"]));
+    assert!(
+        said.ends_with(
+            "4 bodies: 2 pairs touch (gap up to 2.0000 mm), 3 are apart, 0 undecided\n"
+        ),
+        "{said}"
+    );
+    let unknown = palpate(&["contact", &scene, "--body", "midle"]);
+    assert_eq!(status(&unknown), 2);
+    let expected = "palpate: --body: unknown body `midle`, did you mean `middle`?\n";
+    assert_eq!(errors(&unknown), expected);
+}
+
+#[test]
+fn pairs_that_are_apart_are_listed_for_few_bodies_or_if_asked_for() {
+    let folder = Folder::new();
+    let body = |i: usize| {
+        let x = 3 * i;
+        format!(
+            r#"{{ "name": "{i}", "shape": {{ "ball": {{ "radius": 1 }} }},
+                 "pose": {{ "translation": [{x}, 0] }} }}"#
+        )
+    };
+    let scene = |count: usize| {
+        let bodies: Vec<_> = (0..count).map(body).collect();
+        let bodies = bodies.join(", ");
+        format!(r#"{{ "palpate": 1, "dimension": 2, "bodies": [ {bodies} ] }}"#)
+    };
+    let listed = |name: &str, options: &[&str]| {
+        let output = folder.run(&[&["contact", name, "--json"], options].concat());
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        answer["pairs"].as_array().unwrap().len()
+    };
+    folder.write("twelve.json", &scene(12));
+    folder.write("more.json", &scene(13));
+    assert_eq!(listed("twelve.json", &[]), 66);
+    assert_eq!(listed("more.json", &[]), 0);
+    assert_eq!(listed("more.json", &["--every-pair"]), 78);
+    assert_eq!(listed("more.json", &["--body", "4"]), 12);
+}
+
+#[test]
+fn bodies_are_where_their_motions_have_taken_them() {
+    let folder = Folder::new();
+    let scene = folder.write("balls.json", &balls(0.5));
+    for (time, gap) in [("0", 0.5), ("1", 0.25), ("2", 0.0), ("9", 0.0)] {
+        let output = palpate(&["contact", &scene, "--time", time, "--json"]);
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(number(&answer["time_s"]), time.parse::<f64>().unwrap());
+        let bounds = &answer["pairs"][0]["separation_m"];
+        let [lower, upper] = ["lower", "upper"].map(|key| number(&bounds[key]));
+        assert!(lower <= gap + 1e-12 && gap - 1e-12 <= upper, "{time} s: {bounds}");
+        assert!(upper - lower <= 0.001, "{time} s: {bounds}");
+    }
+    assert!(
+        text(&palpate(&["contact", &scene, "--time", "1"]))
+            .starts_with("at 1 s\nstill – moved")
+    );
+    let peg = text(&palpate(&["contact", "scenes/peg_in_hole.json", "--time", "1"]));
+    assert!(peg.starts_with("at 1 s, as at any time: no body moves\n"), "{peg}");
+}
+
+#[test]
+fn a_body_alone_has_no_contacts() {
+    let alone = palpate(&["contact", "scenes/s1.json"]);
+    assert_eq!(status(&alone), 2);
+    assert_eq!(
+        errors(&alone),
+        "palpate: contact is about two bodies or more, and the scene has only \"S1\"; add another to \
+         its `bodies`\n"
+    );
 }
 
 #[test]

@@ -102,7 +102,7 @@ fn check_answers_yes_or_no() {
     let answer: Value =
         serde_json::from_slice(&palpate(&["check", &bad, "--json"]).stdout).unwrap();
     assert_eq!(answer["ok"], false);
-    assert_eq!(answer["line"], 2);
+    assert_eq!(answer["problems"][0]["line"], 2);
     assert_eq!(status(&palpate(&["check", "no/such/file.json"])), 2);
     assert_eq!(status(&palpate(&["plot", &bad])), 2);
 }
@@ -143,11 +143,9 @@ fn a_mesh_is_good_if_it_is_watertight() {
     let welded: Value = serde_json::from_slice(&welded.stdout).unwrap();
     assert_eq!((&welded["vertices"], &welded["boundary_edges"]), (&4.into(), &4.into()));
     let broken = folder.write("broken.stl", "solid x\nfacet");
-    for arguments in [&["mesh", &broken][..], &["mesh", &file, "--scale", "-1"]] {
-        let output = palpate(arguments);
-        assert_eq!(status(&output), 2);
-        assert!(errors(&output).contains(arguments[1]), "{}", errors(&output));
-    }
+    let output = palpate(&["mesh", &broken]);
+    assert_eq!(status(&output), 2);
+    assert!(errors(&output).contains(&broken), "{}", errors(&output));
 }
 
 #[test]
@@ -412,22 +410,4 @@ fn descend_between_bodies_finds_what_is_near_its_start() {
     let one = palpate(&["descend", "scenes/s1.json", "--start", "1,1,1"]);
     assert_eq!(status(&one), 2);
     assert!(errors(&one).contains("two bodies or more, this has 1"));
-}
-
-/// As they stand in the guide, but for where pictures go.
-#[test]
-fn descents_of_the_guide_run() {
-    let folder = Folder::new();
-    let guide = include_str!("../../../../docs/guide/memoir.md");
-    let commands = guide.lines().filter_map(|line| line.strip_prefix("palpate descend "));
-    let mut count = 0;
-    for command in commands {
-        let (arguments, picture) = command.split_once(" --plot ").unwrap();
-        let arguments: Vec<_> = arguments.split(' ').collect();
-        let plot = folder.name(picture);
-        let output = palpate(&[&["descend"], &arguments[..], &["--plot", &plot]].concat());
-        assert_eq!(status(&output), 0, "{command}: {}", errors(&output));
-        count += 1;
-    }
-    assert!(count > 0, "the guide has no descents");
 }

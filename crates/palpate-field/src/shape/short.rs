@@ -18,6 +18,24 @@ impl Shape<3> {
     pub fn sphere(radius: f64) -> Result<Self, ShapeError> {
         Self::ball(radius)
     }
+
+    /// A cube along the axes with edges of length `size` [m]: a [`cuboid`](Self::cuboid).
+    ///
+    /// # Errors
+    ///
+    /// If the size is not positive.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    ///
+    /// # fn main() -> Result<(), palpate_field::ShapeError> {
+    /// assert_eq!(Shape::cube(0.5)?, Shape::cuboid([0.5, 0.5, 0.5])?);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn cube(size: f64) -> Result<Self, ShapeError> {
+        Self::cuboid([size; 3])
+    }
 }
 
 impl Shape<2> {
@@ -38,6 +56,15 @@ impl Shape<2> {
     /// If a length is not positive.
     pub fn rectangle(size: impl Into<Vector<f64, 2>>) -> Result<Self, ShapeError> {
         Self::cuboid(size)
+    }
+
+    /// A square along the axes with edges of length `size` [m]: a [`cuboid`](Self::cuboid).
+    ///
+    /// # Errors
+    ///
+    /// If the size is not positive.
+    pub fn square(size: f64) -> Result<Self, ShapeError> {
+        Self::cuboid([size; 2])
     }
 }
 
@@ -93,19 +120,3 @@ operator!(BitXor, bitxor, "What is in one alone", "symmetric_difference", |a, b|
     Self::symmetric_difference([a, b])
 });
 operator!(Sub, sub, "The first without the other", "difference", |a, b| a.difference([b]));
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn operators_of_rust_build_the_nodes_of_methods() -> Result<(), ShapeError> {
-        let (a, b) = (Shape::circle(0.5)?, Shape::rectangle([0.9, 0.7])?);
-        let pair = || [a.clone(), b.clone()];
-        assert_eq!(&a | &b, Shape::union(pair())?);
-        assert_eq!(a.clone() & &b, Shape::intersection(pair())?);
-        assert_eq!(&a ^ b.clone(), Shape::symmetric_difference(pair())?);
-        assert_eq!(a.clone() - b.clone(), a.difference([b])?);
-        Ok(())
-    }
-}

@@ -133,6 +133,17 @@ fn bounds_are_enough() -> Result<(), ShapeError> {
 }
 
 #[test]
+fn an_empty_shape_weighs_nothing_and_is_proven_to() -> Result<(), ShapeError> {
+    let empty = Shape::sphere(0.2)? - Shape::sphere(0.3)?;
+    let nothing = mass(&empty, 1.0);
+    assert!(nothing.is_zero());
+    assert_eq!((nothing.second_moments_error, nothing.polar_inertia()), (0.0, 0.0));
+    assert_eq!(nothing.centroid_error, f64::INFINITY);
+    assert!(!mass(&Shape::sphere(0.2)?, 1.0).is_zero());
+    Ok(())
+}
+
+#[test]
 fn a_curve_weighs_nothing() -> Result<(), ShapeError> {
     let curve = Segment::<2>::new(Vector([0.0, 0.0]), Vector([1.0, 0.5]), 0.0)?;
     let limits = MassLimits::default().with_tolerance(1e-3).with_cells(20_000);

@@ -55,6 +55,29 @@ impl Format {
         }
     }
 
+    /// The format that the first bytes of a file look like; `None` if they could be anything.
+    ///
+    /// ```
+    /// use palpate_mesh::Format;
+    ///
+    /// assert_eq!(Format::of_content(b"ply\nformat ascii 1.0\n"), Some(Format::Ply));
+    /// assert_eq!(Format::of_content(b"# a square\nv 0 0 0\nv 1 0 0\n"), Some(Format::Obj));
+    /// assert_eq!(Format::of_content(b"{ \"palpate\": 1 }"), None);
+    /// ```
+    #[must_use]
+    pub fn of_content(bytes: &[u8]) -> Option<Self> {
+        if bytes.starts_with(b"glTF") {
+            return Some(Self::Glb);
+        }
+        if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r\n") {
+            return Some(Self::Ply);
+        }
+        if stl::is_likely(bytes) {
+            return Some(Self::Stl);
+        }
+        obj::is_likely(bytes).then_some(Self::Obj)
+    }
+
     /// The name of the format.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -32,6 +32,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     of_polygons(vertices, &sizes[..faces], &model.mesh.indices, Format::Obj)
 }
 
+/// `true` if the first lines of a file that are no comments have a vertex.
+pub(super) fn is_likely(bytes: &[u8]) -> bool {
+    /// Objects, groups and materials may come before the first vertex.
+    const SOON: usize = 20;
+    let lines = bytes.split(|byte| *byte == b'\n').filter_map(|line| str::from_utf8(line).ok());
+    let lines = lines.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let is_vertex = |line: &str| {
+        let mut words = line.split_whitespace();
+        words.next() == Some("v")
+            && words.filter(|word| word.parse::<f64>().is_ok()).count() >= 3
+    };
+    lines.take(SOON).any(is_vertex)
+}
+
 /// The positions and faces of a file.
 fn essence(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes).replace("\\\r\n", " ").replace("\\\n", " ");

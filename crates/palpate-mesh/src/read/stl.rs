@@ -36,13 +36,28 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     Ok(TriangleMesh::new(vertices, triangles.to_vec())?.welded())
 }
 
+/// `true` if a file has the length of a binary one, or begins as a text does and goes on with a
+/// facet.
+pub(super) fn is_likely(bytes: &[u8]) -> bool {
+    let mut words = bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    let is_text =
+        words.next() == Some(b"solid") && words.take(SOON).any(|word| word == b"facet");
+    is_text || bytes.len() > HEADER + COUNT && Some(bytes.len()) == binary_length(bytes)
+}
+
+/// The facets of a text begin within so many words: a name has fewer.
+const SOON: usize = 100;
+
 fn is_binary(bytes: &[u8]) -> bool {
-    let Some(count) = bytes.get(HEADER..).and_then(|rest| rest.first_chunk::<COUNT>()) else {
-        return false;
-    };
+    let begins_as_text = bytes.trim_ascii_start().starts_with(b"solid");
+    binary_length(bytes).is_some_and(|length| bytes.len() == length || !begins_as_text)
+}
+
+/// The length of a binary file with the count of triangles that `bytes` would give.
+fn binary_length(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(HEADER..)?.first_chunk::<COUNT>()?;
     let triangles = u32::from_le_bytes(*count) as usize;
-    let length = triangles.saturating_mul(TRIANGLE).saturating_add(HEADER + COUNT);
-    bytes.len() == length || !bytes.trim_ascii_start().starts_with(b"solid")
+    Some(triangles.saturating_mul(TRIANGLE).saturating_add(HEADER + COUNT))
 }
 
 /// The solids of a text file, each with the name that stl_io asks for.

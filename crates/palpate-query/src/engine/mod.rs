@@ -130,7 +130,9 @@ impl End {
     pub(crate) fn stop(self) -> Stop {
         match self {
             Self::Decided(stop) => stop,
-            Self::Exhausted | Self::Full | Self::Spent => Stop::BudgetSpent,
+            Self::Exhausted => Stop::RoundingReached,
+            Self::Full => Stop::MemoryFull,
+            Self::Spent => Stop::BudgetSpent,
         }
     }
 }

@@ -21,7 +21,7 @@ mod region;
 
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use crate::certified::{Certified, Limits};
+use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::goal::Goal;
@@ -99,8 +99,10 @@ pub struct Manifold<const D: usize> {
     pub separation: Certified<Nearest<D>>,
     /// How many contacts were left out beyond [`ManifoldSettings::most`].
     pub dropped: usize,
-    /// `false` if the budget ended before the whole region was searched.
+    /// `false` if the search ended before it had seen the whole region.
     pub is_whole: bool,
+    /// Why the search of the region ended: [`Stop::Converged`] if it is whole.
+    pub region_stop: Stop,
 }
 
 /// Contacts that span the region in which two bodies touch, up to a gap of
@@ -149,13 +151,20 @@ pub fn manifold<'a, const D: usize>(
     let mut search = PairSearch::new(pair, goal, limits)?;
     let separation = search.run(workspace);
     let budget = limits.budget;
-    Ok(spanning(pair, (search.best, separation), settings, budget, workspace))
+    let separated = SeparatedPair { pair, best: search.best, separation };
+    Ok(spanning(separated, settings, budget, workspace))
 }
 
-/// The manifold of a pair whose separation was found at `best`, in its frame.
+/// A pair whose separation was found at the point `best`, in its frame.
+pub(crate) struct SeparatedPair<'a, const D: usize> {
+    pub(crate) pair: BodyPair<'a, D>,
+    pub(crate) best: Point<D>,
+    pub(crate) separation: Certified<Nearest<D>>,
+}
+
+/// The manifold of a pair.
 pub(crate) fn spanning<const D: usize>(
-    mut pair: BodyPair<'_, D>,
-    (best, separation): (Point<D>, Certified<Nearest<D>>),
+    SeparatedPair { mut pair, best, separation }: SeparatedPair<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,
@@ -166,14 +175,15 @@ pub(crate) fn spanning<const D: usize>(
         separation,
         dropped: 0,
         is_whole: true,
+        region_stop: Stop::Converged,
     };
     if separation.lower > settings.margin {
         return found;
     }
     let first = Touch::at(&mut pair, best);
-    let Region { candidates, mut middles, is_whole } =
+    let Region { candidates, mut middles, stop } =
         region::find(&mut pair, settings, budget, workspace, first);
-    found.is_whole = is_whole;
+    (found.is_whole, found.region_stop) = (!stop.is_early(), stop);
     let mut patches = Patches { pair, settings, candidates: &candidates };
     let mut touches = patches.contacts();
     patches.fill(&mut middles, &mut touches);

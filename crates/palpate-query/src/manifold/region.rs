@@ -27,14 +27,14 @@ const ON: f64 = 1e-3;
 const FLAT: f64 = 0.05;
 
 /// The region in which two bodies touch, in candidates and flat boxes.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Region<const D: usize> {
     /// Points on the surface between the bodies.
     pub(super) candidates: Vec<Touch<D>>,
     /// Flat boxes in the middle of the region.
     pub(super) middles: Vec<Middle<D>>,
-    /// `false` if the budget ended before the whole region was searched.
-    pub(super) is_whole: bool,
+    /// Why the search ended: [`Stop::Converged`] if the region is whole.
+    pub(super) stop: Stop,
 }
 
 /// Finds the region in which two bodies touch; `first` is the first candidate.
@@ -60,13 +60,17 @@ pub(super) fn find<const D: usize>(
         small: vec![],
         middles: vec![],
     };
-    let is_whole = engine::search(&mut search, frontier) == End::Exhausted;
+    let stop = match engine::search(&mut search, frontier) {
+        // No box is left to be halved.
+        End::Exhausted => Stop::Converged,
+        end => end.stop(),
+    };
     let RegionSearch { pair, small, middles, memory, .. } = search;
     let mut candidates = vec![first];
     for cells in small.chunks(BLOCK) {
         settle(pair, cells, settings, memory, &mut candidates);
     }
-    Region { candidates, middles, is_whole }
+    Region { candidates, middles, stop }
 }
 
 /// A search for all boxes down to the spacing that the surface between the bodies crosses.

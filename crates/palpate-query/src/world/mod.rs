@@ -16,7 +16,7 @@ use palpate_field::{Aabb, Pose, Shape};
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-use crate::certified::{Limits, Stop};
+use crate::certified::Limits;
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings};
@@ -83,12 +83,37 @@ pub struct Neighbours<const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
-    /// Their separation is at most the margin.
+    /// Their separation is proven to be at most the margin.
     Touching,
-    /// Their separation is more than the margin.
+    /// Their separation is proven to be more than the margin.
     Apart,
-    /// The budget ended first, or neither body is bounded: the margin lies between the bounds.
+    /// The margin lies between the bounds: the search ended early, the separation is so near the
+    /// margin that the tolerance does not tell, or neither body is bounded.
     Undecided,
+}
+
+impl Verdict {
+    /// What bounds of a separation [m], the lower and the upper one, prove up to `margin` [m].
+    ///
+    /// ```
+    /// use palpate_query::Verdict;
+    ///
+    /// let verdict = |lower, upper| Verdict::of_bounds([lower, upper], 0.5);
+    /// assert_eq!(verdict(0.25, 0.5), Verdict::Touching);
+    /// assert_eq!(verdict(0.625, 0.75), Verdict::Apart);
+    /// assert_eq!(verdict(0.5, 0.625), Verdict::Undecided);
+    /// ```
+    #[must_use]
+    pub fn of_bounds([lower, upper]: [f64; 2], margin: f64) -> Self {
+        if lower > margin {
+            Self::Apart
+        } else if upper <= margin {
+            Self::Touching
+        } else {
+            // Also if a bound is NaN.
+            Self::Undecided
+        }
+    }
 }
 
 impl fmt::Display for Verdict {
@@ -111,21 +136,10 @@ impl<const D: usize> Neighbours<D> {
         })
     }
 
-    /// Whether they touch, up to `margin` [m].
-    ///
-    /// Bounds within the tolerance of each other with the margin between them count as
-    /// touching, and have contacts.
+    /// Whether they touch, up to `margin` [m]: what the bounds prove.
     #[must_use]
     pub fn verdict(&self, margin: f64) -> Verdict {
-        let Some(manifold) = &self.manifold else { return Verdict::Undecided };
-        let separation = &manifold.separation;
-        if separation.lower > margin {
-            Verdict::Apart
-        } else if separation.upper <= margin || separation.stop != Stop::BudgetSpent {
-            Verdict::Touching
-        } else {
-            Verdict::Undecided
-        }
+        Verdict::of_bounds(self.bounds(), margin)
     }
 
     /// The contacts.
@@ -237,6 +251,12 @@ impl<const D: usize> World<D> {
         Ok(BodyId(self.bodies.len() - 1))
     }
 
+    /// The bodies that are there, in the order in which they were added.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
+        let bodies = self.bodies.iter().enumerate();
+        bodies.filter(|(_, body)| body.is_some()).map(|(i, _)| BodyId(i))
+    }
+
     /// Removes a body; its id is not used again.
     ///
     /// # Errors
@@ -336,6 +356,31 @@ impl<const D: usize> World<D> {
         let margin = self.settings.manifold.margin;
         let found = self.pairs.values().map(|pair| &pair.found);
         found.filter(|found| found.verdict(margin) != Verdict::Apart).collect()
+    }
+
+    /// A proven lower bound of the separation of two bodies, as of the last [`step`](Self::step)
+    /// [m]: that of their search, or the gap of their boxes if they were not searched; minus
+    /// infinity if that is unknown too. A pair that `step` left out although it was not to be
+    /// ignored has a bound above the margin.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such body.
+    pub fn lower_bound(&self, one: BodyId, other: BodyId) -> Result<f64, QueryError> {
+        let found = |body: BodyId| {
+            let body_at = self.bodies.get(body.0).and_then(Option::as_ref);
+            body_at.ok_or(QueryError::NoBody { body: body.0 })
+        };
+        let boxes = [found(one)?.aabb, found(other)?.aabb];
+        let pair = [one.0.min(other.0), one.0.max(other.0)];
+        if let Some(pair) = self.pairs.get(&pair) {
+            return Ok(pair.found.bounds()[0]);
+        }
+        let [Some(a), Some(b)] = boxes else { return Ok(f64::NEG_INFINITY) };
+        // The boxes are grown by half the margin each, and by more than rounding.
+        let gaps = (0..D).map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]));
+        let gap = gaps.fold(f64::NEG_INFINITY, f64::max);
+        Ok(if gap > 0.0 { gap + self.settings.manifold.margin } else { f64::NEG_INFINITY })
     }
 
     /// Updates which pairs are near, and which of them must be searched again.

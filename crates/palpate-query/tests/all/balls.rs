@@ -111,8 +111,7 @@ where
             return Ok(Err(format!("{gap:?} and {sign:?} exclude each other")));
         }
         asked += 1;
-        spent += u64::from(gap.stop == Stop::BudgetSpent)
-            + u64::from(sign.stop == Stop::BudgetSpent);
+        spent += u64::from(gap.stop.is_early()) + u64::from(sign.stop.is_early());
         Ok(Ok(()))
     });
     assert!(asked * 2 > count, "{asked} of {count} trees were built");

@@ -10,7 +10,8 @@ use palpate_field::{
     Aabb, BoundingBall, Bounds, Pose, Promise, Rotation, Shape, ShapeError, Vector,
 };
 use palpate_query::{
-    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, overlap, separation,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, any_point, overlap,
+    separation,
 };
 
 type Answers<const D: usize> = [Certified<Nearest<D>>; 2];
@@ -145,5 +146,40 @@ fn beyond_the_region_of_a_promise_nothing_is_missed_and_nothing_is_made_up()
             }
         }
     }
+    Ok(())
+}
+
+/// A point is found in every primitive that has an inside, and in none of what is cut away whole.
+#[test]
+fn a_shape_has_points_unless_all_of_it_is_cut_away() -> Result<(), Box<dyn std::error::Error>> {
+    fn has_points<const D: usize>(shape: &Shape<D>) -> Result<Option<bool>, QueryError> {
+        let limits = Limits::new(1e-9).with_budget(20_000);
+        any_point(shape, &limits, &mut PairWorkspace::new()).map(|answer| answer.is_hit())
+    }
+    fn check<const D: usize>(shape: Shape<D>) -> Result<(), Box<dyn std::error::Error>> {
+        let promise = shape.promise();
+        if promise.bounds.is_none() {
+            assert_eq!(has_points(&shape), Err(QueryError::Unbounded));
+            return Ok(());
+        }
+        if promise.has_interior {
+            assert_eq!(has_points(&shape)?, Some(true), "{shape}");
+        }
+        let larger = shape.clone().offset(0.01)?;
+        let rest = shape.clone().difference([larger])?;
+        assert_ne!(has_points(&rest)?, Some(true), "{shape}");
+        let far = shape.clone().translated(Vector([9.0; D]))?;
+        assert_eq!(has_points(&Shape::intersection([shape, far])?)?, Some(false));
+        Ok(())
+    }
+    for entry in palpate_field::catalogue::Entry::<2>::ALL {
+        check(entry.example()?)?;
+    }
+    for entry in palpate_field::catalogue::Entry::<3>::ALL {
+        check(entry.example()?)?;
+    }
+    // What is cut away to its surface is open.
+    let ball = Shape::sphere(0.5)?;
+    assert_eq!(has_points(&(&ball - &ball))?, None);
     Ok(())
 }

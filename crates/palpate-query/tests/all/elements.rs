@@ -115,7 +115,7 @@ where
         if sign.stop == Stop::SignKnown && sign.is_hit().is_none() {
             return Ok(Err(format!("{sign:?} does not know")));
         }
-        spent += u64::from(least.stop == Stop::BudgetSpent);
+        spent += u64::from(least.stop.is_early());
         if let Some(complaint) = moved_otherwise(u, shape, &element, &limits, &mut workspace)? {
             return Ok(Err(complaint));
         }

@@ -26,7 +26,7 @@ where
         let outcome = pair_answers::check::<D>(u, 1 + seed % 3, &mut workspace)?;
         Ok(outcome.map(|stop| {
             asked += u64::from(stop.is_some());
-            spent += u64::from(stop == Some(Stop::BudgetSpent));
+            spent += u64::from(stop.is_some_and(Stop::is_early));
         }))
     });
     assert!(asked * 2 > count, "{asked} of {count} pairs were bounded");

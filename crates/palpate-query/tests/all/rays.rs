@@ -51,7 +51,7 @@ where
         } else if answer.stop == Stop::SignKnown && answer.lower < length {
             return wrong("free, but not to the end".into());
         }
-        spent += u64::from(answer.stop == Stop::BudgetSpent);
+        spent += u64::from(answer.stop.is_early());
         Ok(Ok(()))
     });
     assert!(spent * 100 <= count, "{spent} of {count} rays spent their budget");
@@ -123,7 +123,7 @@ where
         let truth = first(is_ball, origin, way).map(|t| t * factor).filter(|t| *t <= length);
         let rounding = 1e-12 * (factor * (1.0 + origin.norm()) + pose.translation.norm());
         let is_right = match (truth, answer.stop) {
-            (_, Stop::BudgetSpent) => false,
+            (_, stop) if stop.is_early() => false,
             // What passes within the tolerance may be called a hit.
             (None, _) => {
                 answer.best.is_none_or(|hit| shape.distance(hit.point) <= limits.tolerance)

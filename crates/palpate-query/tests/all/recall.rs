@@ -92,7 +92,7 @@ where
     let mut ask = |what: &str, answer: Result<Certified<Nearest<D>>, QueryError>| {
         let complaint = format!("{what} of {row}: {answer:?}");
         let Ok(answer) = answer else { return report.wrong.push(complaint) };
-        let is_spent = answer.stop == Stop::BudgetSpent;
+        let is_spent = answer.stop.is_early();
         // The box of a built motion is larger, and so are some separations less.
         let is_less = what == BUILT;
         let is_right = answer.is_hit() == Some(row.truth.upper < 0.0);

@@ -236,6 +236,78 @@ fn no_pair_is_dropped() -> Test {
     Ok(())
 }
 
+/// Whatever the budget: what is touching is proven near, what is left out is proven apart, and
+/// the bounds of every pair hold its separation.
+#[test]
+fn verdicts_are_what_bounds_prove() -> Test {
+    let mut counts = [0; 3];
+    for budget in [10, 300, 1000, 200_000] {
+        let limits = Limits::new(1e-3).with_budget(budget);
+        let settings = WorldSettings::new(ManifoldSettings::of_size(1.0), limits);
+        let margin = settings.manifold.margin;
+        let mut world = World::new(settings)?;
+        let bodies = (0..24).map(in_space).collect::<Result<Vec<_>, _>>()?;
+        let ids = bodies.iter().map(|(shape, pose)| world.add(shape.clone(), *pose));
+        let ids = ids.collect::<Result<Vec<_>, _>>()?;
+        assert!(world.bodies().eq(ids.iter().copied()));
+        let found: Vec<_> = world.step().into_iter().cloned().collect();
+        let mut workspace = PairWorkspace::new();
+        let fine = Limits::new(1e-5).with_budget(400_000);
+        for k in 0..bodies.len() {
+            for i in 0..k {
+                let [a, b] = [i, k].map(|i| Placed::new(&bodies[i].0, bodies[i].1));
+                let truth = separation(a, b, &fine, &mut workspace)?;
+                let lower = world.lower_bound(ids[k], ids[i])?;
+                assert!(lower <= truth.upper, "{i}, {k}: {lower} {truth:?}");
+                let said = found.iter().find(|pair| pair.bodies == [ids[i], ids[k]]);
+                match said.map(|said| (said.verdict(margin), said.bounds())) {
+                    None => {
+                        assert!(lower > margin, "{i}, {k} is left out: {lower}");
+                        counts[0] += 1;
+                    }
+                    Some((Verdict::Touching, [_, upper])) => {
+                        assert!(upper <= margin && truth.lower <= upper, "{i}, {k}: {truth:?}");
+                        counts[1] += 1;
+                    }
+                    Some((verdict, [lower, upper])) => {
+                        assert_eq!(verdict, Verdict::Undecided);
+                        assert!(lower <= margin && margin < upper, "{i}, {k}: {lower} {upper}");
+                        counts[2] += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
+    Ok(())
+}
+
+/// Two balls a gap apart that lies within the tolerance of the margin.
+#[test]
+fn a_separation_near_the_margin_is_decided() -> Test {
+    let ball = Shape::from_kernel(Ball::new(0.5)?);
+    let settings = WorldSettings::of_size(1.0);
+    let margin = settings.manifold.margin;
+    for (gap, expected) in [
+        (0.75 * margin, Verdict::Touching),
+        (0.95 * margin, Verdict::Touching),
+        (1.05 * margin, Verdict::Apart),
+        (1.25 * margin, Verdict::Apart),
+        // Bounds of a separation hold rounding, and so this margin.
+        (margin, Verdict::Undecided),
+    ] {
+        let mut world = World::new(settings)?;
+        let one = world.add(ball.clone(), Pose::identity())?;
+        let other =
+            world.add(ball.clone(), Pose::translation(Vector([1.0 + gap, 0.0, 0.0])))?;
+        let found = world.step();
+        let verdict = found.first().map_or(Verdict::Apart, |pair| pair.verdict(margin));
+        assert_eq!(verdict, expected, "{gap}: {found:?}");
+        assert!(world.lower_bound(one, other)? <= gap);
+    }
+    Ok(())
+}
+
 #[test]
 fn poses_are_moved_all_or_none() -> Test {
     let ball = Shape::from_kernel(Ball::new(0.5)?);

@@ -11,15 +11,18 @@ mod primitive;
 mod size;
 
 use std::any::Any;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use palpate_field::{Point, Pose, Shape};
 
 use palpate_haptics::{Guide, Material, ToolOptions, WorkspaceMap};
 
-use crate::guide::WrittenGuide;
+use crate::names::shortened;
 use crate::pose::{Turning, Turns, vector};
 use crate::problem::Problem;
-use crate::scene::{Dimension, Scene};
+use crate::problems::Problems;
+use crate::scene::{Dimension, Scene, WrittenBody};
 use crate::shape::WrittenShape;
 use crate::view::View;
 use builder::{Builder, Space};
@@ -37,6 +40,7 @@ pub enum AnyScene {
 
 /// A built scene: its bodies, tool, guides, motions and views.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltScene<const D: usize> {
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BuiltBody<D>>,
@@ -56,6 +60,7 @@ pub struct BuiltScene<const D: usize> {
 
 /// The tool of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltTool<const D: usize> {
     /// The radius of each contact point, or the offset added to the shape [m].
     pub radius: f64,
@@ -63,14 +68,22 @@ pub struct BuiltTool<const D: usize> {
     pub points: Vec<Point<D>>,
     /// The shape in the tool's own coordinates, instead of points.
     pub shape: Option<Shape<D>>,
-    /// The coupling of a tool with a shape, and its largest force.
+    /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
+    /// leave to the device.
     pub options: ToolOptions,
-    /// The largest force on the hand [N]; `None` if the scene leaves it to the device.
-    pub max_force: Option<f64>,
+}
+
+impl<const D: usize> BuiltTool<D> {
+    /// One contact point at the origin, of this radius [m].
+    #[must_use]
+    pub fn of_radius(radius: f64) -> Self {
+        Self { radius, points: Vec::new(), shape: None, options: ToolOptions::default() }
+    }
 }
 
 /// A body of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltBody<const D: usize> {
     /// Its name.
     pub name: String,
@@ -85,7 +98,7 @@ pub struct BuiltBody<const D: usize> {
 }
 
 /// Builds a shape that refers to no other.
-pub(crate) fn alone<const D: usize>(written: &WrittenShape) -> Result<Shape<D>, Problem> {
+pub(crate) fn alone<const D: usize>(written: &WrittenShape) -> Result<Shape<D>, Problems> {
     let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
     let scene = Scene::new(dimension);
     let mut builder = Builder::new(&scene);
@@ -93,145 +106,176 @@ pub(crate) fn alone<const D: usize>(written: &WrittenShape) -> Result<Shape<D>, 
         Dimension::Two => Box::new(builder.shape::<2>(written)?),
         Dimension::Three => Box::new(builder.shape::<3>(written)?),
     };
-    let shape = shape.downcast().map_err(|_| Problem::new("shapes are in 2D or 3D"));
-    shape.map(|shape| *shape)
+    let shape = shape.downcast().map_err(|_| Problem::new("shapes are in 2D or 3D"))?;
+    Ok(*shape)
 }
 
 /// Checks and builds a scene.
-pub(crate) fn world(scene: &Scene) -> Result<AnyScene, Problem> {
+pub(crate) fn world(scene: &Scene) -> Result<AnyScene, Problems> {
     match scene.dimension() {
         Dimension::Two => built(scene).map(AnyScene::Planar),
         Dimension::Three => built(scene).map(AnyScene::Spatial),
     }
 }
 
-fn built<const D: usize>(scene: &Scene) -> Result<BuiltScene<D>, Problem>
+fn built<const D: usize>(scene: &Scene) -> Result<BuiltScene<D>, Problems>
 where
     for<'a> Builder<'a>: Space<'a, D>,
     Turns: Turning<D>,
 {
     let mut builder = Builder::new(scene);
-    builder.named_shapes::<D>().map_err(|problem| problem.under("shapes"))?;
-    let bodies = bodies(scene, &mut builder).map_err(|problem| problem.under("bodies"))?;
+    let mut wrong = Problems::default();
+    wrong.kept(builder.named_shapes::<D>().map_err(|problems| problems.under("shapes")));
+    let names = names(scene.bodies.iter().map(|body| body.name.as_str()));
+    wrong.kept(names.map_err(|problems| problems.under("bodies")));
+    let bodies = bodies(scene, &mut builder).map_err(|problems| problems.under("bodies"));
+    let bodies = wrong.kept(bodies);
+    let tool = tool(scene, &mut builder).map_err(|problems| problems.under("tool"));
+    let tool = wrong.kept(tool);
+    let guides = wrong.kept(guides(scene).map_err(|problems| problems.under("guides")));
+    let motions = motion::motions(scene, bodies.as_deref());
+    let motions = wrong.kept(motions.map_err(|problems| problems.under("motions")));
+    wrong.kept(check_views(scene, D).map_err(|problems| problems.under("views")));
+    let workspace = workspace(scene).map_err(|problems| problems.under("tool"));
+    let workspace = wrong.kept(workspace);
+    let (Some(bodies), Some(tool), Some(guides), Some(motions), Some(workspace), false) =
+        (bodies, tool, guides, motions, workspace, wrong.is_failed())
+    else {
+        return Err(wrong);
+    };
     let whole = Shape::union(bodies.iter().map(|body| body.shape.clone()))
         .map_err(|error| Problem::of_shape(error).under("bodies"))?;
-    let tool = tool(scene, &mut builder).map_err(|problem| problem.under("tool"))?;
-    let guides = guides(scene).map_err(|problem| problem.under("guides"))?;
-    let motions =
-        motion::motions(scene, &bodies).map_err(|problem| problem.under("motions"))?;
-    check_views(scene, D).map_err(|problem| problem.under("views"))?;
-    let workspace = workspace(scene).map_err(|problem| problem.under("tool"))?;
-    Ok(BuiltScene {
-        bodies,
-        whole,
-        tool,
-        guides,
-        motions,
-        views: scene.views.clone(),
-        workspace,
-    })
+    let views = scene.views.clone();
+    Ok(BuiltScene { bodies, whole, tool, guides, motions, views, workspace })
 }
 
 fn bodies<'a, const D: usize>(
     scene: &'a Scene,
     builder: &mut Builder<'a>,
-) -> Result<Vec<BuiltBody<D>>, Problem>
+) -> Result<Vec<BuiltBody<D>>, Problems>
 where
     Builder<'a>: Space<'a, D>,
     Turns: Turning<D>,
 {
     if scene.bodies.is_empty() {
-        return Err(Problem::about("must have at least 1 body, got 0"));
+        return Err(Problem::about("must have at least 1 body, got 0").into());
     }
-    unique(scene.bodies.iter().map(|body| body.name.as_str()))?;
+    let mut wrong = Problems::default();
     let mut bodies = Vec::with_capacity(scene.bodies.len());
-    for (i, body) in scene.bodies.iter().enumerate() {
-        let mut make = || -> Result<BuiltBody<D>, Problem> {
-            let shape_in_body = builder.shape(&body.shape).map_err(|p| p.under("shape"))?;
-            let (world_from_body, shape) = match &body.pose {
-                Some(pose) => {
-                    let pose = pose.built().map_err(|problem| problem.under("pose"))?;
-                    let shape =
-                        shape_in_body.clone().placed(&pose).map_err(Problem::of_shape)?;
-                    (pose, shape)
-                }
-                None => (Pose::identity(), shape_in_body.clone()),
-            };
-            let material = match &body.material {
-                Some(written) => written.known().map_err(|p| p.under("material"))?,
-                None => Material::default(),
-            };
-            crate::material::check(&material, D)
-                .map_err(|problem| problem.under("material"))?;
-            let name = body.name.clone();
-            Ok(BuiltBody { name, shape, shape_in_body, world_from_body, material })
-        };
-        bodies.push(make().map_err(|problem| problem.at(i))?);
+    for (i, written) in scene.bodies.iter().enumerate() {
+        let body = body(written, builder).map_err(|problems| problems.at(i));
+        bodies.extend(wrong.kept(body));
     }
-    Ok(bodies)
+    wrong.end(Ok(bodies))
+}
+
+fn body<'a, const D: usize>(
+    body: &'a WrittenBody,
+    builder: &mut Builder<'a>,
+) -> Result<BuiltBody<D>, Problems>
+where
+    Builder<'a>: Space<'a, D>,
+    Turns: Turning<D>,
+{
+    let mut wrong = Problems::default();
+    let shape = builder.shape(&body.shape).map_err(|problems| problems.under("shape"));
+    let shape: Option<Shape<D>> = wrong.kept(shape);
+    let pose = body.pose.as_ref().map(|pose| pose.built()).transpose();
+    let pose: Option<Option<Pose<D>>> =
+        wrong.kept(pose.map_err(|problems| problems.under("pose")));
+    let material = body.material.as_ref().map_or_else(
+        || Ok(Material::default()),
+        |written| {
+            let material = written.known()?;
+            crate::material::check(&material, D).map(|()| material)
+        },
+    );
+    let material = wrong.kept(material.map_err(|problems| problems.under("material")));
+    let (Some(shape_in_body), Some(pose), Some(material)) = (shape, pose, material) else {
+        return Err(wrong);
+    };
+    let shape = match &pose {
+        Some(pose) => shape_in_body.clone().placed(pose).map_err(Problem::of_shape)?,
+        None => shape_in_body.clone(),
+    };
+    let world_from_body = pose.unwrap_or_else(Pose::identity);
+    let name = body.name.clone();
+    Ok(BuiltBody { name, shape, shape_in_body, world_from_body, material })
 }
 
 /// The map from the device's space to the world, if the tool has one.
-fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap<D>>, Problem>
+fn workspace<const D: usize>(scene: &Scene) -> Result<Option<WorkspaceMap<D>>, Problems>
 where
     Turns: Turning<D>,
 {
     let workspace = scene.tool.as_ref().and_then(|tool| tool.workspace.as_ref());
     let Some(workspace) = workspace else { return Ok(None) };
     let pose = workspace.pose.as_ref().map(|pose| pose.built::<D>()).transpose();
-    let pose = pose.map_err(|problem| problem.under("pose").under("workspace"))?;
-    let map = WorkspaceMap::new(pose.unwrap_or_else(Pose::identity), workspace.scale);
-    map.map(Some).map_err(|error| Problem::new(error.to_string()).under("workspace"))
+    let pose = pose.map_err(|problems| problems.under("pose"));
+    let scale = crate::check::positive("scale", workspace.scale, "");
+    let made = Problems::both(pose, scale).and_then(|(pose, ())| {
+        let map = WorkspaceMap::new(pose.unwrap_or_else(Pose::identity), workspace.scale);
+        map.map_err(|error| Problem::new(error.to_string()).into())
+    });
+    made.map(Some).map_err(|problems| problems.under("workspace"))
 }
 
 fn tool<'a, const D: usize>(
     scene: &'a Scene,
     builder: &mut Builder<'a>,
-) -> Result<Option<BuiltTool<D>>, Problem>
+) -> Result<Option<BuiltTool<D>>, Problems>
 where
     Builder<'a>: Space<'a, D>,
     Turns: Turning<D>,
 {
     let Some(tool) = &scene.tool else { return Ok(None) };
-    tool.check(D)?;
     let shape = tool.shape.as_ref().map(|written| builder.shape(written)).transpose();
+    let shape = shape.map_err(|problems| problems.under("shape"));
+    let (shape, ()) = Problems::both(shape, tool.check(D))?;
     Ok(Some(BuiltTool {
         radius: tool.radius,
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
-        shape: shape.map_err(|problem| problem.under("shape"))?,
+        shape,
         options: tool.options(),
-        max_force: tool.max_force,
     }))
 }
 
-fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problem> {
-    let guide = |(i, guide): (usize, &WrittenGuide)| {
-        guide.check(D).map_err(|problem| problem.at(i))?;
-        guide.guide().map_err(|error| Problem::new(error.to_string()).at(i))
-    };
-    scene.guides.iter().enumerate().map(guide).collect()
+fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problems> {
+    let mut wrong = Problems::default();
+    let mut guides = Vec::with_capacity(scene.guides.len());
+    for (i, guide) in scene.guides.iter().enumerate() {
+        let made = guide.check(D).and_then(|()| guide.built().map_err(Into::into));
+        guides.extend(wrong.kept(made.map_err(|problems| problems.at(i))));
+    }
+    wrong.end(Ok(guides))
 }
 
-fn check_views(scene: &Scene, dimension: usize) -> Result<(), Problem> {
-    unique(scene.views.iter().map(|view| view.name.as_str()))?;
-    for (i, view) in scene.views.iter().enumerate() {
-        view.check(dimension).map_err(|problem| problem.at(i))?;
-    }
-    Ok(())
+fn check_views(scene: &Scene, dimension: usize) -> Result<(), Problems> {
+    let names = names(scene.views.iter().map(|view| view.name.as_str()));
+    let views = scene.views.iter().enumerate();
+    let views = views.map(|(i, view)| view.check(dimension).map_err(|problems| problems.at(i)));
+    Problems::all(views.chain([names]))
 }
 
 /// Checks that no name is empty or there twice.
-fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), Problem> {
-    let mut seen = std::collections::HashMap::new();
-    for (i, name) in names.enumerate() {
+fn names<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), Problems> {
+    let mut seen = HashMap::new();
+    let checked = names.enumerate().map(|(i, name)| {
         if name.is_empty() {
             return Err(Problem::about("must not be empty").under("name").at(i));
         }
-        if let Some(first) = seen.insert(name, i) {
-            let name = crate::problem::shortened(name);
-            let message = format!("must be unique, but {name:?} is also the name at [{first}]");
-            return Err(Problem::about(message).under("name").at(i));
+        match seen.entry(name) {
+            Entry::Vacant(place) => {
+                place.insert(i);
+                Ok(())
+            }
+            Entry::Occupied(first) => {
+                let (name, first) = (shortened(name), first.get());
+                let message =
+                    format!("must be unique, but {name:?} is also the name at [{first}]");
+                Err(Problem::about(message).under("name").at(i))
+            }
         }
-    }
-    Ok(())
+    });
+    Problems::all(checked)
 }

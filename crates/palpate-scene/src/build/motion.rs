@@ -7,8 +7,10 @@ use palpate_field::{Pose, Screw, Shape, ShapeError};
 
 use super::{BuiltBody, BuiltScene};
 use crate::motion::{Motion, Repeat};
+use crate::names::unknown;
 use crate::pose::{Turning, Turns};
-use crate::problem::{Problem, unknown};
+use crate::problem::Problem;
+use crate::problems::Problems;
 use crate::scene::Scene;
 
 /// A motion of a body of a built scene.
@@ -32,8 +34,7 @@ impl<const D: usize> BuiltMotion<D> {
     #[must_use]
     pub fn pose(&self, time: f64) -> Option<Pose<D>> {
         let passed = (time - self.start) / self.duration;
-        // Written so that NaN counts as before the motion.
-        if !(passed >= 0.0) {
+        if passed.is_nan() || passed < 0.0 {
             return None;
         }
         Some(self.screw.pose(match self.repeat {
@@ -123,35 +124,49 @@ impl<const D: usize> BuiltScene<D> {
     }
 }
 
-/// Checks and builds the motions of a scene.
+/// Checks and builds the motions of a scene; `bodies` are `None` if they have problems.
 pub(super) fn motions<const D: usize>(
     scene: &Scene,
-    bodies: &[BuiltBody<D>],
-) -> Result<Vec<BuiltMotion<D>>, Problem>
+    bodies: Option<&[BuiltBody<D>]>,
+) -> Result<Vec<BuiltMotion<D>>, Problems>
 where
     Turns: Turning<D>,
 {
-    let built = |(i, motion)| built(motion, bodies).map_err(|problem| problem.at(i));
-    scene.motions.iter().enumerate().map(built).collect()
+    let mut wrong = Problems::default();
+    let mut motions = Vec::with_capacity(scene.motions.len());
+    for (i, motion) in scene.motions.iter().enumerate() {
+        let built = built(motion, scene, bodies).map_err(|problems| problems.at(i));
+        motions.extend(wrong.kept(built));
+    }
+    wrong.end(Ok(motions))
 }
 
 fn built<const D: usize>(
     motion: &Motion,
-    bodies: &[BuiltBody<D>],
-) -> Result<BuiltMotion<D>, Problem>
+    scene: &Scene,
+    bodies: Option<&[BuiltBody<D>]>,
+) -> Result<BuiltMotion<D>, Problems>
 where
     Turns: Turning<D>,
 {
-    motion.check()?;
-    let Some(body) = bodies.iter().position(|body| body.name == motion.body) else {
-        let known: Vec<_> = bodies.iter().map(|body| body.name.as_str()).collect();
-        return Err(Problem::new(unknown("body", &motion.body, &known)).under("body"));
+    let mut wrong = Problems::default();
+    wrong.kept(motion.check());
+    let names: Vec<_> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let body = names.iter().position(|name| *name == motion.body);
+    let body =
+        body.ok_or_else(|| Problem::new(unknown("body", &motion.body, &names)).under("body"));
+    let body = wrong.kept(body);
+    let from = motion.from.as_ref().map(|pose| pose.built::<D>()).transpose();
+    let from = wrong.kept(from.map_err(|problems| problems.under("from")));
+    let to = wrong.kept(motion.to.built::<D>().map_err(|problems| problems.under("to")));
+    let (Some(body), Some(from), Some(to), false) = (body, from, to, wrong.is_failed()) else {
+        return Err(wrong);
     };
-    let from = motion.from.as_ref().map(|pose| pose.built()).transpose();
-    let from = from.map_err(|problem| problem.under("from"))?;
+    let Some(bodies) = bodies else { return Err(Problems::told()) };
     let from = from.unwrap_or(bodies[body].world_from_body);
-    let to = motion.to.built().map_err(|problem| problem.under("to"))?;
-    let screw = Screw::new(from, to, motion.turns).map_err(Problem::of_shape)?;
+    // Both poses are checked: what is refused are the turns.
+    let screw = Screw::new(from, to, motion.turns)
+        .map_err(|error| Problem::of_shape(error).under("turns"))?;
     let Motion { start, duration, repeat, .. } = *motion;
     Ok(BuiltMotion { body, screw, start, duration, repeat })
 }

@@ -15,6 +15,7 @@ use crate::json::{self, found};
 use crate::keys;
 use crate::pose::{self, Turning, Turns};
 use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// The problem of an operator whose number is under `key`.
 pub(super) fn refused(key: &str, error: ShapeError) -> Problem {
@@ -23,13 +24,28 @@ pub(super) fn refused(key: &str, error: ShapeError) -> Problem {
     if is_of_number { problem.under(key) } else { problem }
 }
 
+/// What an operator makes of an operand. For one with problems something else stands in, so
+/// that the operator's own numbers are read; what a shape finds wrong with them is not told then.
+pub(super) fn over<const D: usize, T>(
+    operand: Result<Built<D>, Problems>,
+    make: impl FnOnce(Built<D>) -> Result<T, Problems>,
+) -> Result<T, Problems> {
+    match operand {
+        Ok(operand) => make(operand),
+        Err(problems) => {
+            let made = make(Built::stand_in()?);
+            problems.end(made.map_err(Problems::of_the_text))
+        }
+    }
+}
+
 impl<'a> Builder<'a> {
     /// The operators on a list of shapes.
     pub(super) fn list<const D: usize>(
         &mut self,
-        object: Object<'a>,
+        object: &Object<'a>,
         level: usize,
-    ) -> Result<Built<D>, Problem>
+    ) -> Result<Built<D>, Problems>
     where
         Self: Space<'a, D>,
         Turns: Turning<D>,
@@ -38,20 +54,37 @@ impl<'a> Builder<'a> {
         let operands = object.value(key)?;
         let Value::Array(operands) = operands else {
             let message = format!("must be a list, got {}", found(operands));
-            return Err(Problem::about(message).under(key));
+            return Err(Problem::about(message).under(key).into());
         };
         if operands.is_empty() {
             let message = format!("{key} must have at least 1 shape, got 0");
-            return Err(Problem::new(message).under(key));
+            return Err(Problem::new(message).under(key).into());
         }
-        let mut shapes = Vec::with_capacity(operands.len());
-        let mut sizes = Vec::with_capacity(operands.len());
+        let mut wrong = Problems::default();
+        let mut built = Vec::with_capacity(operands.len());
         for (i, operand) in operands.iter().enumerate() {
-            let built =
-                self.node(operand, level).map_err(|problem| problem.at(i).under(key))?;
-            shapes.push(built.shape);
-            sizes.push(built.size);
+            let operand = self.node(operand, level).map_err(|p| p.at(i).under(key));
+            built.push(match wrong.kept(operand) {
+                Some(operand) => operand,
+                None if wrong.is_full() => return Err(wrong),
+                None => Built::stand_in()?,
+            });
         }
+        let made = self.combined(object, built, level);
+        let made = if wrong.is_failed() { made.map_err(Problems::of_the_text) } else { made };
+        wrong.end(made)
+    }
+
+    /// What an operator makes of a list of shapes.
+    fn combined<const D: usize>(
+        &mut self,
+        object: &Object<'a>,
+        built: Vec<Built<D>>,
+        level: usize,
+    ) -> Result<Built<D>, Problems> {
+        let key = object.head;
+        let (mut shapes, sizes): (Vec<_>, Vec<_>) =
+            built.into_iter().map(|built| (built.shape, built.size)).unzip();
         let size = Size::over(&sizes);
         self.allowance.take(size, level)?;
         let (shape, number) = match key {
@@ -68,7 +101,8 @@ impl<'a> Builder<'a> {
                 (from.morphed(into, object.read(keys::PROGRESS)?), keys::PROGRESS)
             }
             _ => {
-                let (width, profile) = (object.read(keys::WIDTH)?, profile(&object)?);
+                let (width, profile) =
+                    Problems::both(object.read(keys::WIDTH), profile(object))?;
                 let shape = match key {
                     keys::SMOOTH_UNION => Shape::smooth_union(shapes, profile, width),
                     keys::SMOOTH_INTERSECTION => {
@@ -86,43 +120,54 @@ impl<'a> Builder<'a> {
     /// The operators on one shape that keep its dimension.
     pub(super) fn unary<const D: usize>(
         &mut self,
-        object: Object<'a>,
+        object: &Object<'a>,
         level: usize,
-    ) -> Result<Built<D>, Problem>
+    ) -> Result<Built<D>, Problems>
+    where
+        Self: Space<'a, D>,
+        Turns: Turning<D>,
+    {
+        let child = self.operand(object, level);
+        over(child, |child| {
+            let size = match object.head {
+                keys::REPEAT => Size::over(&[child.size.repeated(D as u32)]),
+                _ => Size::over(&[child.size]),
+            };
+            self.allowance.take(size, level)?;
+            Ok(Built { shape: Self::applied(object, child.shape)?, size })
+        })
+    }
+
+    /// What an operator makes of one shape.
+    fn applied<const D: usize>(
+        object: &Object<'a>,
+        child: Shape<D>,
+    ) -> Result<Shape<D>, Problems>
     where
         Self: Space<'a, D>,
         Turns: Turning<D>,
     {
         let key = object.head;
-        let child: Built<D> = self
-            .node(object.value(keys::OF)?, level)
-            .map_err(|problem| problem.under(keys::OF))?;
-        let size = match key {
-            keys::REPEAT => Size::over(&[child.size.repeated(D as u32)]),
-            _ => Size::over(&[child.size]),
-        };
-        self.allowance.take(size, level)?;
-        let child = child.shape;
         let shape = match key {
             keys::SCALE => match object.value(key)? {
                 Value::Number(_) => child.scaled(object.read(key)?),
-                Value::Array(_) => child.stretched(vector(&object)?),
+                Value::Array(_) => child.stretched(vector(object)?),
                 other => {
                     let found = found(other);
                     let message = format!(
                         "must be a number, or a list with one for each axis, got {found}"
                     );
-                    return Err(Problem::about(message).under(key));
+                    return Err(Problem::about(message).under(key).into());
                 }
             },
             keys::OFFSET => child.offset(object.read(key)?),
             keys::SHELL => child.shell(object.read(key)?),
-            keys::ELONGATE => child.elongated(vector(&object)?),
+            keys::ELONGATE => child.elongated(vector(object)?),
             keys::MIRROR => {
                 let axis = object.word(key, &keys::AXES)?;
                 if axis >= D {
                     let message = "there is no z in 2D: mirror \"x\" or \"y\"";
-                    return Err(Problem::new(message).of_dimension().under(key));
+                    return Err(Problem::new(message).of_dimension().under(key).into());
                 }
                 child.mirrored(axis)
             }
@@ -137,35 +182,34 @@ impl<'a> Builder<'a> {
                 let rate: f64 = object.read(key)?;
                 let is_degrees = key == keys::TWIST_DEGREES;
                 let rate = if is_degrees { rate.to_radians() } else { rate };
-                return Self::twisted(child, key, rate).map(|shape| Built { shape, size });
+                return Self::twisted(child, key, rate);
             }
             _ => {
-                let translation: Option<Vec<f64>> = object.read_if(keys::TRANSLATE)?;
-                let rotation = pose::one_rotation(
-                    object.read_if(keys::ROTATE_DEGREES)?,
-                    object.read_if(keys::ROTATION)?,
-                );
-                let rotation = rotation.map_err(Problem::new)?;
+                let (degrees, rows) = Problems::both(
+                    object.read_if(keys::ROTATE_DEGREES),
+                    object.read_if(keys::ROTATION),
+                )?;
+                let rotation = pose::one_rotation(degrees, rows).map_err(Problem::new);
+                let (translation, rotation) =
+                    Problems::both(object.read_if::<Vec<f64>>(keys::TRANSLATE), rotation)?;
                 let translation = (keys::TRANSLATE, translation.as_deref());
                 child.placed(&pose::pose(translation, rotation.as_ref())?)
             }
         };
         let number = if keys::MOVES.contains(&key) { keys::TRANSLATE } else { key };
-        let shape = shape.map_err(|error| refused(number, error))?;
-        Ok(Built { shape, size })
+        shape.map_err(|error| refused(number, error).into())
     }
 }
 
 /// The two shapes of a list.
 fn two<const D: usize>(shapes: Vec<Shape<D>>, key: &str) -> Result<[Shape<D>; 2], Problem> {
     let count = shapes.len();
-    shapes
-        .try_into()
-        .map_err(|_| Problem::new(format!("{key} must have 2 shapes, got {count}")).under(key))
+    let message = || format!("{key} must have 2 shapes, got {count}");
+    shapes.try_into().map_err(|_| Problem::new(message()).under(key))
 }
 
 /// The profile of a smooth boolean; quadratic if left out.
-fn profile(object: &Object<'_>) -> Result<Profile, Problem> {
+fn profile(object: &Object<'_>) -> Result<Profile, Problems> {
     if !object.has(keys::PROFILE) {
         return Ok(Profile::Quadratic);
     }
@@ -174,9 +218,9 @@ fn profile(object: &Object<'_>) -> Result<Profile, Problem> {
 }
 
 /// One number for each axis, under the key of the operator.
-fn vector<const D: usize>(object: &Object<'_>) -> Result<[f64; D], Problem> {
+fn vector<const D: usize>(object: &Object<'_>) -> Result<[f64; D], Problems> {
     let numbers: Vec<f64> = object.read(object.head)?;
-    pose::array(&numbers).map_err(|problem| problem.under(object.head))
+    pose::array(&numbers).map_err(|problem| problem.under(object.head).into())
 }
 
 /// Rows of copies, along the axes that have one.
@@ -199,22 +243,23 @@ struct Row {
 }
 
 /// The copies along each axis; a problem seen from `rows`.
-fn copies<const D: usize>(rows: &Value) -> Result<[Copies; D], Problem> {
+fn copies<const D: usize>(rows: &Value) -> Result<[Copies; D], Problems> {
     let rows: Rows = json::read(rows)?;
     if D == 2 && rows.z.is_some() {
         let problem = Problem::new("there is no z in 2D: repeat along x or y");
-        return Err(problem.of_dimension().under("z"));
+        return Err(problem.of_dimension().under("z").into());
     }
     let axes = [("x", rows.x), ("y", rows.y), ("z", rows.z)];
     if axes.iter().all(|(_, row)| row.is_none()) {
-        return Err(Problem::new("repeat must have a row along at least one axis"));
+        let message = "repeat must have a row along at least one axis";
+        return Err(Problem::new(message).into());
     }
     let mut copies = [Copies::One; D];
     for (copies, (axis, row)) in copies.iter_mut().zip(axes) {
         *copies = match row {
             None | Some(Row { spacing: None, first: Some(0), last: Some(0) }) => Copies::One,
             Some(Row { spacing: None, .. }) => {
-                return Err(Problem::new("missing key `spacing`").under(axis));
+                return Err(Problem::missing("spacing", "").under(axis).into());
             }
             Some(Row { spacing: Some(spacing), first: None, last: None }) => {
                 Copies::Endless { spacing }
@@ -222,7 +267,9 @@ fn copies<const D: usize>(rows: &Value) -> Result<[Copies; D], Problem> {
             Some(Row { spacing: Some(spacing), first: Some(first), last: Some(last) }) => {
                 Copies::Between { spacing, first, last }
             }
-            Some(_) => return Err(Problem::new("first and last go together").under(axis)),
+            Some(_) => {
+                return Err(Problem::new("first and last go together").under(axis).into());
+            }
         };
     }
     Ok(copies)

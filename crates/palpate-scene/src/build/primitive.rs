@@ -9,26 +9,27 @@ use palpate_field::{Shape, ShapeError, Unit};
 use serde_json::{Map, Value};
 
 use super::object::check_description;
+use crate::advice;
 use crate::catalogue::{self, Signature, file_key};
 use crate::json::{self, found};
 use crate::keys::DESCRIPTION;
+use crate::names::{nearest, shortened, unknown};
 use crate::pose;
-use crate::problem::{Problem, unknown};
+use crate::problem::Problem;
+use crate::problems::Problems;
 use crate::scene::Dimension;
 
 /// Makes the primitive called `name`; its weight is the number of nodes it counts as.
 pub(super) fn primitive<const D: usize>(
     name: &str,
     arguments: &Value,
-) -> Result<(Shape<D>, usize), Problem> {
-    read(name, arguments).map_err(|problem| problem.under(name))
+) -> Result<(Shape<D>, usize), Problems> {
+    read(name, arguments).map_err(|problems| problems.under(name))
 }
 
-fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usize), Problem> {
+fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usize), Problems> {
     let Value::Object(given) = arguments else {
-        let message =
-            format!("must be an object with its parameters, got {}", found(arguments));
-        return Err(Problem::about(message));
+        return Err(no_object::<D>(name, arguments).into());
     };
     let candidates = catalogue::named(name);
     let here = candidates.iter().find(|signature| signature.dimension.count() == D);
@@ -36,46 +37,87 @@ fn read<const D: usize>(name: &str, arguments: &Value) -> Result<(Shape<D>, usiz
     let Some((entry, signature)) = Entry::<D>::find(name).zip(here) else {
         let there = other.map_or(Dimension::Two, |signature| signature.dimension);
         let message = format!("`{name}` is a {there} shape, this place is {D}D");
-        return Err(Problem::new(message).of_dimension());
+        return Err(Problem::new(message).of_dimension().into());
     };
-    check_description(given)?;
-    check_keys(given, signature, other)?;
-    let mut arguments = Vec::with_capacity(entry.parameters.len());
-    for parameter in entry.parameters {
-        let Some((key, value)) = given_for(given, parameter)? else {
-            let key = file_key(parameter);
-            let missing = Problem::new(format!("missing key `{key}`: {}", parameter.about));
-            let is_elsewhere_needless = other.is_some_and(|o| o.parameter(&key).is_none());
-            return Err(if is_elsewhere_needless { missing.of_dimension() } else { missing });
-        };
-        let argument = argument(parameter.kind, value)
-            .and_then(|argument| check_dimension::<D>(&argument).map(|()| argument))
-            .map_err(|problem| problem.under(key))?;
-        arguments.push(match argument {
-            Argument::Number(degrees) if key != parameter.name => {
-                Argument::Number(degrees.to_radians())
+    let mut wrong = Problems::default();
+    wrong.kept(check_description(given));
+    let meant = meant(given, signature, other, &mut wrong);
+    let mut arguments = Vec::with_capacity(signature.parameters.len());
+    for parameter in signature.parameters {
+        let key = file_key(parameter);
+        let value = match wrong.kept(given_for(given, parameter)) {
+            Some(Some(value)) => value,
+            Some(None) if !meant.iter().any(|slip| *slip == key) => {
+                wrong.add(missing(parameter, other));
+                continue;
             }
-            other => other,
-        });
+            _ => continue,
+        };
+        arguments.extend(wrong.kept(argument::<D>(parameter, value)));
     }
-    let shape = entry.build(&arguments).map_err(|error| refused(entry, given, error))?;
+    if let Some(alias) = signature.alias {
+        arguments = alias.arguments(arguments);
+    }
+    let built = if wrong.is_failed() {
+        Err(Problems::told())
+    } else {
+        entry.build(&arguments).map_err(|error| refused(entry, given, error).into())
+    };
+    let shape = wrong.end(built)?;
     Ok((shape, arguments.iter().map(weight).sum::<usize>().max(1)))
 }
 
-/// Checks that the primitive has a parameter of each key; `other` is the primitive of that name in
-/// the other dimension.
-fn check_keys(
+/// The problem of arguments that are no object.
+fn no_object<const D: usize>(name: &str, arguments: &Value) -> Problem {
+    let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
+    let such_as = advice::arguments(name, dimension)
+        .map(|example| format!(", such as {example}"))
+        .unwrap_or_default();
+    let found = found(arguments);
+    Problem::about(format!("must be an object with its parameters{such_as}, got {found}"))
+}
+
+/// The problem of a parameter that is not there; `other` is the primitive of that name in the
+/// other dimension.
+fn missing(parameter: &Parameter, other: Option<&Signature>) -> Problem {
+    let key = file_key(parameter);
+    let missing = Problem::missing(&key, parameter.about);
+    let is_elsewhere_needless = other.is_some_and(|other| other.parameter(&key).is_none());
+    if is_elsewhere_needless { missing.of_dimension() } else { missing }
+}
+
+/// Checks that the primitive has a parameter of each key, and returns the parameters that unknown
+/// keys may be slips of; `other` is the primitive of that name in the other dimension.
+fn meant(
     given: &Map<String, Value>,
     signature: &Signature,
     other: Option<&Signature>,
-) -> Result<(), Problem> {
-    let is_known = |key: &String| *key == DESCRIPTION || signature.parameter(key).is_some();
-    let Some(key) = given.keys().find(|key| !is_known(key)) else { return Ok(()) };
+    wrong: &mut Problems,
+) -> Vec<String> {
+    let is_known = |key: &&String| *key == DESCRIPTION || signature.parameter(key).is_some();
     let known: Vec<_> = signature.parameters.iter().map(file_key).collect();
     let known: Vec<_> = known.iter().map(AsRef::as_ref).collect();
-    let problem = Problem::new(unknown("key", key, &known)).under(key);
-    let is_known_elsewhere = other.is_some_and(|other| other.parameter(key).is_some());
-    Err(if is_known_elsewhere { problem.of_dimension() } else { problem })
+    let mut meant = Vec::new();
+    for key in given.keys().filter(|key| !is_known(key)) {
+        let problem = Problem::new(unknown_parameter(key, &known, signature)).under(key);
+        let is_known_elsewhere = other.is_some_and(|other| other.parameter(key).is_some());
+        wrong.add(if is_known_elsewhere { problem.of_dimension() } else { problem });
+        meant.extend(nearest(key, &known).map(str::to_owned));
+    }
+    meant
+}
+
+/// What is wrong with a key that no parameter has: what may be meant, or what there is.
+fn unknown_parameter(key: &str, known: &[&str], signature: &Signature) -> String {
+    if nearest(key, known).is_some() {
+        return unknown("key", key, known);
+    }
+    let (key, name) = (shortened(key), signature.name);
+    let parameters = signature.parameters.iter().zip(known);
+    let parameters =
+        parameters.map(|(parameter, key)| format!("`{key}` ({})", parameter.about));
+    let parameters: Vec<_> = parameters.collect();
+    format!("unknown key `{key}`; `{name}` has {}", parameters.join(", "))
 }
 
 /// The key and value given for a parameter: for an angle in degrees, or in radians.
@@ -93,8 +135,24 @@ fn given_for<'a>(
     }
 }
 
+/// Reads the argument of a parameter from its key and value; angles in degrees become radians.
+fn argument<const D: usize>(
+    parameter: &Parameter,
+    (key, value): (&str, &Value),
+) -> Result<Argument, Problems> {
+    let argument =
+        read_argument(parameter.kind, value).map_err(|problems| problems.under(key))?;
+    check_dimension::<D>(&argument).map_err(|problem| problem.under(key))?;
+    Ok(match argument {
+        Argument::Number(degrees) if key != parameter.name => {
+            Argument::Number(degrees.to_radians())
+        }
+        other => other,
+    })
+}
+
 /// Reads an argument of a kind.
-fn argument(kind: ParameterKind, value: &Value) -> Result<Argument, Problem> {
+fn read_argument(kind: ParameterKind, value: &Value) -> Result<Argument, Problems> {
     match kind {
         ParameterKind::Count => json::read(value).map(Argument::Count),
         ParameterKind::Vector | ParameterKind::Direction => {

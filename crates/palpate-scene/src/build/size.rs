@@ -4,6 +4,7 @@
 //! How large shapes grow once references are followed.
 
 use crate::problem::Problem;
+use crate::problems::Problems;
 
 /// The deepest nesting of operators in a scene, through references: twice what
 /// the shapes allow, since translations and unions within unions disappear when
@@ -43,36 +44,45 @@ impl Size {
     }
 }
 
-/// The nodes that were built, of at most [`MOST`].
-#[derive(Debug)]
+/// The nodes that were built, of at most [`MOST`], and the limits that were passed. Each is told
+/// of once: what is too large makes all that holds it too large.
+#[derive(Debug, Default)]
 pub(super) struct Allowance {
     spent: usize,
+    is_spent_told: bool,
+    is_depth_told: bool,
 }
 
 impl Allowance {
-    pub(super) fn new() -> Self {
-        Self { spent: 0 }
+    /// Takes the nodes of a shape that is about to be built at `level`.
+    pub(super) fn take(&mut self, size: Size, level: usize) -> Result<(), Problems> {
+        self.check_depth(level + size.depth)?;
+        self.spent = self.spent.saturating_add(size.nodes);
+        let is_told = &mut self.is_spent_told;
+        refused_once(self.spent > MOST, is_told, || {
+            format!(
+                "with all references followed the scene has more than {MOST} nodes, the most allowed"
+            )
+        })
     }
 
-    /// Takes the nodes of a shape that is about to be built at `level`.
-    pub(super) fn take(&mut self, size: Size, level: usize) -> Result<(), Problem> {
-        check_depth(level + size.depth)?;
-        self.spent = self.spent.saturating_add(size.nodes);
-        if self.spent <= MOST {
-            return Ok(());
-        }
-        Err(Problem::new(format!(
-            "with all references followed the scene has more than {MOST} nodes, the most allowed"
-        )))
+    /// Refuses what is nested too deeply.
+    pub(super) fn check_depth(&mut self, depth: usize) -> Result<(), Problems> {
+        refused_once(depth > DEEPEST, &mut self.is_depth_told, || {
+            format!("shapes are nested more than {DEEPEST} deep, references followed")
+        })
     }
 }
 
-/// Refuses what is nested too deeply.
-pub(super) fn check_depth(depth: usize) -> Result<(), Problem> {
-    if depth <= DEEPEST {
-        return Ok(());
+/// An error if `is_wrong`, which is told unless it was.
+fn refused_once(
+    is_wrong: bool,
+    is_told: &mut bool,
+    message: impl FnOnce() -> String,
+) -> Result<(), Problems> {
+    match (is_wrong, std::mem::replace(is_told, *is_told || is_wrong)) {
+        (false, _) => Ok(()),
+        (true, true) => Err(Problems::told()),
+        (true, false) => Err(Problem::new(message()).into()),
     }
-    Err(Problem::new(format!(
-        "shapes are nested more than {DEEPEST} deep, references followed"
-    )))
 }

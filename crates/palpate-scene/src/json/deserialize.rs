@@ -5,18 +5,14 @@
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
-    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess,
-    SeqAccess, Visitor,
+    DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, MapAccess, SeqAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use crate::problem::{Problem, shortened};
-
-/// `value` as a `T`.
-pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, Problem> {
-    T::deserialize(Node(value))
-}
+use super::reading::Taken;
+use crate::names::shortened;
+use crate::problem::Problem;
 
 /// The value that was found, for a message.
 pub(crate) fn found(value: &Value) -> String {
@@ -28,15 +24,18 @@ pub(crate) fn found(value: &Value) -> String {
     }
 }
 
-/// A value of the tree.
+/// A value of the tree, without what was taken out.
 #[derive(Clone, Copy)]
-struct Node<'t>(&'t Value);
+pub(super) struct Node<'t> {
+    pub(super) value: &'t Value,
+    pub(super) taken: &'t Taken<'t>,
+}
 
 impl<'de> Deserializer<'de> for Node<'_> {
     type Error = Problem;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Problem> {
-        match self.0 {
+        match self.value {
             Value::String(text) => visitor.visit_str(text),
             Value::Number(number) => match (number.as_u64(), number.as_i64()) {
                 (Some(whole), _) => visitor.visit_u64(whole),
@@ -46,16 +45,20 @@ impl<'de> Deserializer<'de> for Node<'_> {
             Value::Bool(value) => visitor.visit_bool(*value),
             Value::Null => visitor.visit_unit(),
             Value::Array(elements) => {
+                let elements: Vec<_> = self.taken.left(elements).collect();
                 let count = elements.len();
-                let mut elements = Elements { elements, next: 0 };
+                let mut elements = Elements { elements, next: 0, taken: self.taken };
                 let value = visitor.visit_seq(&mut elements)?;
-                let taken = elements.next;
-                if taken == count {
+                let wanted = elements.next;
+                if wanted == count {
                     return Ok(value);
                 }
-                Err(Problem::about(format!("must be a list of {taken}, got {count}")))
+                Err(Problem::about(format!("must be a list of {wanted}, got {count}")))
             }
-            Value::Object(entries) => visitor.visit_map(Entries::new(entries)),
+            Value::Object(entries) => {
+                let entries = self.taken.entries(self.value, entries).into_iter();
+                visitor.visit_map(Entries { entries, open: None, taken: self.taken })
+            }
         }
     }
 
@@ -78,7 +81,7 @@ impl<'de> Deserializer<'de> for Node<'_> {
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Problem> {
-        match self.0 {
+        match self.value {
             Value::String(text) => visitor.visit_enum(Word(text)),
             other => {
                 let expected = format!("one of \"{}\"", variants.join("\", \""));
@@ -95,7 +98,7 @@ impl<'de> Deserializer<'de> for Node<'_> {
         _fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Problem> {
-        match self.0 {
+        match self.value {
             Value::Object(_) => self.deserialize_any(visitor),
             other => {
                 let found = found(other);
@@ -111,8 +114,9 @@ impl<'de> Deserializer<'de> for Node<'_> {
 }
 
 struct Elements<'t> {
-    elements: &'t [Value],
+    elements: Vec<&'t Value>,
     next: usize,
+    taken: &'t Taken<'t>,
 }
 
 impl<'de> SeqAccess<'de> for &mut Elements<'_> {
@@ -125,7 +129,8 @@ impl<'de> SeqAccess<'de> for &mut Elements<'_> {
         let Some(element) = self.elements.get(self.next) else { return Ok(None) };
         let index = self.next;
         self.next += 1;
-        seed.deserialize(Node(element)).map(Some).map_err(|problem| problem.at(index))
+        let node = Node { value: element, taken: self.taken };
+        seed.deserialize(node).map(Some).map_err(|problem| problem.at(index))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -134,15 +139,10 @@ impl<'de> SeqAccess<'de> for &mut Elements<'_> {
 }
 
 struct Entries<'t> {
-    entries: serde_json::map::Iter<'t>,
+    entries: std::vec::IntoIter<(&'t str, &'t Value)>,
     /// The entry whose key was read and whose value comes next.
-    open: Option<(&'t String, &'t Value)>,
-}
-
-impl<'t> Entries<'t> {
-    fn new(entries: &'t Map<String, Value>) -> Self {
-        Self { entries: entries.iter(), open: None }
-    }
+    open: Option<(&'t str, &'t Value)>,
+    taken: &'t Taken<'t>,
 }
 
 impl<'de> MapAccess<'de> for Entries<'_> {
@@ -154,7 +154,7 @@ impl<'de> MapAccess<'de> for Entries<'_> {
     ) -> Result<Option<K::Value>, Problem> {
         self.open = self.entries.next();
         let Some((key, _)) = self.open else { return Ok(None) };
-        let text: StrDeserializer<'_, Problem> = key.as_str().into_deserializer();
+        let text: StrDeserializer<'_, Problem> = key.into_deserializer();
         seed.deserialize(text).map(Some).map_err(|problem| problem.under(key))
     }
 
@@ -165,7 +165,8 @@ impl<'de> MapAccess<'de> for Entries<'_> {
         let Some((key, value)) = self.open else {
             return Err(Problem::new("a value without its key"));
         };
-        seed.deserialize(Node(value)).map_err(|problem| problem.under(key))
+        let node = Node { value, taken: self.taken };
+        seed.deserialize(node).map_err(|problem| problem.under(key))
     }
 
     fn size_hint(&self) -> Option<usize> {

@@ -3,71 +3,42 @@
 
 //! A JSON text, checked and with the place of everything in it.
 
-use std::collections::HashSet;
-
 use jsonc_parser::ast::{ObjectProp, Value as Tree};
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
-use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::{Map, Value};
 
-use crate::error::SceneError;
-use crate::problem::{Problem, Step, shortened};
+use super::reading::Reading;
+use super::source::Source;
+use crate::error::{MOST, SceneError, SceneProblem};
+use crate::names::shortened;
+use crate::problem::{Problem, Step};
+use crate::problems::Problems;
+use crate::scene::Scene;
 
 /// How deep objects and lists may nest: what two of them for each of the 64
 /// levels of a shape need, twice over. Deeper ones could exhaust the stack.
 const DEEPEST: usize = 250;
 
-/// A place in a text, in characters from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Position {
-    pub(crate) line: usize,
-    pub(crate) column: usize,
-}
-
-impl Position {
-    fn of_byte(text: &str, byte: usize) -> Self {
-        let before = text.get(..byte).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Self {
-            line: before.bytes().filter(|b| *b == b'\n').count() + 1,
-            column: before.get(line_start..).map_or(0, |line| line.chars().count()) + 1,
-        }
-    }
-}
-
-/// How many characters the first `bytes` of a line are; serde counts bytes.
-fn characters(text: &str, line: usize, bytes: usize) -> usize {
-    let line = text.split('\n').nth(line.saturating_sub(1)).unwrap_or_default();
-    line.char_indices().take_while(|(at, _)| *at < bytes).count()
-}
-
 /// A JSON text, its value, and the tree that knows the places.
 pub(crate) struct Document<'a> {
-    text: &'a str,
+    source: &'a Source<'a>,
     tree: Tree<'a>,
     value: Value,
+    /// Duplicate keys, of which the last is in the value, and numbers out of range, for which a
+    /// number within it is.
+    wrong: Vec<Problem>,
 }
 
 impl<'a> Document<'a> {
     /// Reads one JSON value, strictly: a key that is there twice and a number beyond the range of
-    /// `f64` are errors.
-    pub(crate) fn parse(text: &'a str) -> Result<Self, SceneError> {
-        // serde_json judges the grammar; the other parser, made for JSON with
+    /// `f64` are problems.
+    pub(crate) fn parse(source: &'a Source<'a>) -> Result<Self, SceneError> {
+        // Serde has judged the grammar; the other parser, made for JSON with
         // comments, is more tolerant of odd whitespace and control characters.
-        if let Err(error) = serde_json::from_str::<IgnoredAny>(text) {
-            let full = error.to_string();
-            let end = full.rfind(" at line ").unwrap_or(full.len());
-            return Err(SceneError {
-                path: String::new(),
-                line: error.line(),
-                column: characters(text, error.line(), error.column()),
-                problem: format!("not JSON: {}", full.get(..end).unwrap_or(&full)),
-                cause: None,
-            });
-        }
+        let text = source.readable()?;
         let at = |message: String, byte| {
-            Problem::new(message).located(Some(Position::of_byte(text, byte)))
+            source.error([Problem::new(message).located(Some(source.position(byte)))])
         };
         if let Some((depth, byte)) = too_deep(text) {
             let message = format!(
@@ -81,71 +52,140 @@ impl<'a> Document<'a> {
         let Some(tree) = parsed.value else {
             return Err(at("not JSON: nothing there".into(), 0));
         };
-        let mut document = Self { text, tree, value: Value::Null };
-        document.value = value(&document.tree).map_err(|problem| document.locate(problem))?;
-        Ok(document)
+        let mut wrong = Vec::new();
+        let value = value(&tree, &mut wrong);
+        Ok(Self { source, tree, value, wrong })
     }
 
     /// The JSON value.
-    pub(crate) fn into_value(self) -> Value {
-        self.value
+    pub(crate) fn into_value(self) -> Result<Value, SceneError> {
+        if self.source.is_good() && self.wrong.is_empty() {
+            return Ok(self.value);
+        }
+        Err(self.error(Problems::default()))
     }
 
-    /// The text deserialised as a `T`.
-    pub(crate) fn read<T: DeserializeOwned>(&self) -> Result<T, Problem> {
-        super::read(&self.value)
+    /// The scene, which `build` checks.
+    pub(crate) fn scene(
+        &self,
+        build: impl FnOnce(&Scene) -> Result<(), Problems>,
+    ) -> Result<Scene, SceneError> {
+        let mut reading = Reading::new(&self.value);
+        let scene: Option<Scene> = reading.read();
+        let is_built = scene.is_some() && reading.is_buildable();
+        if let (Some(scene), true) = (&scene, is_built) {
+            reading.add_built(build(scene).err().unwrap_or_default());
+        }
+        let problems = reading.into_problems();
+        let is_good = self.source.is_good() && self.wrong.is_empty() && !problems.is_failed();
+        match scene.filter(|_| is_good) {
+            Some(scene) => Ok(scene),
+            None if is_built => Err(self.error(problems)),
+            None => Err(self.error(problems).and_maybe_more()),
+        }
+    }
+
+    /// The error of the text and of what is wrong with the value, but for what is wrong where the
+    /// text already is.
+    fn error(&self, problems: Problems) -> SceneError {
+        let found = problems.into_vec();
+        let found = found.iter().filter(|problem| !self.is_told(problem));
+        let all = self.wrong.iter().chain(found);
+        self.source.error(all.map(|problem| self.locate(problem)))
+    }
+
+    /// `true` if the text is wrong where a problem is.
+    fn is_told(&self, problem: &Problem) -> bool {
+        let (_, place) = self.place(problem);
+        let is_inside = |wrong: &Problem| {
+            let mut steps = wrong.steps();
+            problem.steps().all(|step| steps.next() == Some(step))
+        };
+        !matches!(place, Tree::Object(_))
+            && (self.source.is_guessed(place.range().start..place.range().end)
+                || self.wrong.iter().any(is_inside))
     }
 
     /// `problem` with the place of the deepest value on its path.
-    pub(crate) fn locate(&self, problem: Problem) -> SceneError {
-        let mut place = self.tree.range().start;
-        let mut tree = Some(&self.tree);
+    fn locate(&self, problem: &Problem) -> SceneProblem {
+        let (start, _) = self.place(problem);
+        problem.clone().located(Some(self.source.position(start)))
+    }
+
+    /// The deepest value on the path of a problem, and where it, or its key, begins.
+    fn place(&self, problem: &Problem) -> (usize, &Tree<'a>) {
+        let (mut start, mut tree) = (self.tree.range().start, &self.tree);
         for step in problem.steps() {
             let next = match (step, tree) {
-                (Step::Key(key), Some(Tree::Object(object))) => object
+                (Step::Key(key), Tree::Object(object)) => object
                     .properties
                     .iter()
                     // Of duplicates the last is the one too many.
                     .rfind(|property| name(property) == key)
                     .map(|property| (property.range.start, &property.value)),
-                (Step::Index(index), Some(Tree::Array(array))) => {
+                (Step::Index(index), Tree::Array(array)) => {
                     array.elements.get(*index).map(|element| (element.range().start, element))
                 }
                 _ => None,
             };
             match next {
-                Some((start, inner)) => (place, tree) = (start, Some(inner)),
+                Some(inner) => (start, tree) = inner,
                 None => break,
             }
         }
-        problem.located(Some(Position::of_byte(self.text, place)))
+        (start, tree)
     }
 }
 
-/// The value of a tree.
-fn value(tree: &Tree<'_>) -> Result<Value, Problem> {
-    Ok(match tree {
+/// The value of a tree; what is wrong in it is added to `wrong`.
+fn value(tree: &Tree<'_>, wrong: &mut Vec<Problem>) -> Value {
+    match tree {
         Tree::StringLit(text) => Value::String(text.value.clone().into_owned()),
-        Tree::NumberLit(literal) => number(literal.value)?,
+        Tree::NumberLit(literal) => number(literal.value).unwrap_or_else(|problem| {
+            add(wrong, problem);
+            f64::MAX.into()
+        }),
         Tree::BooleanLit(literal) => Value::Bool(literal.value),
         Tree::NullKeyword(_) => Value::Null,
         Tree::Array(array) => {
             let elements = array.elements.iter().enumerate();
-            let element = |(i, tree)| value(tree).map_err(|problem| problem.at(i));
-            elements.map(element).collect::<Result<_, _>>()?
+            let element = |(i, tree)| {
+                let known = wrong.len();
+                let value = value(tree, wrong);
+                seen_from(&mut wrong[known..], |problem| problem.at(i));
+                value
+            };
+            elements.map(element).collect()
         }
         Tree::Object(object) => {
-            refuse_duplicates(&object.properties)?;
-            let entry = |property: &ObjectProp<'_>| {
-                let key = name(property);
-                let value = value(&property.value).map_err(|problem| problem.under(key))?;
-                Ok((key.to_owned(), value))
-            };
-            Value::Object(
-                object.properties.iter().map(entry).collect::<Result<Map<_, _>, _>>()?,
-            )
+            let mut entries = Map::with_capacity(object.properties.len());
+            for property in &object.properties {
+                let (key, known) = (name(property), wrong.len());
+                let value = value(&property.value, wrong);
+                seen_from(&mut wrong[known..], |problem| problem.under(key));
+                if entries.insert(key.to_owned(), value).is_some() {
+                    let shown = shortened(key);
+                    let message = format!("duplicate key `{shown}`");
+                    add(wrong, Problem::new(message).under(key));
+                }
+            }
+            Value::Object(entries)
         }
-    })
+    }
+}
+
+/// Adds a problem, if it is not one of too many to tell.
+fn add(wrong: &mut Vec<Problem>, problem: Problem) {
+    if wrong.len() <= MOST {
+        wrong.push(problem);
+    }
+}
+
+/// Changes the problems of a part to those of what holds it.
+fn seen_from(wrong: &mut [Problem], change: impl Fn(Problem) -> Problem) {
+    for problem in wrong {
+        *problem = change(problem.clone());
+    }
 }
 
 /// Reads whole numbers as integers, for counts, and all others as `f64`.
@@ -163,17 +203,6 @@ fn number(literal: &str) -> Result<Value, Problem> {
         _ => {
             let literal = shortened(literal);
             Err(Problem::about(format!("must be within the range of numbers, got {literal}")))
-        }
-    }
-}
-
-fn refuse_duplicates(properties: &[ObjectProp<'_>]) -> Result<(), Problem> {
-    let mut seen = HashSet::with_capacity(properties.len());
-    match properties.iter().map(name).find(|key| !seen.insert(*key)) {
-        None => Ok(()),
-        Some(key) => {
-            let shown = shortened(key);
-            Err(Problem::new(format!("duplicate key `{shown}`")).under(key))
         }
     }
 }
@@ -234,7 +263,7 @@ mod tests {
     #[test]
     fn brackets_in_strings_do_not_nest() {
         let text = format!("[\"{}\\\"[\"]", "[".repeat(1000));
-        assert!(Document::parse(&text).is_ok());
+        assert!(Document::parse(&Source::of(&text)).is_ok());
         let deep = format!("{}{}", "[".repeat(251), "]".repeat(251));
         assert_eq!(too_deep(&deep), Some((251, 250)));
     }
@@ -244,7 +273,8 @@ mod tests {
         for text in
             ["", "{} {}", "[1,]", "[01]", "// no\n1", "'a'", "\u{b}1", "\"\u{1}\"", "[1 2]"]
         {
-            let error = Document::parse(text).map(|_| ()).unwrap_err();
+            let source = Source::of(text);
+            let error = Document::parse(&source).and_then(Document::into_value).unwrap_err();
             assert!(error.to_string().contains("not JSON: "), "{text:?}: {error}");
         }
     }

@@ -5,8 +5,15 @@
 
 mod deserialize;
 mod document;
+mod grammar;
+mod reading;
+mod source;
+mod tokens;
+mod word;
 mod write;
 
-pub(crate) use deserialize::{found, read};
-pub(crate) use document::{Document, Position};
+pub(crate) use deserialize::found;
+pub(crate) use document::Document;
+pub(crate) use reading::read;
+pub(crate) use source::{Position, Source};
 pub(crate) use write::write;

@@ -26,7 +26,7 @@ pub(crate) use shape::Writer;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let cup = Shape::cylinder(0.04, 0.09)? - Shape::cylinder(0.037, 0.08)?;
 /// let cup = SceneBody::new("cup", cup)
-///     .at(Pose::translation([0.0, 0.045, 0.0].into()))
+///     .at(Pose::translation([0.0, 0.045, 0.0]))
 ///     .made_of(Material::wood());
 /// let scene = Scene::new(Dimension::Three).with_bodies([cup])?;
 /// assert_eq!(Scene::from_json(&scene.to_json())?, scene);
@@ -99,7 +99,7 @@ impl Scene {
     /// let floor = Shape::from_fn(Promise::lipschitz(None, 1.0), |p| p.0[1]);
     /// let floor = SceneBody::new("floor", Shape::cuboid([1.0, 0.1, 1.0])? | floor);
     /// let error = Scene::new(Dimension::Three).with_bodies([floor]).unwrap_err();
-    /// assert_eq!(error.path, "bodies[0].shape.union[1]");
+    /// assert_eq!(error.first().path, "bodies[0].shape.union[1]");
     /// # Ok(())
     /// # }
     /// ```
@@ -110,14 +110,14 @@ impl Scene {
         let bodies: Vec<_> = bodies.into_iter().collect();
         if self.dimension().count() != D {
             let message = format!("the scene is {}, its bodies are {D}D", self.dimension());
-            return Err(Problem::new(message).under("bodies").located(None));
+            return Err(Problem::new(message).under("bodies").into());
         }
         let mut writer = Writer::new(std::mem::take(&mut self.shapes));
         bodies.iter().for_each(|body| writer.count(&body.shape));
         for body in &bodies {
             let place = self.bodies.len();
             let written = written(&mut writer, body)
-                .map_err(|problem| problem.at(place).under("bodies").located(None))?;
+                .map_err(|problem| problem.at(place).under("bodies"))?;
             self.bodies.push(written);
         }
         self.shapes = writer.finish();

@@ -37,7 +37,7 @@ fn a_negative_radius_is_found_in_its_line() {
         error.to_string(),
         "shapes.cup.difference[1].cylinder.radius, line 14: radius must be positive, got -0.02 m"
     );
-    assert_eq!((error.line, error.column), (14, 13));
+    assert_eq!((error.first().line, error.first().column), (14, 13));
 }
 
 #[test]
@@ -59,19 +59,31 @@ fn bad_files_are_refused_with_their_place() {
     let bodies = r#""bodies": [{ "name": "a", "shape": { "ball": { "radius": 1 } } }]"#;
     check_all(
         &[
-            ("", "line 1: not JSON: EOF while parsing a value", Refuses),
-            ("{", "line 1: not JSON: EOF while parsing an object", Refuses),
-            ("[]", "line 1: the file must be an object, got a list", Refuses),
-            ("{}", "line 1: missing key `palpate`", Refuses),
+            ("", "line 1: not JSON: the file is empty", Refuses),
             (
-                "{\n\"palpate\": 2}",
+                "{",
+                "line 1, column 2: not JSON: the file ends here, but `}` is missing for the `{` of \
+                 line 1\n  {\n   ^",
+                Refuses,
+            ),
+            ("[]", "line 1: the file must be an object, got a list", Refuses),
+            (
+                "{}",
+                "3 problems, and maybe more:\n  \
+                 line 1: missing key `palpate`: the version of the format, 1\n  \
+                 line 1: missing key `dimension`: 2 for the plane, 3 for space\n  \
+                 line 1: missing key `bodies`: what is there to be touched",
+                Refuses,
+            ),
+            (
+                "{\n\"palpate\": 2, \"dimension\": 3, BODIES}",
                 "palpate, line 2: palpate must be 1, the one version of the format so far, got 2",
                 Refuses,
             ),
             (
-                "{\"palpate\": 1, \"palpate\": 1}",
+                "{\"palpate\": 1, \"palpate\": 1, \"dimension\": 3, BODIES}",
                 "palpate, line 1: duplicate key `palpate`",
-                Refuses,
+                Accepts,
             ),
             (
                 "{\"palpate\": 1, \"dimension\": 4, BODIES}",
@@ -83,7 +95,11 @@ fn bad_files_are_refused_with_their_place() {
                 "dimension, line 1: dimension must be 2 or 3, got \"3\"",
                 Refuses,
             ),
-            ("{\"palpate\": 1, \"dimension\": 3}", "line 1: missing key `bodies`", Refuses),
+            (
+                "{\"palpate\": 1, \"dimension\": 3}",
+                "line 1: missing key `bodies`: what is there to be touched",
+                Refuses,
+            ),
             (
                 "{\"palpate\": 1, \"dimension\": 3, \"bodies\": []}",
                 "bodies, line 1: bodies must have at least 1 body, got 0",
@@ -129,7 +145,12 @@ fn bad_shapes_are_refused_with_their_place() {
                 "shapes.a.ball.radius, line 4: radius must be finite and at most 1e15 in size, got 1e16 m",
                 Accepts,
             ),
-            (r#"{ "ball": { "radius": NaN } }"#, "line 4: not JSON: expected value", Refuses),
+            (
+                r#"{ "ball": { "radius": NaN } }"#,
+                "line 4, column 28: not JSON: `NaN` is no number that JSON, or a scene, can have\n  \
+                 \"a\": { \"ball\": { \"radius\": NaN } }\n                             ^",
+                Refuses,
+            ),
             (
                 r#"{ "ball": {} }"#,
                 "shapes.a.ball, line 4: missing key `radius`: the radius",
@@ -137,7 +158,7 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "ball": 3 }"#,
-                "shapes.a.ball, line 4: ball must be an object with its parameters, got 3",
+                "shapes.a.ball, line 4: ball must be an object with its parameters, such as { \"radius\": 0.7 }, got 3",
                 Refuses,
             ),
             (
@@ -177,7 +198,9 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "regular_star": { "branches": 2.5, "outer_radius": 2, "inner_radius": 1 } }"#,
-                "shapes.a.regular_star.branches, line 4: branches must be a whole number, zero or more, got 2.5",
+                "2 problems:\n  \
+                 shapes.a.regular_star.branches, line 4: branches must be a whole number, zero or more, got 2.5\n  \
+                 bodies[0].shape, line 6: shape `a` cannot be used in 3D: `regular_star` is a 2D shape, this place is 3D",
                 Refuses,
             ),
             (
@@ -187,7 +210,9 @@ fn bad_shapes_are_refused_with_their_place() {
             ),
             (
                 r#"{ "regular_star": { "branches": 5, "outer_radius": -2, "inner_radius": 1 } }"#,
-                "shapes.a.regular_star.outer_radius, line 4: outer_radius must be positive, got -2 m",
+                "2 problems:\n  \
+                 shapes.a.regular_star.outer_radius, line 4: outer_radius must be positive, got -2 m\n  \
+                 bodies[0].shape, line 6: shape `a` cannot be used in 3D: `regular_star` is a 2D shape, this place is 3D",
                 Refuses,
             ),
             // Operators.
@@ -441,6 +466,28 @@ fn bad_shapes_are_refused_with_their_place() {
                 r#"{ "shape": "cupp" }"#,
                 "shapes.a, line 4: unknown shape `cupp`, did you mean `cup`?",
                 Accepts,
+            ),
+            (
+                r#""ball""#,
+                "shapes.a, line 4: unknown shape `ball`; a text is the name of one of `shapes`, and what makes a shape stands in an object: { \"ball\": { \"radius\": 0.7 } }",
+                Accepts,
+            ),
+            (
+                r#"{ "shape": "union" }"#,
+                "shapes.a, line 4: unknown shape `union`; a text is the name of one of `shapes`, and what makes a shape stands in an object: { \"union\": [ …, … ] }",
+                Accepts,
+            ),
+            (
+                r#"{ "type": "torus" }"#,
+                "shapes.a.type, line 4: unknown key `type`; what makes the shape is itself the key: { \"torus\": { \"ring_radius\": 0.6, \"radius\": 0.2 } }",
+                Refuses,
+            ),
+            (
+                r#"{ "cuboid": { "half_extents": [1, 2, 3] } }"#,
+                "2 problems:\n  \
+                 shapes.a.cuboid, line 4: missing key `size`: the edge lengths\n  \
+                 shapes.a.cuboid.half_extents, line 4: unknown key `half_extents`; `cuboid` has `size` (the edge lengths)",
+                Refuses,
             ),
             (
                 r#""a""#,

@@ -338,16 +338,16 @@ fn an_opaque_shape_is_named_with_its_type_and_place() {
     let plate = Shape::rectangle([1.0, 2.0]).unwrap();
     let shape = plate.clone() - wave.translated([0.1, 0.0]).unwrap();
     let error = Scene::of_shape("it", &shape).unwrap_err();
-    assert_eq!(error.path, "bodies[0].shape.difference[1].of");
+    assert_eq!(error.first().path, "bodies[0].shape.difference[1].of");
     let problem = "`all::from_code::Wave` is opaque: files hold primitives and operators";
-    assert_eq!(error.problem, problem);
-    assert_eq!((error.line, error.column), (0, 0));
+    assert_eq!(error.first().problem, problem);
+    assert_eq!((error.first().line, error.first().column), (0, 0));
 
     let closure = Shape::from_fn(promise, |p: Vector<Dual<f64, 2>, 2>| p.0[1]);
     let solid = closure.displaced(plate.clone(), 0.1).and_then(|s| (plate & s).extruded(1.0));
     let error = Scene::of_shape("it", &solid.unwrap()).unwrap_err();
-    assert_eq!(error.path, "bodies[0].shape.of.intersection[1].displace[0]");
-    assert!(error.problem.contains("from_code::an_opaque_shape_is"), "{error}");
+    assert_eq!(error.first().path, "bodies[0].shape.of.intersection[1].displace[0]");
+    assert!(error.first().problem.contains("from_code::an_opaque_shape_is"), "{error}");
 }
 
 #[test]
@@ -381,6 +381,8 @@ fn aliases_are_read_as_their_primitives() {
     assert_eq!(solid(r#"{ "sphere": { "radius": 2 } }"#), Shape::sphere(2.0).unwrap());
     let cuboid = Shape::cuboid([1.0, 2.0, 3.0]).unwrap();
     assert_eq!(solid(r#"{ "box": { "size": [1, 2, 3] } }"#), cuboid);
+    assert_eq!(solid(r#"{ "cube": { "size": 2 } }"#), Shape::cube(2.0).unwrap());
+    assert_eq!(flat(r#"{ "square": { "size": 2 } }"#), Shape::square(2.0).unwrap());
     let extruded = solid(r#"{ "extrude": 1, "of": { "circle": { "radius": 2 } } }"#);
     assert_eq!(extruded, circle.extruded(1.0).unwrap());
     for (dimension, shape, problem) in [
@@ -393,6 +395,16 @@ fn aliases_are_read_as_their_primitives() {
             3,
             r#"{ "sphere": { "radius": -2 } }"#,
             "bodies[0].shape.sphere.radius, line 2: radius must be positive, got -2 m",
+        ),
+        (
+            3,
+            r#"{ "cube": { "size": -2 } }"#,
+            "bodies[0].shape.cube.size, line 2: size must be positive, got -2 m",
+        ),
+        (
+            3,
+            r#"{ "cube": { "size": [1, 2, 3] } }"#,
+            "bodies[0].shape.cube.size, line 2: size must be a number, got a list",
         ),
         (
             3,
@@ -414,7 +426,8 @@ fn every_alias_of_the_catalogue_is_a_key_of_the_schema() {
     for alias in palpate_field::catalogue::ALIASES {
         let place = if alias.dimension == 2 { "plane" } else { "space" };
         let keys = &schema["$defs"][place]["Shape"]["properties"];
-        assert_eq!(keys[alias.name]["properties"], keys[alias.of]["properties"]);
+        let [own, others] = [alias.name, alias.of].map(|name| &keys[name]["properties"]);
+        assert_eq!(own == others, alias.parameters.is_none(), "{alias:?}");
         assert!(keys[alias.name].is_object(), "{alias:?}");
     }
 }
@@ -435,9 +448,9 @@ fn a_shape_alone_is_written_and_read_without_a_scene() {
     assert_eq!(WrittenShape::from_json(&written.to_json()).unwrap(), written);
 
     let flat = written.build::<2>().unwrap_err();
-    assert_eq!(flat.path, "union[0].of.cylinder");
+    assert_eq!(flat.first().path, "union[0].of.cylinder");
     let named = WrittenShape::reference("cup").build::<3>().unwrap_err();
     assert_eq!(named.to_string(), "unknown shape `cup`; there are none here");
     let opaque = Shape::from_fn(Promise::lipschitz(None, 1.0), |p| p.0[1]);
-    assert_eq!(WrittenShape::of(&(pair | opaque)).unwrap_err().path, "union[2]");
+    assert_eq!(WrittenShape::of(&(pair | opaque)).unwrap_err().first().path, "union[2]");
 }

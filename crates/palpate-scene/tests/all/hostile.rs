@@ -23,7 +23,9 @@ const BALL: &str = r#"{ "ball": { "radius": 1 } }"#;
 #[test]
 fn deep_json_is_refused_before_it_is_parsed() {
     let limit = "objects and lists are nested 100000 deep, at most 250 are allowed";
-    assert_eq!(error_of(&"[".repeat(100_000)), "line 1: not JSON: EOF while parsing a list");
+    let error = error_of(&"[".repeat(100_000));
+    let open = "`]` is missing for the `[` of line 1, and of 99999 around it";
+    assert!(error.contains(open) && error.len() < 500, "{error}");
     let lists = format!("{}{}", "[".repeat(100_000), "]".repeat(100_000));
     assert_eq!(error_of(&lists), format!("line 1: {limit}"));
     let objects = format!("{}0{}", "{\"a\":".repeat(100_000), "}".repeat(100_000));

@@ -17,3 +17,4 @@ mod random;
 mod refusal;
 mod round_trip;
 mod schema;
+mod several;

@@ -7,7 +7,7 @@ use crate::random::{Generator, Known, known, written};
 use arbtest::arbtest;
 use palpate_field::Shape;
 use palpate_field::catalogue::Entry;
-use palpate_scene::{AnyScene, Dimension, Scene, WrittenBody, schema};
+use palpate_scene::{AnyScene, Dimension, Scene, SceneError, WrittenBody, schema};
 
 /// Set to write the scenes as they should be instead of comparing them.
 const UPDATE: &str = "PALPATE_UPDATE_SCENES";
@@ -32,6 +32,14 @@ fn every_scene_of_the_repository_is_written_as_it_is() {
     }
 }
 
+/// The paths and problems of an error, sorted.
+fn told(error: &SceneError) -> Vec<(&str, &str)> {
+    let mut told: Vec<_> =
+        error.problems().map(|p| (p.path.as_str(), p.problem.as_str())).collect();
+    told.sort_unstable();
+    told
+}
+
 #[test]
 fn random_scenes_come_back_and_are_judged_alike() {
     let generator = Generator::new();
@@ -54,8 +62,8 @@ fn random_scenes_come_back_and_are_judged_alike() {
             }
             (Err(error), Ok(_)) => panic!("refused as data, taken as a file: {error}\n{text}"),
             (Err(error), Err(located)) => {
-                assert_eq!((&error.path, &error.problem), (&located.path, &located.problem));
-                assert!(located.line > 0 && located.column > 0);
+                assert_eq!(told(&error), told(&located), "{text}");
+                assert!(located.problems().all(|p| p.line > 0 && p.column > 0), "{located}");
             }
         }
         Ok(())

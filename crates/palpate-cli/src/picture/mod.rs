@@ -1,18 +1,24 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Samples shapes for pictures, and writes picture files.
+//! Draws shapes, and writes picture files.
+
+mod flat;
+#[cfg(test)]
+mod laws;
 
 use std::path::Path;
 
-use palpate::field::{Aabb, BLOCK, Block, Gradients, Quality, Shape, Vector};
-use palpate::plot::{
-    Figure, Gauge, Isolines, PlotError, Promised, Sampling, Slice, Slope, View,
-};
+use palpate::field::{Aabb, Quality, Rotation, Shape, Vector};
+use palpate::plot::{Figure, Gauge, Isolines, PlotError, Promised, Slice, View};
+
+use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
 use crate::output::{Destination, Files};
+
+pub(crate) use flat::{isolines, outline, slopes, values};
 
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
@@ -34,6 +40,13 @@ pub(crate) trait Drawable<const D: usize> {
 
     /// The parts of a gradient to the right, up, and towards the viewer.
     fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
+
+    /// How cells of the picture lie in space: the rotation from the picture's axes, `None` if
+    /// these run along axes of space, and half the edges of a cell for which they are one.
+    fn cells(plane: &Slice) -> (Option<Rotation<D>>, Vector<f64, D>);
+
+    /// The scene, if it is of this dimension.
+    fn scene(scene: AnyScene) -> Option<BuiltScene<D>>;
 }
 
 /// Marks the dimension of a shape.
@@ -53,6 +66,17 @@ impl Drawable<2> for Dimensions {
     fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
         [x, y, 0.0]
     }
+
+    fn cells(_: &Slice) -> (Option<Rotation<2>>, Vector<f64, 2>) {
+        (None, Vector::constant(1.0))
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<2>> {
+        match scene {
+            AnyScene::Planar(scene) => Some(scene),
+            AnyScene::Spatial(_) => None,
+        }
+    }
 }
 
 impl Drawable<3> for Dimensions {
@@ -70,53 +94,30 @@ impl Drawable<3> for Dimensions {
     fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
         plane.project_gradient(gradient.0)
     }
+
+    fn cells(plane: &Slice) -> (Option<Rotation<3>>, Vector<f64, 3>) {
+        let axes = plane.directions();
+        let runs_along = |axis: [f64; 3]| axis.iter().filter(|x| **x != 0.0).count() == 1;
+        let is_straight = axes.into_iter().all(runs_along);
+        match Rotation::from_rows(std::array::from_fn(|k| axes.map(|axis| axis[k]))) {
+            Ok(_) if is_straight => (None, Vector(plane.normal().map(|x| 1.0 - x.abs()))),
+            Ok(turn) => (Some(turn), Vector([1.0, 1.0, 0.0])),
+            // The axes of a slice are orthonormal; a box that holds any cell is right too.
+            Err(_) => (None, Vector::constant(std::f64::consts::SQRT_2)),
+        }
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<3>> {
+        match scene {
+            AnyScene::Spatial(scene) => Some(scene),
+            AnyScene::Planar(_) => None,
+        }
+    }
 }
 
 /// A point of the plane or of space, as a point of space.
 pub(crate) fn in_space<const D: usize>(point: Vector<f64, D>) -> [f64; 3] {
     point.in_space().0
-}
-
-/// The isolines of `shape` on `plane`.
-pub(crate) fn isolines<const D: usize>(
-    shape: &Shape<D>,
-    plane: &Slice,
-    view: &View,
-    sampling: Sampling,
-) -> Result<Isolines, PlotError>
-where
-    Dimensions: Drawable<D>,
-{
-    let mut points = Vec::new();
-    Isolines::sample(plane, view, sampling, |st, distances| {
-        points.clear();
-        points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
-        shape.distances(&points, distances);
-    })
-}
-
-/// A function of plane coordinates that gives values and gradients of `shape` on `plane`.
-pub(crate) fn slopes<const D: usize>(
-    shape: &Shape<D>,
-    plane: &Slice,
-) -> impl FnMut(&[[f64; 2]], &mut [Slope])
-where
-    Dimensions: Drawable<D>,
-{
-    let mut block = Block::<f64, D, BLOCK>::zero();
-    let mut found = Gradients::<f64, D, BLOCK>::zero();
-    move |points, slopes| {
-        for (points, slopes) in points.chunks(BLOCK).zip(slopes.chunks_mut(BLOCK)) {
-            for (i, st) in points.iter().enumerate() {
-                block.set(i, Dimensions::point(plane, *st));
-            }
-            shape.block_gradients(&block, points.len(), &mut found);
-            for (i, slope) in slopes.iter_mut().enumerate() {
-                let gradient = Dimensions::gradient(plane, found.gradient.get(i));
-                *slope = Slope { value: found.distance.get(i), gradient };
-            }
-        }
-    }
 }
 
 /// The picture of `shape` on `plane` with the colours of `map`.
@@ -145,6 +146,16 @@ where
     }
 }
 
+/// Refuses a width in pixels for a format without pixels.
+pub(crate) fn check_width(format: Format, width: Option<u32>) -> Result<(), Failure> {
+    match (format, width) {
+        (Format::Svg, Some(_)) => {
+            Err(Failure::input("--width is for PNG pictures; an SVG is drawn at any width"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A picture file to be written.
 #[derive(Debug)]
 pub(crate) struct Picture {
@@ -170,6 +181,11 @@ impl Picture {
     /// The path that the command line gave.
     pub(crate) fn path(&self) -> &Path {
         self.destination.name()
+    }
+
+    /// Refuses a width in pixels for a picture without pixels.
+    pub(crate) fn check_width(&self, width: Option<u32>) -> Result<(), Failure> {
+        check_width(self.format, width)
     }
 
     /// Writes `figure`; as a PNG, `width` pixels wide.

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-use arbitrary::Unstructured;
-use palpate_field::{Shape, kernel::Ball};
+//! Guides: laws of their forces, exact forces, and wrong numbers.
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-use super::*;
+use arbitrary::Unstructured;
+use palpate_field::{Shape, Vector, kernel::Ball};
+use palpate_haptics::{Curve, Guide, GuideOptions, Slope};
 use palpate_testkit::cases::each as cases;
 
 type Random<'a, 'b> = &'a mut Unstructured<'b>;
@@ -19,7 +21,7 @@ fn vector(u: Random, most: f64) -> arbitrary::Result<Vector<f64, 3>> {
 
 /// A guide of any kind without a snap distance, with the given damping.
 fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide<3>> {
-    let options = GuideOptions { stiffness: 200.0, damping, ..GuideOptions::default() };
+    let options = GuideOptions::default().with_stiffness(200.0).with_damping(damping);
     let ball = || Shape::from_kernel(Ball::new(0.02).unwrap());
     let (a, b) = (vector(u, 0.05)?, vector(u, 0.05)? + Vector([0.1, 0.0, 0.0]));
     let guide = match u.int_in_range(0..=7)? {
@@ -88,7 +90,7 @@ fn a_closed_path_costs_nothing() {
 #[test]
 fn wells_and_slopes_are_continuous() {
     cases(500, |u| {
-        let options = GuideOptions { stiffness: 200.0, ..GuideOptions::default() };
+        let options = GuideOptions::default().with_stiffness(200.0);
         let ball = Shape::from_kernel(Ball::new(0.02).unwrap());
         let slope = Slope::new(ball, 1.2, [-0.01, 0.05]).unwrap();
         let guides = [Guide::well(Vector::ZERO, 0.04, options), Guide::down(slope, options)];
@@ -107,13 +109,11 @@ fn wells_and_slopes_are_continuous() {
 
 #[test]
 fn a_guide_that_snaps_lets_go_farther_out() {
-    let options = GuideOptions {
-        stiffness: 256.0,
-        snap_distance: 0.0078125,
-        release_distance: Some(0.015625),
-        max_force: 3.0,
-        ..GuideOptions::default()
-    };
+    let options = GuideOptions::default()
+        .with_stiffness(256.0)
+        .with_snap_distance(0.0078125)
+        .with_release_distance(0.015625)
+        .with_max_force(3.0);
     let mut guide = Guide::to_point(Vector::ZERO, options).unwrap();
     let mut at = |x: f64| guide.force(Vector([x, 0.0]), Vector::ZERO)[0];
     assert_eq!(at(0.01), 0.0);
@@ -145,44 +145,8 @@ fn numbers_that_are_none_let_go() {
 }
 
 #[test]
-fn the_closest_point_of_a_long_curve_is_that_of_all_its_segments() {
-    let mut points = Vec::new();
-    for i in 0..1025 {
-        let angle = f64::from(i) * 0.05;
-        points.push(Vector([0.1 * angle.cos(), 1e-4 * f64::from(i), 0.1 * angle.sin()]));
-    }
-    let curve = Curve::polyline(&points).unwrap();
-    cases(300, |u| {
-        let position = vector(u, 0.15)?;
-        let found = (curve.closest(position).point - position).norm();
-        let nearest = points.windows(2).map(|pair| {
-            let way = pair[1] - pair[0];
-            let part = (position - pair[0]).dot(way) / way.dot(way);
-            (pair[0] + way * part.clamp(0.0, 1.0) - position).norm()
-        });
-        assert!((found - nearest.fold(f64::INFINITY, f64::min)).abs() < 1e-14);
-        Ok(())
-    });
-}
-
-#[test]
-fn a_smooth_curve_passes_its_points_and_says_how_far_off_it_is() {
-    let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, -1.0]].map(Vector);
-    let curve = Curve::smooth(&points).unwrap();
-    for point in points {
-        assert!((curve.closest(point).point - point).norm() < 1e-15);
-    }
-    // The middle of the second span, by hand: the mean of its ends plus an eighth of the
-    // difference of its tangents, (3, 2)/2 and (3, −3)/2.
-    let middle = Vector([2.0, 2.0 + 0.3125]);
-    assert!((curve.closest(middle).point - middle).norm() < 1e-14);
-    assert!(curve.deviation() > 0.0 && curve.deviation() < 0.01);
-    assert_eq!(Curve::polyline(&points).unwrap().deviation(), 0.0);
-}
-
-#[test]
 fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
-    let options = GuideOptions { damping: 2.0, ..GuideOptions::default() };
+    let options = GuideOptions::default().with_damping(2.0);
     let (from, to) = (Vector([0.0, 0.0]), Vector([1.0, 0.0]));
     let mut guide = Guide::along_segment(from, to, options).unwrap();
     let speed = Vector([0.25, 0.0]);
@@ -195,7 +159,7 @@ fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
 #[test]
 fn wrong_numbers_are_named() {
     let at = |change: fn(&mut GuideOptions)| {
-        let mut options = GuideOptions { snap_distance: 0.01, ..GuideOptions::default() };
+        let mut options = GuideOptions::default().with_snap_distance(0.01);
         change(&mut options);
         Guide::to_point(Vector([0.0, 0.0]), options).map(|_| ()).map_err(|e| e.to_string())
     };

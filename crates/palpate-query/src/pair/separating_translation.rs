@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! How far a body must move to leave another.
+//! Translations that separate two bodies, and bounds of the minimum translation.
 
 use palpate_field::Vector;
 use palpate_field::scalar::Scalar;
@@ -30,14 +30,14 @@ const STEPS: u32 = 60;
 /// has far to go.
 const PATIENCE: u32 = 30;
 
-/// Beyond so many sizes of what is bounded no way out is looked for.
+/// The longest translation that is tried, in sizes of the bounded bodies.
 const FAR: f64 = 100.0;
 
-/// A translation of the second body after which the bodies do not overlap.
+/// A translation of the second body after which the bodies are proven not to overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Escape<const D: usize> {
+pub struct SeparatingTranslation<const D: usize> {
     /// The direction, a unit vector in world coordinates.
     pub direction: Vector<f64, D>,
     /// How far the second body moves [m]. The separation after that is proven to be at least
@@ -54,24 +54,25 @@ pub struct Escape<const D: usize> {
 /// minimum translation, which physics engines call penetration depth. Its length is zero if
 /// the bodies are apart; `None` if no translation was found.
 ///
-/// That the bodies are apart at the end is proven, and so is [`Escape::at_least`], a lower
+/// That the bodies are apart at the end is proven, and so is [`SeparatingTranslation::at_least`], a lower
 /// bound of the minimum translation. That no other direction is shorter is not.
 ///
 /// The search tries the normal of the overlap, directions all around, and ever closer ones
 /// about the best of them, with the normals at its end. Along a direction the body advances
-/// by as much as it overlaps, which cannot overstep the first way out; after 30 steps the
+/// by as much as it overlaps, which cannot overstep the first place without overlap; after 30 steps the
 /// strides double. Up to there the length is within `limits.tolerance` of the shortest along
 /// its direction. The budget holds for each separation on the way.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Cuboid};
-/// use palpate_query::{Limits, PairWorkspace, escape};
+/// use palpate_query::{Limits, PairWorkspace, separating_translation};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let long = Shape::from_kernel(Cuboid::new(Vector([4.0, 1.0, 1.0]))?);
 /// let cube = Shape::from_kernel(Cuboid::new(Vector([1.0, 1.0, 1.0]))?)
 ///     .translated(Vector([0.3, 0.6, 0.0]))?;
-/// let way = escape(&long, &cube, &Limits::new(1e-4), &mut PairWorkspace::new())?;
+/// let mut workspace = PairWorkspace::new();
+/// let way = separating_translation(&long, &cube, &Limits::new(1e-4), &mut workspace)?;
 /// let way = way.expect("both are bounded");
 /// assert!((way.direction - Vector([0.0, 1.0, 0.0])).norm() < 0.1);
 /// assert!(0.4 < way.length && way.length < 0.402);
@@ -82,18 +83,18 @@ pub struct Escape<const D: usize> {
 /// # Errors
 ///
 /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
-pub fn escape<'a, const D: usize>(
+pub fn separating_translation<'a, const D: usize>(
     a: impl Into<Placed<'a, D>>,
     b: impl Into<Placed<'a, D>>,
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<Option<Escape<D>>, QueryError> {
+) -> Result<Option<SeparatingTranslation<D>>, QueryError> {
     let (a, b) = (a.into(), b.into());
     let size = |body: &Placed<'_, D>| {
         let bounds = body.shape.promise().bounds;
         bounds.map_or(0.0, |bounds| 2.0 * bounds.aabb.half_extents().norm())
     };
-    let mut search = WaysOut {
+    let mut search = DirectionSearch {
         bodies: [a, b],
         limits: limits.with_tolerance(0.5 * limits.tolerance),
         workspace,
@@ -110,7 +111,7 @@ pub fn escape<'a, const D: usize>(
         search.look_around(normal)?;
     }
     let evaluations = search.evaluations;
-    Ok(search.best.map(|(direction, length)| Escape {
+    Ok(search.best.map(|(direction, length)| SeparatingTranslation {
         direction,
         length,
         at_least,
@@ -119,7 +120,7 @@ pub fn escape<'a, const D: usize>(
 }
 
 /// A search under way.
-struct WaysOut<'a, 'w, const D: usize> {
+struct DirectionSearch<'a, 'w, const D: usize> {
     bodies: [Placed<'a, D>; 2],
     limits: Limits,
     workspace: &'w mut PairWorkspace<D>,
@@ -128,7 +129,7 @@ struct WaysOut<'a, 'w, const D: usize> {
     evaluations: u32,
 }
 
-impl<const D: usize> WaysOut<'_, '_, D> {
+impl<const D: usize> DirectionSearch<'_, '_, D> {
     /// The separation after the second body has moved.
     fn at(
         &mut self,

@@ -8,17 +8,20 @@
 //! over directions. Lengths are the memoir's pixels. Sines come from `libm`, so that
 //! the table is the same on every machine.
 
+use std::error::Error;
 use std::fmt::Write;
 
 use palpate_field::kernel::{Ball, Cuboid, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Point, Shape, ShapeError, Vector};
+use palpate_local::{GradientMethod, GradientSampler, angle_between};
+use palpate_query::QueryError;
 
 /// A direction of length one; none where a method has none.
 pub(crate) type Direction = Option<Vector<f64, 2>>;
 
 /// The window of the memoir's program [pixel].
-pub(crate) const WINDOW: [f64; 2] = [1920.0, 1080.0];
+const WINDOW: [f64; 2] = [1920.0, 1080.0];
 
 /// The memoir's least offset [pixel].
 pub(crate) const OFFSET: f64 = 0.005;
@@ -129,94 +132,6 @@ fn smooth_union() -> Box<dyn Fn(Point<2>) -> Direction> {
     })
 }
 
-/// How a gradient is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Method {
-    /// −g/‖g‖ of the vector g to the closest point.
-    ClosestVector,
-    /// Four values at a distance of [`OFFSET`].
-    CentralDifferences,
-    /// Three values and nine halvings, at a distance of [`OFFSET`].
-    Dichotomy,
-    /// The same, at the memoir's distance, which grows with the value.
-    AdaptiveDichotomy,
-    /// The library's.
-    Analytic,
-}
-
-impl Method {
-    fn name(self) -> &'static str {
-        match self {
-            Self::ClosestVector => "closest vector",
-            Self::CentralDifferences => "central differences",
-            Self::Dichotomy => "dichotomy, fixed offset",
-            Self::AdaptiveDichotomy => "dichotomy, adaptive offset",
-            Self::Analytic => "analytic (palpate)",
-        }
-    }
-
-    /// The direction at `p`, where the field's values are as `value` gives them.
-    pub(crate) fn direction(
-        self,
-        case: &Case,
-        value: &dyn Fn(Point<2>) -> f64,
-        p: Point<2>,
-    ) -> Direction {
-        match self {
-            // The vector itself is right; what is measured is what is made of it.
-            Self::ClosestVector => {
-                let (truth, distance) = ((case.truth)(p)?, case.shape.distance(p));
-                (truth * distance).normalized()
-            }
-            Self::CentralDifferences => central_differences(value, p),
-            Self::Dichotomy => dichotomy(value, p, OFFSET),
-            Self::AdaptiveDichotomy => {
-                dichotomy(value, p, OFFSET.max(value(p) * OFFSET / 20.0))
-            }
-            Self::Analytic => case.shape.distance_gradient(p).1.normalized(),
-        }
-    }
-}
-
-/// The differences of values on both sides, along each axis.
-pub(crate) fn central_differences(value: &dyn Fn(Point<2>) -> f64, p: Point<2>) -> Direction {
-    let steps = [Vector([OFFSET, 0.0]), Vector([0.0, OFFSET])];
-    Vector(steps.map(|step| value(p + step) - value(p - step))).normalized()
-}
-
-/// Of three directions the better two, and then halves the angle between them nine
-/// times: 12 values, and 0.12° between the answer and the best direction at most.
-pub(crate) fn dichotomy(
-    value: &dyn Fn(Point<2>) -> f64,
-    p: Point<2>,
-    offset: f64,
-) -> Direction {
-    const HALVINGS: usize = 9;
-    let direction = |degrees: f64| {
-        let angle = degrees.to_radians();
-        Vector([libm::cos(angle), libm::sin(angle)])
-    };
-    let ask = |degrees: f64| (value(p + direction(degrees) * offset), degrees);
-    let three = [60.0, 180.0, 300.0].map(ask);
-    let worst = if three[0].0 <= three[1].0 && three[0].0 <= three[2].0 {
-        0
-    } else if three[1].0 <= three[2].0 {
-        1
-    } else {
-        2
-    };
-    let mut low = three[(worst + 1) % 3];
-    let mut high = three[(worst + 2) % 3];
-    if high.1 < low.1 {
-        high.1 += 360.0;
-    }
-    for _ in 0..HALVINGS {
-        let middle = ask(0.5 * (low.1 + high.1));
-        if low.0 < high.0 { low = middle } else { high = middle }
-    }
-    Some(direction(if low.0 < high.0 { high.1 } else { low.1 }))
-}
-
 /// Points spread evenly over the window: fractional parts of multiples of powers of
 /// 1/g, where g³ = g + 1.
 pub(crate) fn points() -> impl Iterator<Item = Point<2>> {
@@ -228,30 +143,25 @@ pub(crate) fn points() -> impl Iterator<Item = Point<2>> {
 }
 
 /// Angles between a method's directions and the true ones [degree], sorted: outside
-/// and inside.
-pub(crate) fn errors(case: &Case, method: Method, is_rounded: bool) -> [Vec<f64>; 2] {
-    let value = value(case, is_rounded);
+/// and inside. Values may be rounded to single precision, as in the memoir's program.
+pub(crate) fn errors(
+    case: &Case,
+    method: GradientMethod,
+    is_rounded: bool,
+) -> Result<[Vec<f64>; 2], QueryError> {
+    let sampler = GradientSampler::new(OFFSET)?;
+    let sampler = if is_rounded { sampler.in_single_precision() } else { sampler };
     let mut errors = [Vec::new(), Vec::new()];
     for p in points() {
         let Some(truth) = (case.truth)(p) else { continue };
-        let error = method.direction(case, &value, p).map_or(180.0, |d| {
-            let across = d.0[0] * truth.0[1] - d.0[1] * truth.0[0];
-            libm::atan2(across.abs(), d.dot(truth)).to_degrees()
-        });
+        let found = sampler.find(method, &case.shape, p).direction;
+        let error = found.map_or(180.0, |d| angle_between(d, truth).to_degrees());
         errors[usize::from(case.shape.distance(p) < 0.0)].push(error);
     }
     for side in &mut errors {
         side.sort_by(f64::total_cmp);
     }
-    errors
-}
-
-/// The values of the field, as the memoir's program rounds them or not.
-pub(crate) fn value(case: &Case, is_rounded: bool) -> impl Fn(Point<2>) -> f64 {
-    move |p| {
-        let value = case.shape.distance(p);
-        if is_rounded { f64::from(value as f32) } else { value }
-    }
+    Ok(errors)
 }
 
 /// The value that a share of the sorted `errors` does not exceed.
@@ -260,45 +170,54 @@ pub(crate) fn quantile(errors: &[f64], share: f64) -> f64 {
 }
 
 /// The page's table: errors in degrees.
-pub(crate) fn table() -> Result<String, ShapeError> {
+pub(crate) fn table() -> Result<String, Box<dyn Error>> {
     let mut text = String::from(
         "| shape | method | outside: median | 99 % | max | inside: median | 99 % | max |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for case in &cases()? {
-        let methods = [
-            Method::ClosestVector,
-            Method::CentralDifferences,
-            Method::Dichotomy,
-            Method::AdaptiveDichotomy,
-            Method::Analytic,
-        ];
-        for method in methods {
-            if method == Method::ClosestVector && !case.has_closest_vector {
+        for method in GradientMethod::ALL {
+            if *method == GradientMethod::ClosestVector && !case.has_closest_vector {
                 continue;
             }
-            add_row(&mut text, case, method, false);
-            let asks_values = method != Method::Analytic;
-            if case.is_rounded && asks_values {
-                add_row(&mut text, case, method, true);
+            add_row(&mut text, case, *method, false)?;
+            if case.is_rounded && method.samples() {
+                add_row(&mut text, case, *method, true)?;
             }
         }
     }
     Ok(text)
 }
 
-fn add_row(text: &mut String, case: &Case, method: Method, is_rounded: bool) {
+/// The name of a method in the table.
+fn name(method: GradientMethod) -> &'static str {
+    match method {
+        GradientMethod::ClosestVector => "closest vector",
+        GradientMethod::Differences => "central differences",
+        GradientMethod::Dichotomy => "dichotomy, fixed offset",
+        GradientMethod::AdaptiveDichotomy => "dichotomy, adaptive offset",
+        GradientMethod::Exact => "analytic (palpate)",
+    }
+}
+
+fn add_row(
+    text: &mut String,
+    case: &Case,
+    method: GradientMethod,
+    is_rounded: bool,
+) -> Result<(), Box<dyn Error>> {
     let note = if is_rounded { ", values in single precision" } else { "" };
-    let _ = write!(text, "| {} | {}{note} |", case.name, method.name());
-    for side in errors(case, method, is_rounded) {
+    write!(text, "| {} | {}{note} |", case.name, name(method))?;
+    for side in errors(case, method, is_rounded)? {
         for share in [0.5, 0.99, 1.0] {
             let error = quantile(&side, share);
-            let _ = if error < 0.001 {
-                write!(text, " < 0.001 |")
+            if error < 0.001 {
+                write!(text, " < 0.001 |")?;
             } else {
-                write!(text, " {error:.3} |")
-            };
+                write!(text, " {error:.3} |")?;
+            }
         }
     }
     text.push('\n');
+    Ok(())
 }

@@ -1,19 +1,23 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Ways out: closed forms, and that the bodies are apart after them.
+//! Separating translations: closed forms, and that the bodies are apart after them.
 
 use palpate_field::kernel::{Ball, Cuboid, Cylinder, HalfSpace, Torus};
 use palpate_field::{Pose, Rotation, Shape, ShapeError, Vector};
-use palpate_query::{Escape, Limits, PairWorkspace, Placed, escape, separation};
+use palpate_query::{
+    Limits, PairWorkspace, Placed, SeparatingTranslation, separating_translation, separation,
+};
 
 const LIMITS: Limits = Limits::new(1e-4).with_budget(200_000);
 
-/// The way out, which must be one.
-fn out<const D: usize>(a: &Shape<D>, b: &Shape<D>, pose: Pose<D>) -> Escape<D> {
+/// The separating translation, proven to separate.
+fn out<const D: usize>(a: &Shape<D>, b: &Shape<D>, pose: Pose<D>) -> SeparatingTranslation<D> {
     let mut workspace = PairWorkspace::new();
     let there = Placed::new(b, pose);
-    let way = escape(a, there, &LIMITS, &mut workspace).expect("bounded").expect("a way out");
+    let way = separating_translation(a, there, &LIMITS, &mut workspace)
+        .expect("bounded")
+        .expect("a translation");
     let mut moved = pose;
     moved.translation += way.direction * way.length;
     let after = separation(a, Placed::new(b, moved), &LIMITS, &mut workspace).expect("bounded");
@@ -85,7 +89,7 @@ fn bodies_apart_need_no_way() -> Result<(), ShapeError> {
     Ok(())
 }
 
-/// Steps of what overlaps once left a speck in a cube without a way out.
+/// Steps of what overlaps once left a speck in a cube without a translation.
 #[test]
 fn what_is_tiny_leaves_what_is_large() -> Result<(), ShapeError> {
     let cube = Shape::from_kernel(Cuboid::new(Vector([0.4, 0.4, 0.4]))?);

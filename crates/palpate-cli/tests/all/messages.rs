@@ -1,0 +1,440 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What the program says of input that it cannot use.
+
+use crate::common::{Folder, errors, palpate, status, text};
+use serde_json::{Value, json};
+
+const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+  "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
+
+/// What `palpate check` says of a file.
+fn checked(folder: &Folder, name: &str, content: &[u8]) -> String {
+    std::fs::write(folder.path(name), content).unwrap();
+    let output = folder.run(&["check", name]);
+    assert_eq!(status(&output), 1, "{}", errors(&output));
+    text(&output)
+}
+
+#[test]
+fn text_that_is_no_json_is_shown_with_a_caret() {
+    let folder = Folder::new();
+    let comma = BALL.replace("0.5", "0,5");
+    assert_eq!(
+        checked(&folder, "comma.json", comma.as_bytes()),
+        "comma.json: line 2, column 65: not JSON: a decimal comma; write 0.5\n  \
+         …odies\": [ { \"name\": \"ball\", \"shape\": { \"ball\": { \"radius\": 0,5 } } } ] }\n  \
+         \u{20}                                                            ^\n"
+    );
+}
+
+#[test]
+fn every_problem_of_a_scene_is_told() {
+    let folder = Folder::new();
+    let bad = BALL.replace("\"ball\",", "\"\",").replace("0.5", "-0.5");
+    assert_eq!(
+        checked(&folder, "bad.json", bad.as_bytes()),
+        "bad.json: 2 problems:\n  \
+         bodies[0].name, line 2: name must not be empty\n  \
+         bodies[0].shape.ball.radius, line 2: radius must be positive, got -0.5 m\n"
+    );
+    let answer = folder.run(&["check", "bad.json", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let problem = |path: &str, column: u32, problem: &str| json!({ "path": path, "line": 2, "column": column, "problem": problem });
+    let name = problem("bodies[0].name", 17, "name must not be empty");
+    let radius = "radius must be positive, got -0.5 m";
+    let radius = problem("bodies[0].shape.ball.radius", 50, radius);
+    let expected = json!({ "ok": false, "problems": [name, radius], "maybe_more": false });
+    assert_eq!(answer, expected);
+    let plot = folder.run(&["plot", "bad.json"]);
+    assert_eq!(status(&plot), 2);
+    assert!(
+        errors(&plot).starts_with("palpate: bad.json: 2 problems:\n  bodies[0].name, line 2")
+    );
+}
+
+#[test]
+fn other_encodings_are_named() {
+    let folder = Folder::new();
+    let units: Vec<u8> = BALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_eq!(
+        checked(&folder, "utf16.json", &units),
+        "utf16.json: the file is UTF-16 (little-endian); save it as UTF-8, for example with \
+         `iconv -f UTF-16LE -t UTF-8`\n"
+    );
+    let (before, after) = BALL.split_once("all\",").unwrap();
+    let latin = [before.as_bytes(), b"\xe4ll\",", after.as_bytes()].concat();
+    assert_eq!(
+        checked(&folder, "latin.json", &latin),
+        "latin.json: the file is not UTF-8: byte 58, in line 2, is 0xe4; save it as UTF-8\n"
+    );
+    let marked = ["\u{feff}", BALL].concat();
+    let marked = folder.write("marked.json", &marked);
+    assert_eq!(status(&palpate(&["check", &marked])), 0);
+}
+
+/// What a command that cannot use its input says.
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
+    assert_eq!(status(&output), 2, "{arguments:?}: {}", text(&output));
+    assert_eq!(text(&output), "", "{arguments:?}");
+    errors(&output)
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+#[test]
+fn a_mesh_given_as_a_scene_is_recognised() {
+    let folder = Folder::new();
+    folder.write("part.obj", TRIANGLE);
+    folder.write("part.json", TRIANGLE);
+    for command in ["plot", "feel", "contact", "mass"] {
+        assert_eq!(
+            refused(&folder, &[command, "part.obj"]),
+            "palpate: part.obj: it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it\n"
+        );
+    }
+    let eval = refused(&folder, &["eval", "part.obj", "--at", "0,0,0"]);
+    assert!(eval.contains("`palpate mesh part.obj` checks it"), "{eval}");
+    assert_eq!(
+        checked(&folder, "part.json", TRIANGLE.as_bytes()),
+        "part.json: it is a mesh (OBJ), not a scene; rename it to part.obj, for `palpate mesh`\n"
+    );
+    let answer = folder.run(&["check", "part.obj", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let problem = "it is a mesh (OBJ), not a scene; `palpate mesh part.obj` checks it";
+    assert_eq!(answer["problems"][0]["problem"], problem);
+}
+
+#[test]
+fn other_files_given_as_a_scene_are_recognised() {
+    let folder = Folder::new();
+    for (name, content, expected) in [
+        (
+            "points.csv",
+            &b"x_m,y_m\n0,0\n"[..],
+            "points.csv: it is a table (CSV), not a scene; `palpate eval SCENE --points points.csv` \
+             reads points, `palpate feel SCENE --path points.csv` the path of a hand\n",
+        ),
+        (
+            "star.png",
+            b"\x89PNG\r\n\x1a\n",
+            "star.png: it is a picture (PNG), not a scene; pictures are outputs alone\n",
+        ),
+        (
+            "empty.json",
+            b"",
+            "empty.json: it is an empty file; a small scene is { \"palpate\": 1, \"dimension\": 3, \
+             \"bodies\": [ { \"name\": \"bead\", \"shape\": { \"ball\": { \"radius\": 0.02 } } } ] }\n",
+        ),
+    ] {
+        assert_eq!(checked(&folder, name, content), expected);
+    }
+    let folder_name = refused(&folder, &["check", "."]);
+    assert_eq!(folder_name, "palpate: .: is a folder; name a file in it\n");
+    let small = checked(&folder, "empty.json", b"");
+    let (_, small) = small.split_once("a small scene is ").unwrap();
+    let small = folder.write("small.json", small);
+    assert_eq!(status(&palpate(&["check", &small])), 0);
+}
+
+#[test]
+fn other_files_given_as_a_mesh_are_recognised() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    folder.write("part.txt", TRIANGLE);
+    folder.write("part.stl", TRIANGLE);
+    folder.write("points.csv", "x_m,y_m\n0,0\n");
+    for (name, expected) in [
+        ("ball.json", "it is a scene (JSON), not a mesh; `palpate check ball.json` checks it"),
+        ("part.txt", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        ("part.stl", "it is a mesh (OBJ); rename it to part.obj, for `palpate mesh`"),
+        (
+            "points.csv",
+            "it is a table (CSV), not a mesh; `palpate eval SCENE --points points.csv` reads points, \
+             `palpate feel SCENE --path points.csv` the path of a hand",
+        ),
+        (".", "is a folder; name a file in it"),
+    ] {
+        let expected = format!("palpate: {name}: {expected}\n");
+        assert_eq!(refused(&folder, &["mesh", name]), expected);
+    }
+}
+
+/// A small ball minus a large one, a ball minus itself, and a ball.
+const HOLLOW: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+  { "name": "none", "shape": { "difference": [ { "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.03 } } ] } },
+  { "name": "skin", "shape": { "difference": [ { "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.02 } } ] } },
+  { "name": "ball", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
+
+#[test]
+fn a_body_without_any_point_is_told_of() {
+    let folder = Folder::new();
+    folder.write("hollow.json", HOLLOW);
+    let check = folder.run(&["check", "hollow.json"]);
+    assert_eq!(
+        text(&check),
+        "hollow.json: good, 3D, 3 bodies\n  \
+         none: bound outside, exact inside; empty: no point is in it, which is proven\n  \
+         skin: bound outside, exact inside; may be empty: no point was found in it\n  \
+         ball: exact outside, exact inside\n"
+    );
+    let answer = folder.run(&["check", "hollow.json", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let empty: Vec<_> = (0..3).map(|i| answer["bodies"][i]["empty"].clone()).collect();
+    assert_eq!(empty, [json!(true), Value::Null, json!(false)]);
+    let mass = folder.run(&["mass", "hollow.json", "--cells", "1000"]);
+    assert_eq!(status(&mass), 1);
+    let said = text(&mass);
+    let empty = "none, at 1000 kg/m³ (329 cells)\n  \
+                 empty: no point is in it, its volume is proven to be 0 m³\nskin, ";
+    assert!(said.starts_with(empty), "{said}");
+    assert!(said.contains("\n  may be empty: no point was found in it\n"), "{said}");
+    let answer = folder.run(&["mass", "hollow.json", "--cells", "1000", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let none = &answer["bodies"][0];
+    assert_eq!(
+        (&none["empty"], &none["volume"], &none["volume_error"]),
+        (&json!(true), &json!(0.0), &json!(0.0))
+    );
+    assert_eq!(none["centroid_m"], Value::Null);
+    let warning = "warning: body \"none\" is empty: no point is in it, which is proven\n";
+    for arguments in [&["plot"][..], &["contact"], &["feel", "--fast", "--duration", "0.01"]] {
+        let command = [&arguments[..1], &["hollow.json"], &arguments[1..]].concat();
+        let output = folder.run(&command);
+        assert!(errors(&output).starts_with(warning), "{command:?}: {}", errors(&output));
+    }
+}
+
+/// What clap says of a value that breaks the rule of its option.
+fn invalid(value: &str, option: &str, rule: &str) -> String {
+    format!(
+        "error: invalid value '{value}' for '{option}': {rule}\n\nFor more information, try '--help'.\n"
+    )
+}
+
+#[test]
+fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    let length = "must be positive and at most 1e15 m";
+    let length_or_zero = "must be zero or more and at most 1e15 m";
+    let positive = "must be positive and finite";
+    let zero_or_more = "must be zero or more and finite";
+    for (command, option, value, rule) in [
+        ("feel", "--duration <DURATION>", "-1", format!("{positive}, got -1 s")),
+        ("feel", "--duration <DURATION>", "0", format!("{positive}, got 0 s")),
+        ("feel", "--rate <RATE>", "0", format!("{positive}, got 0 Hz")),
+        ("feel", "--rate <RATE>", "fast", "must be a number".into()),
+        (
+            "feel",
+            "--points <POINTS>",
+            "0",
+            "must be a whole number from 1 to 1000, got 0".into(),
+        ),
+        (
+            "feel",
+            "--points <POINTS>",
+            "1001",
+            "must be a whole number from 1 to 1000, got 1001".into(),
+        ),
+        ("feel", "--stiffness <STIFFNESS>", "-1", format!("{zero_or_more}, got -1 N/m")),
+        ("feel", "--damping <DAMPING>", "nan", format!("{zero_or_more}, got NaN N·s/m")),
+        ("feel", "--max-force <MAX_FORCE>", "0", format!("{positive}, got 0 N")),
+        ("feel", "--radius <RADIUS>", "-0.1", format!("{length_or_zero}, got -0.1 m")),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "omega",
+            "a device of this name is written simulated:omega".into(),
+        ),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "simulated:desktopp",
+            "unknown device `desktopp`, did you mean `desktop`?".into(),
+        ),
+        (
+            "feel",
+            "--device <DEVICE>",
+            "hand",
+            "must be recorded, simulated:NAME or glove".into(),
+        ),
+        ("contact", "--margin <MARGIN>", "-1", format!("{length_or_zero}, got -1 m")),
+        (
+            "contact",
+            "--margin <MARGIN>",
+            "1e99",
+            format!("{length_or_zero}, got 1{} m", "0".repeat(99)),
+        ),
+        ("contact", "--spacing <SPACING>", "0", format!("{length}, got 0 m")),
+        ("contact", "--tolerance <TOLERANCE>", "nan", format!("{length_or_zero}, got NaN m")),
+        (
+            "contact",
+            "--tolerance <TOLERANCE>",
+            "0,5",
+            "must be a number; a decimal comma is written 0.5".into(),
+        ),
+        (
+            "contact",
+            "--budget <BUDGET>",
+            "0",
+            "must be a whole number of at least 1, got 0".into(),
+        ),
+        (
+            "contact",
+            "--budget <BUDGET>",
+            "1e6",
+            "must be a whole number of at least 1, got 1e6".into(),
+        ),
+        ("contact", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
+        ("plot", "--step <STEP>", "0", format!("{length}, got 0 m")),
+        (
+            "plot",
+            "--at <AT>",
+            "inf",
+            "must be finite and at most 1e15 m in size, got inf m".into(),
+        ),
+        ("plot", "--size <SIZE>", "-1", format!("{length}, got -1 m")),
+        (
+            "plot",
+            "--width <WIDTH>",
+            "0",
+            "must be a whole number from 64 to 16384, got 0".into(),
+        ),
+        ("mass", "--density <DENSITY>", "-1", format!("{positive}, got -1 kg/m³")),
+        ("mass", "--tolerance <TOLERANCE>", "0", format!("{positive}, got 0")),
+        ("mass", "--cells <CELLS>", "0", "must be a whole number of at least 1, got 0".into()),
+        ("mesh", "--scale <METRES>", "-1", format!("{length}, got -1 m")),
+        (
+            "eval",
+            "--threads <THREADS>",
+            "0",
+            "must be a whole number of at least 1, got 0".into(),
+        ),
+        ("descend", "--tolerance <TOLERANCE>", "-1", format!("{length_or_zero}, got -1 m")),
+    ] {
+        let name = option.split(' ').next().unwrap();
+        let said = refused(&folder, &[command, "ball.json", name, value]);
+        assert_eq!(said, invalid(value, option, &rule));
+    }
+    for (command, option, value, rule) in [
+        ("jitter", "--rate <RATE>", "0", format!("{positive}, got 0 Hz")),
+        ("jitter", "--duration <DURATION>", "-1", format!("{positive}, got -1 s")),
+        (
+            "gallery",
+            "--width <WIDTH>",
+            "63",
+            "must be a whole number from 64 to 16384, got 63".into(),
+        ),
+    ] {
+        let name = option.split(' ').next().unwrap();
+        assert_eq!(refused(&folder, &[command, name, value]), invalid(value, option, &rule));
+    }
+}
+
+#[test]
+fn options_without_an_effect_are_refused() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    folder.write("disc.json", &BALL.replace("\"dimension\": 3", "\"dimension\": 2"));
+    let glove = ["feel", "ball.json", "--fast", "--device", "glove"];
+    for (arguments, expected) in [
+        (
+            &[&glove[..], &["--max-force", "1"]].concat()[..],
+            "--max-force has no meaning for a glove, which has no forces",
+        ),
+        (
+            &[&glove[..], &["--stiffness", "1", "--damping", "1", "--strict"]].concat(),
+            "--stiffness, --damping, --strict have no meaning for a glove, which has no forces",
+        ),
+        (
+            &[
+                "feel",
+                "ball.json",
+                "--fast",
+                "--device",
+                "simulated:omega",
+                "--max-force",
+                "100",
+            ],
+            "--max-force must be at most 12 N, the largest force of the Force Dimension omega, got 100 N",
+        ),
+        (
+            &["plot", "disc.json", "--plane", "xz"],
+            "--plane is for scenes in space; this scene is in the plane, and drawn whole",
+        ),
+        (
+            &["plot", "disc.json", "--at", "1"],
+            "--at is for scenes in space; this scene is in the plane, and drawn whole",
+        ),
+        (
+            &["plot", "ball.json", "--at", "1", "--centre", "0,0,0", "--size", "1"],
+            "--at and the point of --centre both say where the plane is; leave out --at",
+        ),
+        (
+            &["plot", "ball.json", "--at", "1", "--plane", "0,0,0:1,0,0:0,1,0"],
+            "--at and the point of --plane both say where the plane is; leave out --at",
+        ),
+        (
+            &["plot", "ball.json", "--output", "ball.svg", "--width", "500"],
+            "--width is for PNG pictures; an SVG is drawn at any width",
+        ),
+        (
+            &["gallery", "--format", "svg", "--width", "500"],
+            "--width is for PNG pictures; an SVG is drawn at any width",
+        ),
+        (
+            &["plot", "ball.json", "--margin", "1"],
+            "--margin is about contacts, and needs --contacts",
+        ),
+        (
+            &["plot", "ball.json", "--budget", "1"],
+            "--budget is about contacts, and needs --contacts",
+        ),
+    ] {
+        assert_eq!(refused(&folder, arguments), format!("palpate: {expected}\n"));
+    }
+}
+
+#[test]
+fn what_a_command_needs_is_said_with_an_example_of_the_scene() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    for (arguments, expected) in [
+        (
+            &["eval", "ball.json"][..],
+            "eval needs a point, as with --at 0,0,0, or many with --points FILE",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1,2"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got 2 in \"1,2\"",
+        ),
+        (
+            &["eval", "ball.json", "--at", "0,5,1,0,2,0"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got 6 in \"0,5,1,0,2,0\"; a decimal comma is written as a point",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1;2;3"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got \"1;2;3\"; numbers are joined by commas alone",
+        ),
+        (
+            &["eval", "ball.json", "--at", "1,x,3"],
+            "the scene is 3D: a point is 3 numbers x,y,z joined by commas, got \"1,x,3\"",
+        ),
+        (
+            &["eval", "ball.json", "--at", "0,0,nan"],
+            "z must be finite and at most 1e15 m in size, got NaN m",
+        ),
+        (
+            &["descend", "ball.json"],
+            "descend needs --segment with 2 points, --triangle with 3, or, between two bodies, --start with 1; for example: palpate descend ball.json --segment -0.5,0,0 0.5,0,0",
+        ),
+    ] {
+        assert_eq!(refused(&folder, arguments), format!("palpate: {expected}\n"));
+    }
+    // The example runs.
+    let example = ["descend", "ball.json", "--segment", "-0.5,0,0", "0.5,0,0"];
+    assert_eq!(status(&folder.run(&example)), 0);
+}
