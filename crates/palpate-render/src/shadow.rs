@@ -6,7 +6,7 @@
 //! A soft light is a disc. Where the cone from the place to the disc is proven free, the place is
 //! lit; elsewhere rays to 64 places of the disc, spread as seeds of a sunflower (Vogel 1979), are
 //! cast, each with its proof, and the free ones counted. Where the 16 to the rim are all blocked,
-//! the others are taken for blocked too. The places of a pixel at an edge share the 64 rays. A hard
+//! or all free, the others are taken for the same. The places of a pixel at an edge share the 64 rays. A hard
 //! light is the middle of the disc.
 
 use std::f64::consts::TAU;
@@ -139,7 +139,15 @@ impl<'a> Shadow<'a> {
     fn look(&mut self, places: &[Place], open: &[usize]) {
         self.free = [0; BLOCK];
         self.cast(places, open, 0..FIRST);
-        let is_open = |place: &usize| self.free[*place] > 0 || places[*place].part.of > 1;
+        for place in open.iter().filter(|place| places[**place].part.of == 1) {
+            if self.free[*place] == FIRST {
+                self.free[*place] = RAYS;
+            }
+        }
+        let is_open = |place: &usize| {
+            let free = self.free[*place];
+            (free > 0 && free < RAYS) || places[*place].part.of > 1
+        };
         let open: Vec<usize> = open.iter().copied().filter(is_open).collect();
         self.cast(places, &open, FIRST..RAYS);
     }

@@ -132,18 +132,9 @@ fn what_cannot_be_rendered_is_said() {
             &[cup, "--output", "cup.svg"][..],
             "cup.svg: the name of a rendered picture must end in .png",
         ),
-        (&[cup, "--width", "0"], "a picture must have 1 to 40000000 pixels, got 0 x 900"),
         (
-            &[cup, "--samples", "0"],
-            "an edge must have 1 to 8 samples along a pixel's side, got 0",
-        ),
-        (
-            &[cup, "--elevation", "91"],
-            "elevation must be from -pi/2 to pi/2, got 1.5882496193148399 rad",
-        ),
-        (
-            &[cup, "--field-of-view", "180"],
-            "the field of view must be between 0 and pi, got 3.141592653589793 rad",
+            &[cup, "--width", "10000", "--height", "5000"],
+            "a picture must have 1 to 40000000 pixels, got 10000 x 5000",
         ),
         (
             &[cup, "--from", "0,0.045,0.035", "--at", "0,0,0"],
@@ -159,19 +150,13 @@ fn what_cannot_be_rendered_is_said() {
         ),
         (&[cup, "--slice", "view"], "--slice view needs --view NAME, which has the plane"),
         (
-            &[cup, "--slice", "xy", "--step", "-1"],
-            "the spacing of isolines must be positive and at most 1e15, got -1.0 m",
-        ),
-        (&[cup, "--turntable", "0"], "--turntable must be 1 to 3600 pictures, got 0"),
-        (
             &[cup, "--turntable", "360"],
             "an animation has 200000000 pixels at most, got 388800000; make it smaller, or write its pictures into a folder with --frames",
         ),
         (
-            &[cup, "--turntable", "2", "--turn-time", "0"],
-            "--turn-time must be positive, and at most 65 s for each picture, got 0 s",
+            &[cup, "--turntable", "2", "--turn-time", "131"],
+            "--turn-time must be at most 130 s for 2 pictures, 65 s for each, got 131 s",
         ),
-        (&[cup, "--time", "nan"], "--time must be finite, got NaN s"),
     ] {
         let png = folder.name("cup.png");
         let has_output = arguments.contains(&"--output");

@@ -14,12 +14,12 @@ mod pieces;
 #[cfg(test)]
 mod tests;
 
-use palpate_field::{BLOCK, Block, Column, Quality, Shape};
+use palpate_field::{BLOCK, Block, Column, Shape};
 use palpate_query::{Limits, Ray, Stop, cast_ray};
 
 use crate::beam::Beam;
 use crate::surfaces::Surfaces;
-use pieces::{Cells, Pieces};
+use pieces::{Cells, Pieces, Places, is_steep};
 
 /// Rounds by balls: a ray that needs more grazes a surface, which models pass in longer steps.
 const ROUNDS_BY_BALLS: u32 = 24;
@@ -27,9 +27,9 @@ const ROUNDS_BY_BALLS: u32 = 24;
 /// Rounds by models before rays are cast one by one: a ray through a fine thread needs hundreds.
 const ROUNDS_BY_MODELS: u32 = 400;
 
-/// Fields steeper than this are passed by models alone: a ball about a value `f` has the radius
-/// `f / L`, where models follow the slope that the field has there.
-const STEEP: f64 = 1.5;
+/// By how much of the gap a piece must be nearer than the whole to be a surface: their fields
+/// differ by roundings.
+const NEARER: f64 = 1e-6;
 
 /// Samples along a ray that may meet any surface, and where the first is, in gaps.
 const SAMPLES: u32 = 16;
@@ -82,6 +82,18 @@ struct Lane {
     is_beside: bool,
     /// `true` where a step by a model is for the ray alone, without its cone.
     is_thin: bool,
+    look: Look,
+}
+
+/// Whether the field where a ray is has been looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    /// It has not, and may be zero.
+    Due,
+    /// It has not, and is positive.
+    Needless,
+    /// It has.
+    Done,
 }
 
 /// How many rays were traced, and what they cost.
@@ -122,6 +134,7 @@ pub(crate) struct Tracer<'a> {
     block: Block<f64, 3, BLOCK>,
     values: Column<f64, BLOCK>,
     cells: Cells,
+    places: Places,
     pub(crate) work: Work,
 }
 
@@ -138,6 +151,7 @@ impl<'a> Tracer<'a> {
             block: Block::zero(),
             values: Column::zero(),
             cells: Cells::new(),
+            places: Places::new(surfaces.gap * (1.0 - NEARER)),
             work: Work::default(),
         }
     }
@@ -146,10 +160,8 @@ impl<'a> Tracer<'a> {
     pub(crate) fn aim(&mut self, beams: &[Beam]) {
         self.shape = self.surfaces.along(beams);
         self.pieces = None;
-        self.is_steep = self.shape.as_ref().is_some_and(|shape| {
-            let promise = shape.promise();
-            promise.outside == Quality::Lipschitz && promise.lipschitz > STEEP
-        });
+        self.is_steep = self.shape.as_ref().is_some_and(is_steep);
+        self.cells.has_steep = self.is_steep;
     }
 
     /// Traces at most [`BLOCK`] beams within those that it was [aimed](Self::aim) along, and puts
@@ -175,11 +187,9 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Ends rays with a surface where the field is sampled.
+    /// Ends rays with a surface where points of them are in one.
     fn sample(&mut self, beams: &[Beam], met: &mut [Met]) {
-        let Self { lanes, block, values, work, limits, .. } = self;
-        let Some(shape) = &self.shape else { return };
-        let first = FIRST_SAMPLE * limits.tolerance;
+        let first = FIRST_SAMPLE * self.limits.tolerance;
         for sample in 0..SAMPLES {
             let place = |lane: &Lane| {
                 let Beam { near, far, .. } = beams[lane.beam];
@@ -188,23 +198,41 @@ impl<'a> Tracer<'a> {
                 let share = libm::pow(first / length, f64::from(sample) / f64::from(SAMPLES));
                 near + length * share
             };
-            block.fill(lanes.len(), |i| beams[lanes[i].beam].at(place(&lanes[i])));
-            shape.block_distances(block, lanes.len(), values);
-            work.evaluations += lanes.len() as u64;
-            let mut number = 0;
-            lanes.retain(|lane| {
-                let is_free = values.get(number) > limits.tolerance;
-                number += 1;
-                if !is_free {
-                    let (end, distance) = (End::Surface, place(lane));
-                    met[lane.beam] = Met { end, distance, is_beside: false };
-                }
-                is_free
-            });
-            if lanes.is_empty() {
-                return;
-            }
+            self.look(beams, met, |_| true, place);
         }
+    }
+
+    /// Ends rays at surfaces, of those that are `due`, at a place of each.
+    fn look(
+        &mut self,
+        beams: &[Beam],
+        met: &mut [Met],
+        is_due: impl Fn(&Lane) -> bool,
+        place: impl Fn(&Lane) -> f64,
+    ) {
+        let Self { lanes, shape, pieces, places, is_steep, work, .. } = self;
+        let Some(shape) = &shape else { return };
+        // At points, a field that is not steep skips members of its unions by itself.
+        let whole = Pieces::whole(shape);
+        let pieces =
+            if *is_steep { pieces.get_or_insert_with(|| Pieces::of(shape)) } else { &whole };
+        let due: Vec<usize> = (0..lanes.len()).filter(|i| is_due(&lanes[*i])).collect();
+        for lane in &due {
+            places.points[*lane] = beams[lanes[*lane].beam].at(place(&lanes[*lane]));
+        }
+        let mut shares = [1.0; BLOCK];
+        pieces.free(places, &due, &mut shares);
+        work.evaluations += std::mem::take(&mut places.evaluations);
+        let mut number = 0;
+        lanes.retain(|lane| {
+            let is_free = shares[number] > 0.0;
+            number += 1;
+            if !is_free {
+                let (end, is_beside) = (End::Surface, lane.is_beside);
+                met[lane.beam] = Met { end, distance: place(lane), is_beside };
+            }
+            is_free
+        });
     }
 
     /// Advances rays to their ends.
@@ -217,11 +245,11 @@ impl<'a> Tracer<'a> {
         };
         let by_balls = rounds(if self.is_steep { 0 } else { ROUNDS_BY_BALLS });
         for _ in 0..by_balls {
-            self.round(beams, met, false);
+            self.round_by_balls(beams, met);
             self.give_up(goal, met);
         }
         for _ in 0..rounds(ROUNDS_BY_MODELS) {
-            self.round(beams, met, true);
+            self.round_by_models(beams, met);
             self.give_up(goal, met);
         }
         for lane in std::mem::take(&mut self.lanes) {
@@ -231,36 +259,48 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Ends rays that are at a surface, and advances the others.
-    fn round(&mut self, beams: &[Beam], met: &mut [Met], by_models: bool) {
+    /// Ends rays that are at a surface, and advances the others by balls.
+    fn round_by_balls(&mut self, beams: &[Beam], met: &mut [Met]) {
         let Some(shape) = self.shape.as_ref().filter(|_| !self.lanes.is_empty()) else {
             return;
         };
-        let Self { lanes, block, values, pieces, cells, work, limits, .. } = self;
+        let Self { lanes, block, values, work, limits, .. } = self;
         block.fill(lanes.len(), |i| beams[lanes[i].beam].at(lanes[i].distance));
         shape.block_distances(block, lanes.len(), values);
         work.evaluations += lanes.len() as u64;
-        let mut kept = 0;
-        for i in 0..lanes.len() {
-            let (mut lane, value) = (lanes[i], values.get(i));
-            let beam = &beams[lane.beam];
-            if value <= limits.tolerance {
-                let Lane { distance, is_beside, .. } = lane;
+        let mut number = 0;
+        lanes.retain_mut(|lane| {
+            let value = values.get(number);
+            number += 1;
+            let is_free = value > limits.tolerance;
+            if is_free {
+                lane.advance_by_ball(shape, &beams[lane.beam], value);
+            } else {
+                let Lane { distance, is_beside, .. } = *lane;
                 met[lane.beam] = Met { end: End::Surface, distance, is_beside };
-                continue;
             }
-            if !by_models {
-                lane.advance_by_ball(shape, beam, value);
-            }
-            (lanes[kept], kept) = (lane, kept + 1);
-        }
-        lanes.truncate(kept);
-        if by_models {
-            let pieces = pieces.get_or_insert_with(|| Pieces::of(shape));
-            models::advance(pieces, beams, lanes, cells);
-            work.evaluations += std::mem::take(&mut cells.evaluations);
-        }
-        lanes.retain(|lane| {
+            is_free
+        });
+        self.end(beams, met);
+    }
+
+    /// Ends rays that are at a surface, and advances the others by models.
+    fn round_by_models(&mut self, beams: &[Beam], met: &mut [Met]) {
+        self.look(beams, met, |lane| lane.look == Look::Due, |lane| lane.distance);
+        let Self { lanes, shape, pieces, cells, work, .. } = self;
+        let Some(shape) = shape.as_ref().filter(|_| !lanes.is_empty()) else { return };
+        lanes.iter_mut().filter(|lane| lane.look == Look::Due).for_each(|lane| {
+            lane.look = Look::Done;
+        });
+        let pieces = pieces.get_or_insert_with(|| Pieces::of(shape));
+        models::advance(pieces, beams, lanes, cells);
+        work.evaluations += std::mem::take(&mut cells.evaluations);
+        self.end(beams, met);
+    }
+
+    /// Ends rays that have come to their end.
+    fn end(&mut self, beams: &[Beam], met: &mut [Met]) {
+        self.lanes.retain(|lane| {
             let beam = &beams[lane.beam];
             let is_under_way = lane.distance < beam.far;
             if !is_under_way {
@@ -316,6 +356,7 @@ impl Lane {
             is_near: false,
             is_beside: false,
             is_thin: false,
+            look: Look::Due,
         }
     }
 }

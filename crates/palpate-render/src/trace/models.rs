@@ -12,8 +12,8 @@
 use palpate_field::scalar::Model;
 use palpate_field::{BLOCK, Vector};
 
-use super::Lane;
 use super::pieces::{Cells, Pieces};
+use super::{Lane, Look};
 use crate::beam::Beam;
 
 /// The first step, as a share of the ray.
@@ -45,7 +45,7 @@ pub(super) fn advance(pieces: &Pieces, beams: &[Beam], lanes: &mut [Lane], cells
         *cell = lane.cell(&beams[lane.beam]);
     }
     let mut shares = [0.0; BLOCK];
-    pieces.passed(cells, &all, &mut shares);
+    pieces.free(cells, &all, &mut shares);
     for (lane, share) in lanes.iter_mut().zip(shares) {
         lane.advance_by_model(&beams[lane.beam], share);
     }
@@ -86,10 +86,15 @@ impl Lane {
             }
             self.step = (GROWTH * length).min(BELOW * self.too_long);
             self.too_long *= RELIEF;
+            self.look = Look::Needless;
             return;
         }
         if share < 0.5 && length < self.cone(beam) {
             (self.is_near, self.is_thin) = (true, true);
+        }
+        // Where no step is proven, the surface may be as near as the ray.
+        if share > 0.0 || self.look == Look::Needless {
+            self.look = Look::Due;
         }
         self.distance += share * length;
         (self.step, self.too_long) = (SHRINKAGE * length, length);

@@ -8,7 +8,18 @@
 //! would not.
 
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, BoundingBall, Column, Node, Shape, Vector};
+use palpate_field::{BLOCK, Block, BoundingBall, Column, Node, Point, Quality, Shape, Vector};
+use palpate_query::free_radius;
+
+/// Fields steeper than this are passed by models alone: a ball about a value `f` has the radius
+/// `f / L`, where models follow the slope that the field has there.
+const STEEP: f64 = 1.5;
+
+/// `true` of a field whose values say little of the distance.
+pub(super) fn is_steep(shape: &Shape<3>) -> bool {
+    let promise = shape.promise();
+    promise.outside == Quality::Lipschitz && promise.lipschitz > STEEP
+}
 
 /// A shape as a tree of booleans.
 #[derive(Debug)]
@@ -30,11 +41,22 @@ pub(super) struct Piece {
     ball: Option<BoundingBall<3>>,
 }
 
+/// What is asked about pieces, of each lane: a part of a ray, or a point.
+pub(super) trait Probe {
+    /// Sets the free share of each of these lanes; of a point, zero or one.
+    fn look_at(&mut self, piece: &Piece, lanes: &[usize], shares: &mut [f64; BLOCK]);
+}
+
 /// Cells over which pieces are bounded, with memory.
 #[derive(Debug)]
 pub(super) struct Cells {
     /// The coordinates of the cell of each lane.
     pub(super) cells: [Vector<Model, 3>; BLOCK],
+    /// `true` where pieces that are not steep are asked for values before models: what they
+    /// decide spares the models of those that are.
+    pub(super) has_steep: bool,
+    centres: Block<f64, 3, BLOCK>,
+    values: Column<f64, BLOCK>,
     block: Block<Model, 3, BLOCK>,
     models: Column<Model, BLOCK>,
     /// Evaluations since the last call.
@@ -45,10 +67,63 @@ impl Cells {
     pub(super) fn new() -> Self {
         Self {
             cells: [Vector([Model::default(); 3]); BLOCK],
+            has_steep: false,
+            centres: Block::zero(),
+            values: Column::zero(),
             block: Block::zero(),
             models: Column::zero(),
             evaluations: 0,
         }
+    }
+
+    /// Sets the shares of those lanes whose cells lie on one side of a piece by the value at the
+    /// centre, which costs less than a model; returns the others.
+    fn undecided(
+        &mut self,
+        piece: &Piece,
+        mut lanes: Vec<usize>,
+        shares: &mut [f64; BLOCK],
+    ) -> Vec<usize> {
+        let Self { cells, centres, values, evaluations, .. } = self;
+        let centre = |lane: usize| Vector(cells[lane].0.map(|x| x.value));
+        centres.fill(lanes.len(), |i| centre(lanes[i]));
+        piece.shape.block_distances(centres, lanes.len(), values);
+        *evaluations += lanes.len() as u64;
+        let lipschitz = piece.shape.promise().lipschitz;
+        let mut number = 0;
+        lanes.retain(|lane| {
+            let value = values.get(number);
+            number += 1;
+            let radius = Model::radius(&cells[*lane].0);
+            let value = if piece.is_complement { -value } else { value };
+            let is_blocked = value < -lipschitz * radius;
+            let is_free = !piece.is_complement
+                && free_radius(&piece.shape, centre(*lane), value) > radius;
+            if is_blocked {
+                shares[*lane] = 0.0;
+            }
+            !(is_blocked || is_free)
+        });
+        lanes
+    }
+}
+
+/// Points that are free where a field is greater than `gap`, with memory.
+#[derive(Debug)]
+pub(super) struct Places {
+    /// The point of each lane.
+    pub(super) points: [Point<3>; BLOCK],
+    gap: f64,
+    block: Block<f64, 3, BLOCK>,
+    values: Column<f64, BLOCK>,
+    /// Evaluations since the last call.
+    pub(super) evaluations: u64,
+}
+
+impl Places {
+    pub(super) fn new(gap: f64) -> Self {
+        let (block, values) = (Block::zero(), Column::zero());
+        Self { points: [Vector::ZERO; BLOCK], gap, block, values, evaluations: 0 }
     }
 }
 
@@ -56,6 +131,11 @@ impl Pieces {
     /// The pieces of a shape.
     pub(super) fn of(shape: &Shape<3>) -> Self {
         Self::build(shape, false)
+    }
+
+    /// A shape as one piece.
+    pub(super) fn whole(shape: &Shape<3>) -> Self {
+        Self::One(Piece::new(shape, false))
     }
 
     fn build(shape: &Shape<3>, is_complement: bool) -> Self {
@@ -96,11 +176,16 @@ impl Pieces {
         }
     }
 
-    /// Sets the share of the cell of each of `lanes`, from its beginning, that is free of the
+    /// Sets the share of what each of `lanes` asks about, from its beginning, that is free of the
     /// shape.
-    pub(super) fn passed(&self, cells: &mut Cells, lanes: &[usize], shares: &mut [f64; BLOCK]) {
+    pub(super) fn free(
+        &self,
+        probe: &mut impl Probe,
+        lanes: &[usize],
+        shares: &mut [f64; BLOCK],
+    ) {
         let (of, start) = match self {
-            Self::One(piece) => return piece.passed(cells, lanes, shares),
+            Self::One(piece) => return probe.look_at(piece, lanes, shares),
             Self::Any(of) => (of, 1.0),
             Self::All(of) => (of, 0.0),
         };
@@ -108,7 +193,7 @@ impl Pieces {
         let is_any = start > 0.0;
         let (mut open, mut found) = (lanes.to_vec(), [0.0; BLOCK]);
         for piece in of {
-            piece.passed(cells, &open, &mut found);
+            piece.free(probe, &open, &mut found);
             open.retain(|lane| {
                 let share = &mut shares[*lane];
                 *share = if is_any { share.min(found[*lane]) } else { share.max(found[*lane]) };
@@ -125,21 +210,58 @@ impl Piece {
         Self { shape: shape.clone(), is_complement, ball }
     }
 
-    fn passed(&self, cells: &mut Cells, lanes: &[usize], shares: &mut [f64; BLOCK]) {
+    /// Those of the lanes that are not outside the piece's ball; all others are free.
+    fn near(
+        &self,
+        lanes: &[usize],
+        shares: &mut [f64; BLOCK],
+        meets: impl Fn(&BoundingBall<3>, usize) -> bool,
+    ) -> Vec<usize> {
         lanes.iter().for_each(|lane| shares[*lane] = 1.0);
-        let is_near =
-            |lane: &&usize| self.ball.is_none_or(|ball| meets(&ball, &cells.cells[**lane]));
-        let near: Vec<usize> = lanes.iter().filter(is_near).copied().collect();
+        let is_near = |lane: &usize| self.ball.is_none_or(|ball| meets(&ball, *lane));
+        lanes.iter().copied().filter(is_near).collect()
+    }
+}
+
+impl Probe for Cells {
+    fn look_at(&mut self, piece: &Piece, lanes: &[usize], shares: &mut [f64; BLOCK]) {
+        let meets = |ball: &BoundingBall<3>, lane: usize| meets(ball, &self.cells[lane]);
+        let mut near = piece.near(lanes, shares, meets);
+        if self.has_steep && !is_steep(&piece.shape) && !near.is_empty() {
+            near = self.undecided(piece, near, shares);
+        }
         if near.is_empty() {
             return;
         }
-        let Cells { cells, block, models, evaluations } = cells;
+        let Self { cells, block, models, evaluations, .. } = self;
         block.fill(near.len(), |i| cells[near[i]]);
-        self.shape.block_distances(block, near.len(), models);
+        piece.shape.block_distances(block, near.len(), models);
         *evaluations += near.len() as u64;
         for (i, lane) in near.into_iter().enumerate() {
             let model = models.get(i);
-            shares[lane] = positive(&if self.is_complement { -model } else { model });
+            shares[lane] = positive(&if piece.is_complement { -model } else { model });
+        }
+    }
+}
+
+impl Probe for Places {
+    fn look_at(&mut self, piece: &Piece, lanes: &[usize], shares: &mut [f64; BLOCK]) {
+        let Self { points, gap, block, values, evaluations } = self;
+        // Written so that NaN meets.
+        let meets = |ball: &BoundingBall<3>, lane: usize| {
+            !((points[lane] - ball.centre).norm() > ball.radius + *gap)
+        };
+        let near = piece.near(lanes, shares, meets);
+        if near.is_empty() {
+            return;
+        }
+        block.fill(near.len(), |i| points[near[i]]);
+        piece.shape.block_distances(block, near.len(), values);
+        *evaluations += near.len() as u64;
+        for (i, lane) in near.into_iter().enumerate() {
+            let value = values.get(i);
+            let value = if piece.is_complement { -value } else { value };
+            shares[lane] = if value > *gap { 1.0 } else { 0.0 };
         }
     }
 }
@@ -194,7 +316,7 @@ mod tests {
         let mut cells = Cells::new();
         cells.cells[7] = Vector(Model::cell([0.0, 0.0, 0.0], [3.0, 0.0, 0.0]));
         let mut shares = [f64::NAN; BLOCK];
-        Pieces::of(shape).passed(&mut cells, &[7], &mut shares);
+        Pieces::of(shape).free(&mut cells, &[7], &mut shares);
         shares[7]
     }
 
@@ -216,6 +338,25 @@ mod tests {
         near(share(&(&c & &a)), 0.5);
         let moved = (&a & &b).translated([0.5, 0.0, 0.0]).unwrap();
         near(share(&moved), 2.0 / 3.0 + 1.0 / 6.0);
+        let is_free = |shape: &Shape<3>, x: f64| {
+            let mut places = Places::new(0.25);
+            places.points[7] = Vector([x, 0.0, 0.0]);
+            let mut shares = [f64::NAN; BLOCK];
+            Pieces::of(shape).free(&mut places, &[7], &mut shares);
+            shares[7] == 1.0
+        };
+        for (shape, x, expected) in [
+            (&a | &b, -0.3, true),
+            (&a | &b, -0.2, false),
+            (&a & &b, 1.2, true),
+            (&a & &b, 1.3, false),
+            (&a - &b, 1.7, false),
+            (&a - &b, 1.8, true),
+            (&b - &a, 2.0, true),
+        ] {
+            assert_eq!(is_free(&shape, x), expected, "{x}");
+            assert_eq!(shape.distance([x, 0.0, 0.0]) > 0.25, expected, "{x}");
+        }
         let ball = Shape::ball(1.0).unwrap().translated([0.0, 2.0, 0.0]).unwrap();
         assert_eq!(share(&ball), 1.0);
     }
