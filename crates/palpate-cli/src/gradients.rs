@@ -71,7 +71,7 @@ fn window<const D: usize>(
     about: Point<D>,
 ) -> Result<Aabb<D>, Failure> {
     if let Some(size) = size {
-        return square(about, size);
+        return Ok(square(about, size));
     }
     let bounds = scene.bounds().ok_or_else(|| {
         Failure::input("--size is needed: no body of the scene has bounds to draw")

@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
+use palpate::field::{Aabb, Vector};
 use palpate::plot::{Figure, Isolines, Measured, PlotError, Sampling, Slice, View};
 use palpate::scene::{AnyScene, BuiltScene, View as SceneView};
 use serde_json::{Value, json};
@@ -95,7 +95,7 @@ impl<const D: usize> Window<D> {
     /// has bounds.
     fn of(options: &PlotOptions, scene: &BuiltScene<D>) -> Result<Self, Failure> {
         if let (Some(centre), Some(size)) = (&options.centre, options.size) {
-            let bounds = square(input::point::<D>(centre)?, size)?;
+            let bounds = square(input::point::<D>(centre)?, size);
             return Ok(Self { bounds, margin: 0.0 });
         }
         let whole =
@@ -105,17 +105,9 @@ impl<const D: usize> Window<D> {
 }
 
 /// A square about `centre`, or a cube, with edges of the length of `--size` [m].
-pub(crate) fn square<const D: usize>(
-    centre: Vector<f64, D>,
-    size: f64,
-) -> Result<Aabb<D>, Failure> {
-    // Written so that NaN is refused.
-    if !(size > 0.0 && size <= LARGEST_LENGTH) {
-        let rule = format!("positive and at most {LARGEST_LENGTH:e} m, got {size:?} m");
-        return Err(Failure::input(format!("--size must be {rule}")));
-    }
+pub(crate) fn square<const D: usize>(centre: Vector<f64, D>, size: f64) -> Aabb<D> {
     let half = Vector::constant(0.5 * size);
-    Ok(Aabb { min: centre - half, max: centre + half })
+    Aabb { min: centre - half, max: centre + half }
 }
 
 /// A scene and what to draw of it.

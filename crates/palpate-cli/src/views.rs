@@ -13,9 +13,6 @@ pub(crate) fn at<const D: usize>(
     scene: &BuiltScene<D>,
     time: f64,
 ) -> Result<BuiltScene<D>, Failure> {
-    if !time.is_finite() {
-        return Err(Failure::input(format!("--time must be finite, got {time} s")));
-    }
     scene.at(time).map_err(Failure::input)
 }
 

@@ -28,6 +28,7 @@ const BORDER: f64 = 14.0;
 /// let pixels = layer.pixels()?;
 /// assert_eq!(pixels.len(), 320 * 240);
 /// assert_eq!(pixels[0], [0, 0, 0, 0]); // nothing is drawn here
+/// assert_eq!(layer.legend_height(), 240.0 / 700.0 * 50.0);
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -94,13 +95,34 @@ impl Layer {
         Ok(self)
     }
 
+    /// The height of the legend below a picture, with borders [px].
+    #[must_use]
+    pub fn legend_height(&self) -> f64 {
+        if self.entries.is_empty() { 0.0 } else { self.scale() * (self.rows() + 2.0 * BORDER) }
+    }
+
+    /// Pixels for each of the drawing.
+    fn scale(&self) -> f64 {
+        f64::from(self.size[1]) / USUAL_HEIGHT
+    }
+
+    /// The width of the legend, in the drawing.
+    fn room(&self) -> f64 {
+        f64::from(self.size[0]) / self.scale() - 2.0 * BORDER
+    }
+
+    /// The height of the rows of the legend, in the drawing.
+    fn rows(&self) -> f64 {
+        legend::draw(&mut Drawing::default(), &self.entries, [0.0; 2], self.room())
+    }
+
     /// Red, green, blue and opacity of each pixel, row by row from the upper left.
     ///
     /// # Errors
     ///
     /// [`PlotError::PictureSize`] if there are no pixels.
     pub fn pixels(&self) -> Result<Vec<[u8; 4]>, PlotError> {
-        let scale = f64::from(self.size[1]) / USUAL_HEIGHT;
+        let scale = self.scale();
         let [width, height] = self.size.map(|side| f64::from(side) / scale);
         let mut drawing = Drawing { width, height, ..Drawing::default() };
         let place = |point: [f64; 2]| point.map(|x| x / scale);
@@ -110,10 +132,8 @@ impl Layer {
         for (point, color) in &self.points {
             Symbol::Disc.draw(&mut drawing, place(*point), *color);
         }
-        let room = width - 2.0 * BORDER;
-        let rows = legend::draw(&mut Drawing::default(), &self.entries, [0.0; 2], room);
-        let corner = [BORDER, height - BORDER - rows];
-        legend::draw(&mut drawing, &self.entries, corner, room);
+        let corner = [BORDER, height - BORDER - self.rows()];
+        legend::draw(&mut drawing, &self.entries, corner, self.room());
         png::transparent(&drawing, self.size, scale).ok_or(PlotError::PictureSize {
             width: self.size[0],
             height: f64::from(self.size[1]),

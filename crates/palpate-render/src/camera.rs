@@ -120,7 +120,12 @@ pub struct Camera {
     is_parallel: bool,
     /// The distance of what is looked at from the eye [m].
     distance: f64,
+    /// Where the line of sight is in the picture: from its upper edge, as a share of its height.
+    middle: f64,
 }
+
+/// The line of sight in the middle of the picture.
+const MIDDLE: f64 = 0.5;
 
 impl Camera {
     /// From `eye` towards `at`. With an orthographic lens the picture shows, at `at`, as much as
@@ -134,7 +139,7 @@ impl Camera {
         let distance = (eye - at).norm();
         let (slope, is_parallel) = (slope(lens)?, lens == Lens::Orthographic);
         let height = 2.0 * slope * if is_parallel { distance } else { 1.0 };
-        Ok(Self { eye, sight, height, is_parallel, distance })
+        Ok(Self { eye, sight, height, is_parallel, distance, middle: MIDDLE })
     }
 
     /// In the direction of `sight`, as near as the picture shows all of `points` with a margin.
@@ -172,7 +177,8 @@ impl Camera {
             let shown = 2.0 * half[1].max(half[0] / aspect).max(f64::MIN_POSITIVE) / within;
             let distance = 2.0 * half[2] + shown;
             let eye = in_world([middle[0], middle[1], middle[2] + distance]);
-            return Ok(Self { eye, sight, height: shown, is_parallel: true, distance });
+            let (height, is_parallel) = (shown, true);
+            return Ok(Self { eye, sight, height, is_parallel, distance, middle: MIDDLE });
         }
         let along = |axis: usize, k: f64| {
             let largest = |sign: f64| {
@@ -192,7 +198,8 @@ impl Camera {
         let depth = if depth > seen.max[2] { depth } else { seen.max[2] + 1.0 };
         let eye = in_world([x, y, depth]);
         let distance = depth - middle[2];
-        Ok(Self { eye, sight, height: 2.0 * slope, is_parallel: false, distance })
+        let (height, is_parallel) = (2.0 * slope, false);
+        Ok(Self { eye, sight, height, is_parallel, distance, middle: MIDDLE })
     }
 
     /// Perpendicular to the plane of `sight`, so that the picture shows `height` [m] around
@@ -211,7 +218,29 @@ impl Camera {
         RenderError::check_positive("the height of what a picture shows", height, " m")?;
         RenderError::check_positive("the distance of a camera", distance, " m")?;
         let eye = centre + sight.back * distance;
-        Ok(Self { eye, sight, height, is_parallel: true, distance })
+        Ok(Self { eye, sight, height, is_parallel: true, distance, middle: MIDDLE })
+    }
+
+    /// What the camera sees, in the upper part of a higher picture: `share` of its height is
+    /// below.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_render::{Camera, Lens};
+    ///
+    /// # fn main() -> Result<(), palpate_render::RenderError> {
+    /// let (eye, at) = (Vector([0.0, 0.0, 3.0]), Vector([0.0, 0.0, 0.0]));
+    /// let camera = Camera::looking(eye, at, Lens::USUAL)?;
+    /// assert_eq!(camera.projected(at, [400, 300]), Some([200.0, 150.0]));
+    /// let higher = camera.with_room_below(0.25);
+    /// assert_eq!(higher.projected(at, [400, 400]), Some([200.0, 150.0]));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_room_below(&self, share: f64) -> Self {
+        let above = 1.0 - share.clamp(0.0, 0.9);
+        Self { height: self.height / above, middle: self.middle * above, ..*self }
     }
 
     /// The camera turned by `angle` [rad] about the vertical through `centre`.
@@ -263,7 +292,7 @@ impl Camera {
         let [x, y, z] = self.sight.parts(point - self.eye);
         let depth = if self.is_parallel { 1.0 } else { -z };
         let scale = f64::from(height) / (self.height * depth);
-        let middle = [0.5 * f64::from(width), 0.5 * f64::from(height)];
+        let middle = [0.5 * f64::from(width), self.middle * f64::from(height)];
         (depth > 0.0).then(|| [middle[0] + scale * x, middle[1] - scale * y])
     }
 
@@ -273,7 +302,7 @@ impl Camera {
         let size = self.height / f64::from(height);
         let Sight { right, up, back } = self.sight;
         let aside = right * ((x - 0.5 * f64::from(width)) * size)
-            + up * ((0.5 * f64::from(height) - y) * size);
+            + up * ((self.middle * f64::from(height) - y) * size);
         let radius = COVER * size;
         if self.is_parallel {
             let (near, far) = (f64::NEG_INFINITY, f64::INFINITY);

@@ -36,6 +36,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test that cannot be set up fails"))]
 
 mod beam;
+mod bundle;
 mod camera;
 mod color;
 mod cut_face;
@@ -46,6 +47,7 @@ mod paint;
 mod render;
 mod settings;
 mod shadow;
+mod sky;
 mod studio;
 mod subject;
 mod surfaces;

@@ -9,10 +9,11 @@ use crate::beam::{Beam, Extent};
 use crate::color::{Color, Light};
 use crate::cut_face;
 use crate::light::Lit;
-use crate::shadow::{Place, Shadow};
+use crate::shadow::{Part, Place, Shadow};
+use crate::sky::Sky;
 use crate::studio::Studio;
 use crate::surfaces::Owners;
-use crate::trace::{End, Met, Tracer, Work};
+use crate::trace::{End, Goal, Met, Tracer, Work};
 
 /// Where bodies without bounds begin to fade, and are gone, as shares of how far they are drawn.
 const FADE: [f64; 2] = [0.25, 0.85];
@@ -52,6 +53,7 @@ pub(crate) struct Painter<'a> {
     studio: &'a Studio,
     tracer: Tracer<'a>,
     shadow: Shadow<'a>,
+    sky: Sky<'a>,
     owners: Owners,
     beams: Vec<Beam>,
     met: Vec<Met>,
@@ -62,6 +64,8 @@ pub(crate) struct Painter<'a> {
     places: Vec<Place>,
     keys: Vec<f64>,
     skies: Vec<f64>,
+    /// Places along the side of a pixel.
+    samples: u32,
 }
 
 impl<'a> Painter<'a> {
@@ -70,6 +74,7 @@ impl<'a> Painter<'a> {
             studio,
             tracer: studio.tracer(),
             shadow: Shadow::new(studio),
+            sky: Sky::new(studio),
             owners: Owners::new(),
             beams: Vec::with_capacity(BLOCK),
             met: Vec::with_capacity(BLOCK),
@@ -80,6 +85,7 @@ impl<'a> Painter<'a> {
             places: Vec::with_capacity(BLOCK),
             keys: Vec::with_capacity(BLOCK),
             skies: Vec::with_capacity(BLOCK),
+            samples: 1,
         }
     }
 
@@ -89,16 +95,19 @@ impl<'a> Painter<'a> {
             .map(|tracer| std::mem::take(&mut tracer.work))
     }
 
-    /// Puts what at most [`BLOCK`] places of the picture [pixels] show into `dabs`. Each is a
-    /// square with `side` [pixels].
-    pub(crate) fn paint(&mut self, places: &[[f64; 2]], side: f64, dabs: &mut Vec<Dab>) {
+    /// Puts what at most [`BLOCK`] places of the picture [pixels] show into `dabs`: `samples` by
+    /// `samples` of a pixel, one pixel after the other.
+    pub(crate) fn paint(&mut self, places: &[[f64; 2]], samples: u32, dabs: &mut Vec<Dab>) {
+        self.samples = samples;
+        let side = 1.0 / f64::from(samples);
         let Studio { camera, settings, background, .. } = self.studio;
         let size = [settings.width, settings.height];
         let beam =
             |place: &[f64; 2]| self.studio.cut(&camera.beam(*place, size).narrowed(side));
         self.beams.clear();
         self.beams.extend(places.iter().map(beam));
-        self.tracer.trace(&self.beams, &mut self.met);
+        self.tracer.aim(&self.beams);
+        self.tracer.trace(Goal::First, &self.beams, &mut self.met);
         dabs.clear();
         dabs.extend(self.met.iter().map(|met| Dab {
             light: if met.end == End::Undecided {
@@ -109,15 +118,15 @@ impl<'a> Painter<'a> {
             is_edge: met.is_beside,
         }));
         self.spots.clear();
-        self.find_bodies(side);
+        self.find_bodies();
         self.find_ground();
         self.light(dabs);
     }
 
-    /// Finds the bodies that rays meet, and their normals; each ray is for a square with `side`
-    /// [pixels].
-    fn find_bodies(&mut self, side: f64) {
-        let Self { studio, beams, met, points, owners, block, slopes, spots, .. } = self;
+    /// Finds the bodies that rays meet, and their normals.
+    fn find_bodies(&mut self) {
+        let Self { studio, beams, met, points, owners, block, slopes, spots, samples, .. } =
+            self;
         let is_seen = |(ray, met): (usize, &Met)| (met.end == End::Surface).then_some(ray);
         let rays: Vec<usize> = met.iter().enumerate().filter_map(is_seen).collect();
         if rays.is_empty() {
@@ -127,7 +136,9 @@ impl<'a> Painter<'a> {
         points.extend(rays.iter().map(|ray| beams[*ray].at(met[*ray].distance)));
         owners.find(&studio.surfaces, points);
         block.fill(points.len(), |i| points[i]);
-        studio.surfaces.whole.block_gradients(block, points.len(), slopes);
+        let surfaces = &studio.surfaces;
+        let near = surfaces.around(points, surfaces.gap);
+        near.as_ref().unwrap_or(&surfaces.whole).block_gradients(block, points.len(), slopes);
         for (i, (ray, point)) in rays.into_iter().zip(&*points).enumerate() {
             let body = owners.bodies[i];
             let matter = if studio.surfaces.is_cut_face(body, *point) {
@@ -138,8 +149,8 @@ impl<'a> Painter<'a> {
             let view = -beams[ray].direction;
             // Where a field is flat, as between two bodies, no direction is right.
             let normal = slopes.gradient.get(i).normalized().unwrap_or(view);
-            let place = Place { point: *point, normal };
-            let pixel = beams[ray].side(met[ray].distance) / side;
+            let place = Place { point: *point, normal, part: Part::of_ray(ray, *samples) };
+            let pixel = beams[ray].side(met[ray].distance) * f64::from(*samples);
             spots.push(Spot { ray, matter, place, view, pixel });
         }
     }
@@ -155,7 +166,8 @@ impl<'a> Painter<'a> {
                 continue;
             }
             self.spots.retain(|spot| spot.ray != ray);
-            let place = Place { point: beam.at(distance), normal: Vector::unit(1) };
+            let (normal, part) = (Vector::unit(1), Part::of_ray(ray, self.samples));
+            let place = Place { point: beam.at(distance), normal, part };
             let (matter, view) = (Matter::Ground, -beam.direction);
             self.spots.push(Spot { ray, matter, place, view, pixel: 0.0 });
         }
@@ -163,11 +175,11 @@ impl<'a> Painter<'a> {
 
     /// Puts the light of all spots into `dabs`.
     fn light(&mut self, dabs: &mut [Dab]) {
-        let Self { studio, shadow, spots, places, keys, skies, .. } = self;
+        let Self { studio, shadow, sky, spots, places, keys, skies, .. } = self;
         places.clear();
         places.extend(spots.iter().map(|spot| spot.place));
         shadow.of_key(places, keys);
-        shadow.of_sky(places, skies);
+        sky.open(places, skies);
         for ((spot, key), open) in spots.iter().zip(&*keys).zip(&*skies) {
             let lit =
                 Lit { normal: spot.place.normal, view: spot.view, key: *key, open: *open };

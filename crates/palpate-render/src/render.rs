@@ -142,7 +142,7 @@ impl Stage<'_> {
         let painted = self.painted(tiles, |painter, tile| {
             let middles = pixels(tile).map(|pixel| pixel.map(|x| f64::from(x) + 0.5));
             let mut dabs = Vec::with_capacity(BLOCK);
-            painter.paint(&middles.collect::<Vec<_>>(), 1.0, &mut dabs);
+            painter.paint(&middles.collect::<Vec<_>>(), 1, &mut dabs);
             dabs
         })?;
         let nothing = Dab { light: Light::NONE, is_edge: false };
@@ -167,8 +167,9 @@ impl Stage<'_> {
         let painted = self.painted(parts.len(), |painter, part| {
             let places: Vec<_> = parts[part].iter().flat_map(|edge| places(*edge)).collect();
             let (mut lights, mut dabs) = (Vec::with_capacity(places.len()), Vec::new());
-            for block in places.chunks(BLOCK) {
-                painter.paint(block, 1.0 / f64::from(samples), &mut dabs);
+            // Whole pixels at a time.
+            for block in places.chunks(BLOCK / offsets.len() * offsets.len()) {
+                painter.paint(block, samples, &mut dabs);
                 lights.extend(dabs.iter().map(|dab| dab.light));
             }
             let mean = |lights: &[Light]| {

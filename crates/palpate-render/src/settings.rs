@@ -109,8 +109,13 @@ impl Settings {
         Self { budget, ..self }
     }
 
-    /// Refuses what cannot be rendered.
-    pub(crate) fn check(&self) -> Result<(), RenderError> {
+    /// Refuses what cannot be rendered, as [`render`](crate::render) does.
+    ///
+    /// # Errors
+    ///
+    /// If the picture has no pixels or too many, the samples are not from 1 to 8, the spacing is
+    /// not positive, or the ground not finite.
+    pub fn check(&self) -> Result<(), RenderError> {
         let Self { width, height, samples, .. } = *self;
         let pixels = u64::from(width) * u64::from(height);
         if pixels == 0 || pixels > MOST_PIXELS {

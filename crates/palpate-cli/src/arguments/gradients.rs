@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::numbers::length;
+
 pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate gradients scenes/memoir_star.json --at 1.35,0.8
@@ -28,7 +30,7 @@ pub(crate) struct GradientsOptions {
     pub(crate) at: String,
     /// How far from the point values are compared [m]; five millionths of the longest edge of the
     /// scene's box if left out.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = length)]
     pub(crate) offset: Option<f64>,
     /// Round the values that are compared to single precision, as the memoir's program does.
     #[arg(long)]
@@ -38,7 +40,7 @@ pub(crate) struct GradientsOptions {
     #[arg(long, value_name = "PICTURE")]
     pub(crate) plot: Option<PathBuf>,
     /// Width and height of the drawn window around the point [m]; the whole scene if left out.
-    #[arg(long, requires = "plot", allow_negative_numbers = true)]
+    #[arg(long, requires = "plot", allow_negative_numbers = true, value_parser = length)]
     pub(crate) size: Option<f64>,
     /// Print JSON.
     #[arg(long)]

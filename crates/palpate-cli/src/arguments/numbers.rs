@@ -40,6 +40,18 @@ pub(super) fn coordinate(text: &str) -> Result<f64, String> {
     ruled(text, &rule, "m", |x| x.abs() <= LARGEST_LENGTH)
 }
 
+/// A number from `least` to `most` in `unit`.
+pub(super) fn within(
+    least: f64,
+    most: f64,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let rule = format!("from {least} to {most} {unit}");
+        ruled(text, &rule, unit, |x| (least..=most).contains(&x))
+    }
+}
+
 /// A whole number from `least` to `most`.
 pub(super) fn count<T>(
     least: T,
@@ -107,6 +119,10 @@ mod tests {
                 "must be positive and at most 1e15 m, got 2000000000000000 m",
             ),
             (length("0,5").map(drop), "must be a number; a decimal comma is written 0.5"),
+            (
+                within(-90.0, 90.0, "degrees")("nan").map(drop),
+                "must be from -90 to 90 degrees, got NaN degrees",
+            ),
             (coordinate("x").map(drop), "must be a number"),
             (count(1, 9)("10").map(drop), "must be a whole number from 1 to 9, got 10"),
             (at_least(1)("0.5").map(drop), "must be a whole number of at least 1, got 0.5"),

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::ContactQuestion;
-use super::numbers::{coordinate, count, length};
+use super::numbers::{coordinate, count, length, zero_or_more};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -47,7 +47,7 @@ pub(crate) struct PlotOptions {
     #[arg(long, requires = "centre", allow_negative_numbers = true, value_parser = length)]
     pub(crate) size: Option<f64>,
     /// Where bodies are at this time [s], if the scene has motions.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = zero_or_more("s"))]
     pub(crate) time: f64,
     /// What colours show.
     #[arg(long, value_enum, default_value_t = PlotMap::Distance)]
@@ -61,7 +61,7 @@ pub(crate) struct PlotOptions {
     pub(crate) gradient: Option<String>,
     /// How far from a point --gradient compares values [m]; five millionths of the longest edge of
     /// the scene's box if left out.
-    #[arg(long, requires = "gradient", allow_negative_numbers = true)]
+    #[arg(long, requires = "gradient", allow_negative_numbers = true, value_parser = length)]
     pub(crate) offset: Option<f64>,
     /// Round the values that --gradient compares to single precision.
     #[arg(long, requires = "gradient")]

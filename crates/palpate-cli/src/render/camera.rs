@@ -18,8 +18,16 @@ use crate::{picture, views};
 /// How many sides a turntable shows, to find a distance from which it shows all.
 const SIDES: u32 = 16;
 
-/// The camera of `--from`, or of `--azimuth` and `--elevation`.
-pub(super) fn of(options: &RenderOptions, subject: &Subject) -> Result<Camera, Failure> {
+/// The most of a picture's height that is left free for the legend.
+const MOST_LEGEND: f64 = 0.5;
+
+/// The camera of `--from`; or that of `--azimuth` and `--elevation`, which shows the scene above
+/// a legend with a share of the picture's height.
+pub(super) fn of(
+    options: &RenderOptions,
+    subject: &Subject,
+    legend: f64,
+) -> Result<Camera, Failure> {
     let lens = match options.field_of_view {
         _ if options.orthographic => Lens::Orthographic,
         Some(angle) => Lens::Perspective(angle.to_radians()),
@@ -36,7 +44,9 @@ pub(super) fn of(options: &RenderOptions, subject: &Subject) -> Result<Camera, F
         Some(_) => turned(subject),
         None => subject.corners().to_vec(),
     };
-    Camera::fitting(&corners, sight, lens, aspect(options)).map_err(Failure::input)
+    let legend = legend.min(MOST_LEGEND);
+    let camera = Camera::fitting(&corners, sight, lens, aspect(options) / (1.0 - legend));
+    Ok(camera.map_err(Failure::input)?.with_room_below(legend))
 }
 
 /// The camera in front of the plane of a view, and of all that has bounds.

@@ -4,6 +4,7 @@
 //! The pictures of a run, and their files.
 
 use std::f64::consts::TAU;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -13,13 +14,13 @@ use super::stage::Stage;
 use crate::arguments::RenderOptions;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
-use crate::output::{self, Destination, Files};
-
-/// The most pictures of a turntable.
-const MOST_PICTURES: u32 = 3600;
+use crate::output::{self, Destination, Files, shown};
 
 /// The most pixels of an animated PNG, whose pictures wait in memory: 600 megabytes.
 const MOST_PIXELS: u64 = 200_000_000;
+
+/// How long an animated PNG shows a picture at most [s]; its number of milliseconds has 16 bits.
+const LONGEST: f64 = 65.0;
 
 /// Steps of the progress bar for each picture.
 const STEPS: f64 = 100.0;
@@ -122,6 +123,9 @@ impl Frames {
                 Self::Many(files) => {
                     let file = &files[picture as usize];
                     file.write(|out| image.write_png(out).map_err(failed))?;
+                    if !stage.options.json {
+                        bar.suspend(|| say(file.name()))?;
+                    }
                     drawn.files.push(file.name().to_owned());
                 }
             }
@@ -193,16 +197,14 @@ fn delay(options: &RenderOptions) -> u16 {
     (1e3 * options.turn_time / pictures).round().clamp(1.0, f64::from(u16::MAX)) as u16
 }
 
-/// Refuses turntables without pictures, or with too many.
+/// Refuses turntables that no file holds.
 fn check(options: &RenderOptions, pictures: u32) -> Result<(), Failure> {
-    if pictures == 0 || pictures > MOST_PICTURES {
-        let rule = format!("--turntable must be 1 to {MOST_PICTURES} pictures, got {pictures}");
-        return Err(Failure::input(rule));
-    }
-    let time = options.turn_time;
-    if !(time > 0.0 && time <= 65.0 * f64::from(pictures)) {
-        let rule = "--turn-time must be positive, and at most 65 s for each picture";
-        return Err(Failure::input(format!("{rule}, got {time} s")));
+    let (time, most) = (options.turn_time, LONGEST * f64::from(pictures));
+    if time > most {
+        return Err(Failure::input(format!(
+            "--turn-time must be at most {most} s for {pictures} pictures, {LONGEST} s for each, \
+             got {time} s"
+        )));
     }
     let pixels = u64::from(options.width) * u64::from(options.height) * u64::from(pictures);
     if options.frames.is_none() && pixels > MOST_PIXELS {
@@ -212,6 +214,11 @@ fn check(options: &RenderOptions, pictures: u32) -> Result<(), Failure> {
         )));
     }
     Ok(())
+}
+
+/// Prints a line for a picture that is written.
+fn say(path: &Path) -> Result<(), Failure> {
+    Ok(writeln!(output::answer(), "{}", shown(&path.display().to_string()))?)
 }
 
 fn failed(error: RenderError) -> Failure {

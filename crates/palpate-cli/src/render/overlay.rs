@@ -4,7 +4,7 @@
 //! What is drawn over a picture: the names of bodies, and contacts.
 
 use palpate::plot::{Color, Layer};
-use palpate::render::{Camera, Color as BodyColor};
+use palpate::render::{Body, Camera, Color as BodyColor, Settings};
 
 use super::stage::Stage;
 use crate::outcome::Failure;
@@ -15,17 +15,23 @@ const MOST_NAMES: usize = 12;
 /// The length of a normal, as a share of the picture's height.
 const NORMAL: f64 = 0.06;
 
+/// The legend of a picture: the names of bodies.
+pub(super) fn legend(settings: &Settings, names: &[String], bodies: &[Body]) -> Layer {
+    let mut layer = Layer::new(settings.width, settings.height);
+    for (name, body) in names.iter().zip(bodies).take(MOST_NAMES) {
+        let BodyColor([red, green, blue]) = body.color;
+        layer = layer.with_entry(Color::rgb(red, green, blue), name);
+    }
+    if names.len() > MOST_NAMES {
+        layer = layer.with_words(format!("and {} more", names.len() - MOST_NAMES));
+    }
+    layer
+}
+
 impl Stage<'_> {
     /// Red, green, blue and opacity of each pixel of what lies over the picture.
     pub(super) fn overlay(&self, camera: &Camera) -> Result<Vec<[u8; 4]>, Failure> {
-        let mut layer = Layer::new(self.settings.width, self.settings.height);
-        for (name, body) in self.names.iter().zip(self.subject.bodies()).take(MOST_NAMES) {
-            let BodyColor([red, green, blue]) = body.color;
-            layer = layer.with_entry(Color::rgb(red, green, blue), name);
-        }
-        if self.names.len() > MOST_NAMES {
-            layer = layer.with_words(format!("and {} more", self.names.len() - MOST_NAMES));
-        }
+        let layer = legend(&self.settings, &self.names, self.subject.bodies());
         self.with_contacts(layer, camera)?.pixels().map_err(Failure::input)
     }
 

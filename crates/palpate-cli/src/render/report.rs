@@ -26,17 +26,15 @@ impl Report<'_> {
             out.json(&self.described())?;
             return Ok(());
         }
-        let (Some(first), Some(last)) = (self.drawn.files.first(), self.drawn.files.last())
-        else {
-            return Ok(());
+        // Numbered files have a line each.
+        let what = match &self.drawn.files[..] {
+            [] => return Ok(()),
+            [file] => shown(&file.display().to_string()).to_string(),
+            files => format!("{} pictures", files.len()),
         };
-        let mut names = shown(&first.display().to_string()).to_string();
-        if first != last {
-            names = format!("{names} to {}", shown(&last.display().to_string()));
-        }
         let [sight, light] = &self.drawn.work;
         let rays = sight.rays + light.rays;
-        writeln!(out, "{names}: {} rays, {}", rays, decided(sight, light))?;
+        writeln!(out, "{what}: {} rays, {}", rays, decided(sight, light))?;
         if sight.undecided + light.undecided > 0 {
             let budget = self.stage.settings.budget;
             writeln!(

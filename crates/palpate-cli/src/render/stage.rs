@@ -7,7 +7,7 @@ use palpate::field::Vector;
 use palpate::render::{Body, Camera, Color, Cut, Settings, Shadows, Subject};
 use palpate::scene::{BuiltBody, BuiltScene, View};
 
-use super::camera;
+use super::{camera, overlay};
 use crate::arguments::{RenderOptions, ShadowChoice};
 use crate::contact::Touched;
 use crate::outcome::Failure;
@@ -36,14 +36,17 @@ impl<'a> Stage<'a> {
         };
         let bodies = scene.bodies.iter().enumerate().map(body).collect();
         let subject = Subject::new(bodies).map_err(Failure::input)?;
+        let names: Vec<_> = scene.bodies.iter().map(|body| body.name.clone()).collect();
+        let settings = settings(options);
+        settings.check().map_err(Failure::input)?;
+        let legend = overlay::legend(&settings, &names, subject.bodies()).legend_height();
         let camera = match view {
             Some(view) => camera::of_view(options, &subject, view)?,
-            None => camera::of(options, &subject)?,
+            None => camera::of(options, &subject, legend / f64::from(options.height))?,
         };
         let find = || Touched::find(&options.question, scene, false);
         let touched = options.contacts.then(find).transpose()?;
-        let names = scene.bodies.iter().map(|body| body.name.clone()).collect();
-        let settings = settings(options).with_ground(ground(options, &subject, &camera));
+        let settings = settings.with_ground(ground(options, &subject, &camera));
         let mut stage = Self { options, names, subject, camera, settings, touched };
         stage.settings.cut = stage.cut(view)?;
         Ok(stage)

@@ -157,10 +157,6 @@ fn options_that_do_not_fit_the_map_are_refused() {
             "--single is for --gradient differences, dichotomy and adaptive_dichotomy: closest_vector compares no values",
         ),
         (
-            &["--map", "error", "--gradient", "differences", "--offset", "0"],
-            "--offset must be positive and at most 1e15 m, got 0.0 m",
-        ),
-        (
             &["--map", "error", "--gradient", "exact", "--step", "0.1"],
             "--step is only for --map distance: other maps have no isolines",
         ),

@@ -183,6 +183,27 @@ fn the_gallery_ends_with_whole_sheets() {
     }
 }
 
+#[test]
+fn a_turntable_keeps_the_pictures_that_are_finished() {
+    let folder = Folder::new();
+    let frames = folder.name("frames");
+    let run = ["render", "scenes/cup.json", "--turntable", "1000", "--frames", &frames];
+    let mut run = Run::start(&[&run[..], &["--width", "80", "--height", "60"]].concat());
+    let mut answers = BufReader::new(run.0.stdout.take().unwrap());
+    let first = line(&mut answers);
+    assert!(first.ends_with("cup-0001.png\n"), "{first}");
+    run.signal(SIGINT);
+    let rest: Vec<String> = answers.lines().map(Result::unwrap).collect();
+    assert_eq!(run.0.wait().unwrap().code(), INTERRUPTED);
+    let finished = fs::read_dir(&frames).unwrap().count();
+    assert!(finished < 1000, "all pictures were drawn");
+    assert!(rest.len() == finished || rest.len() == finished - 1, "{rest:?}");
+    for picture in fs::read_dir(&frames).unwrap() {
+        let png = fs::read(picture.unwrap().path()).unwrap();
+        assert!(png.ends_with(b"IEND\xAE\x42\x60\x82"));
+    }
+}
+
 /// A signal did nothing until the body was weighed, half a minute later.
 #[test]
 fn mass_ends_while_it_weighs_a_body() {

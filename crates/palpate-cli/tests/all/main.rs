@@ -17,4 +17,5 @@ mod motions;
 mod outputs;
 mod pictures;
 mod program;
+mod render;
 mod touch;

@@ -289,6 +289,19 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
             "must be a whole number of at least 1, got 1e6".into(),
         ),
         ("contact", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
+        ("plot", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
+        ("plot", "--time <TIME>", "inf", format!("{zero_or_more}, got inf s")),
+        ("plot", "--offset <OFFSET>", "0", format!("{length}, got 0 m")),
+        ("gradients", "--offset <OFFSET>", "0", format!("{length}, got 0 m")),
+        ("gradients", "--offset <OFFSET>", "-1", format!("{length}, got -1 m")),
+        ("gradients", "--offset <OFFSET>", "nan", format!("{length}, got NaN m")),
+        (
+            "gradients",
+            "--offset <OFFSET>",
+            "1e16",
+            format!("{length}, got 1{} m", "0".repeat(16)),
+        ),
+        ("gradients", "--size <SIZE>", "-1", format!("{length}, got -1 m")),
         ("plot", "--step <STEP>", "0", format!("{length}, got 0 m")),
         (
             "plot",
@@ -331,6 +344,45 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
     ] {
         let name = option.split(' ').next().unwrap();
         assert_eq!(refused(&folder, &[command, name, value]), invalid(value, option, &rule));
+    }
+}
+
+#[test]
+fn numbers_of_pictures_keep_the_rules_of_render() {
+    let folder = Folder::new();
+    folder.write("ball.json", BALL);
+    let whole = |rule: &str| format!("must be a whole number {rule}");
+    let degrees = |least: f64, most: f64| format!("must be from {least} to {most} degrees");
+    let length = "must be positive and at most 1e15 m";
+    for (option, value, rule) in [
+        ("--azimuth <AZIMUTH>", "nan", degrees(-360.0, 360.0) + ", got NaN degrees"),
+        ("--azimuth <AZIMUTH>", "361", degrees(-360.0, 360.0) + ", got 361 degrees"),
+        ("--elevation <ELEVATION>", "-91", degrees(-90.0, 90.0) + ", got -91 degrees"),
+        ("--field-of-view <FIELD_OF_VIEW>", "0", degrees(1.0, 170.0) + ", got 0 degrees"),
+        ("--field-of-view <FIELD_OF_VIEW>", "180", degrees(1.0, 170.0) + ", got 180 degrees"),
+        ("--time <TIME>", "-1", "must be zero or more and finite, got -1 s".into()),
+        ("--time <TIME>", "nan", "must be zero or more and finite, got NaN s".into()),
+        (
+            "--slice-at <SLICE_AT>",
+            "inf",
+            "must be finite and at most 1e15 m in size, got inf m".into(),
+        ),
+        ("--step <STEP>", "-1", format!("{length}, got -1 m")),
+        ("--step <STEP>", "0", format!("{length}, got 0 m")),
+        ("--samples <SAMPLES>", "0", whole("from 1 to 8, got 0")),
+        ("--samples <SAMPLES>", "9", whole("from 1 to 8, got 9")),
+        ("--ray-budget <RAY_BUDGET>", "0", whole("of at least 1, got 0")),
+        ("--turntable <PICTURES>", "0", whole("from 1 to 3600, got 0")),
+        ("--turntable <PICTURES>", "3601", whole("from 1 to 3600, got 3601")),
+        ("--turn-time <TURN_TIME>", "0", "must be positive and finite, got 0 s".into()),
+        ("--width <WIDTH>", "15", whole("from 16 to 16384, got 15")),
+        ("--width <WIDTH>", "-1", whole("from 16 to 16384, got -1")),
+        ("--height <HEIGHT>", "99999999999", whole("from 16 to 16384, got 99999999999")),
+        ("--threads <THREADS>", "0", whole("of at least 1, got 0")),
+    ] {
+        let name = option.split(' ').next().unwrap();
+        let said = refused(&folder, &["render", "ball.json", name, value]);
+        assert_eq!(said, invalid(value, option, &rule));
     }
 }
 

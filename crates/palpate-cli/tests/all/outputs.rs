@@ -20,7 +20,9 @@ fn no_command_overwrites_its_input() {
     let points = folder.write("points.csv", POINTS);
     let hand = folder.write("hand.csv", "time_s,x_m,y_m,z_m\n0,0,1,0\n1,0,0.6,0\n");
     let other_name = format!("{}/./scene.svg", folder.name(""));
-    let commands: [&[&str]; 10] = [
+    let picture = folder.write("scene.png", BALL);
+    let commands: [&[&str]; 11] = [
+        &["render", &picture, "--output", &picture],
         &["eval", &scene, "--points", &points, "--output", &scene],
         &["eval", &scene, "--points", &points, "--output", &points],
         &["plot", &scene, "--output", &other_name],
@@ -38,11 +40,11 @@ fn no_command_overwrites_its_input() {
         assert!(errors(&output).contains("would overwrite the"), "{}", errors(&output));
         assert_eq!(text(&output), "", "{command:?} ran");
     }
-    for (name, content) in [("scene.svg", BALL), ("points.csv", POINTS)] {
+    for (name, content) in [("scene.svg", BALL), ("scene.png", BALL), ("points.csv", POINTS)] {
         assert_eq!(fs::read_to_string(folder.path(name)).unwrap(), content);
     }
     let left: Vec<_> = fs::read_dir(folder.path("")).unwrap().collect();
-    assert_eq!(left.len(), 3, "{left:?}");
+    assert_eq!(left.len(), 4, "{left:?}");
 }
 
 /// The default name of a plot is made of the scene's.

@@ -10,15 +10,16 @@
 
 mod balls;
 mod models;
+mod pieces;
 #[cfg(test)]
 mod tests;
 
-use palpate_field::{BLOCK, Block, Column, Quality, Shape};
+use palpate_field::{BLOCK, Block, Column, Shape};
 use palpate_query::{Limits, Ray, Stop, cast_ray};
 
 use crate::beam::Beam;
 use crate::surfaces::Surfaces;
-use models::Models;
+use pieces::{Cells, Pieces, Places, is_steep};
 
 /// Rounds by balls: a ray that needs more grazes a surface, which models pass in longer steps.
 const ROUNDS_BY_BALLS: u32 = 24;
@@ -26,9 +27,13 @@ const ROUNDS_BY_BALLS: u32 = 24;
 /// Rounds by models before rays are cast one by one: a ray through a fine thread needs hundreds.
 const ROUNDS_BY_MODELS: u32 = 400;
 
-/// Fields steeper than this are passed by models alone: a ball about a value `f` has the radius
-/// `f / L`, where models follow the slope that the field has there.
-const STEEP: f64 = 1.5;
+/// By how much of the gap a piece must be nearer than the whole to be a surface: their fields
+/// differ by roundings.
+const NEARER: f64 = 1e-6;
+
+/// Samples along a ray that may meet any surface, and where the first is, in gaps.
+const SAMPLES: u32 = 16;
+const FIRST_SAMPLE: f64 = 16.0;
 
 /// How a ray ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +44,17 @@ pub(crate) enum End {
     Surface,
     /// The budget was spent before.
     Undecided,
+}
+
+/// What is to be found out about a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Goal {
+    /// The first surface that it meets.
+    First,
+    /// Whether it meets a surface, first or not.
+    Any,
+    /// Whether its cone is free; if it is not, the ray may end anywhere.
+    Cone,
 }
 
 /// What a ray met.
@@ -57,14 +73,27 @@ struct Lane {
     /// The number of its beam.
     beam: usize,
     distance: f64,
-    /// The length of the next step by a model [m].
+    /// The length of the next step by models, and the last one that was too long [m].
     step: f64,
+    too_long: f64,
     /// `true` from where the cone was not proven free.
     is_near: bool,
     /// `true` where the ray has left a surface that may have been in its cone.
     is_beside: bool,
     /// `true` where a step by a model is for the ray alone, without its cone.
     is_thin: bool,
+    look: Look,
+}
+
+/// Whether the field where a ray is has been looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    /// It has not, and may be zero.
+    Due,
+    /// It has not, and is positive.
+    Needless,
+    /// It has.
+    Done,
 }
 
 /// How many rays were traced, and what they cost.
@@ -94,43 +123,120 @@ impl Work {
 /// Traces beams, a block at a time.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a> {
-    shape: &'a Shape<3>,
+    surfaces: &'a Surfaces,
+    /// What the rays may meet; `None` if that is nothing.
+    shape: Option<Shape<3>>,
+    /// Its pieces, once they are needed.
+    pieces: Option<Pieces>,
     limits: Limits,
     is_steep: bool,
     lanes: Vec<Lane>,
     block: Block<f64, 3, BLOCK>,
     values: Column<f64, BLOCK>,
-    models: Models,
+    cells: Cells,
+    places: Places,
     pub(crate) work: Work,
 }
 
 impl<'a> Tracer<'a> {
     /// Through `surfaces`, with a budget of evaluations for each ray.
     pub(crate) fn new(surfaces: &'a Surfaces, budget: u32) -> Self {
-        let promise = surfaces.whole.promise();
         Self {
-            shape: &surfaces.whole,
+            surfaces,
+            shape: None,
+            pieces: None,
             limits: Limits::new(surfaces.gap).with_budget(budget),
-            is_steep: promise.outside == Quality::Lipschitz && promise.lipschitz > STEEP,
+            is_steep: false,
             lanes: Vec::with_capacity(BLOCK),
             block: Block::zero(),
             values: Column::zero(),
-            models: Models::new(),
+            cells: Cells::new(),
+            places: Places::new(surfaces.gap * (1.0 - NEARER)),
             work: Work::default(),
         }
     }
 
-    /// Traces at most [`BLOCK`] beams, and puts what each met into `met`, in their order.
-    pub(crate) fn trace(&mut self, beams: &[Beam], met: &mut Vec<Met>) {
+    /// Gets ready for lines in these beams.
+    pub(crate) fn aim(&mut self, beams: &[Beam]) {
+        self.shape = self.surfaces.along(beams);
+        self.pieces = None;
+        self.is_steep = self.shape.as_ref().is_some_and(is_steep);
+        self.cells.has_steep = self.is_steep;
+    }
+
+    /// Traces at most [`BLOCK`] beams within those that it was [aimed](Self::aim) along, and puts
+    /// what each met into `met`, in their order.
+    pub(crate) fn trace(&mut self, goal: Goal, beams: &[Beam], met: &mut Vec<Met>) {
+        self.begin(beams, met);
+        if goal == Goal::Any && self.is_steep {
+            self.sample(beams, met);
+        }
+        self.finish(goal, beams, met);
+    }
+
+    /// All beams at their beginning.
+    fn begin(&mut self, beams: &[Beam], met: &mut Vec<Met>) {
         met.clear();
         self.lanes.clear();
         self.work.rays += beams.len() as u64;
         for (number, beam) in beams.iter().enumerate() {
             met.push(Met { end: End::Free, distance: beam.far, is_beside: false });
-            if beam.near < beam.far {
+            if beam.near < beam.far && self.shape.is_some() {
                 self.lanes.push(Lane::new(number, beam));
             }
         }
+    }
+
+    /// Ends rays with a surface where points of them are in one.
+    fn sample(&mut self, beams: &[Beam], met: &mut [Met]) {
+        let first = FIRST_SAMPLE * self.limits.tolerance;
+        for sample in 0..SAMPLES {
+            let place = |lane: &Lane| {
+                let Beam { near, far, .. } = beams[lane.beam];
+                let length = far - near;
+                // In even ratios, up to the end.
+                let share = libm::pow(first / length, f64::from(sample) / f64::from(SAMPLES));
+                near + length * share
+            };
+            self.look(beams, met, |_| true, place);
+        }
+    }
+
+    /// Ends rays at surfaces, of those that are `due`, at a place of each.
+    fn look(
+        &mut self,
+        beams: &[Beam],
+        met: &mut [Met],
+        is_due: impl Fn(&Lane) -> bool,
+        place: impl Fn(&Lane) -> f64,
+    ) {
+        let Self { lanes, shape, pieces, places, is_steep, work, .. } = self;
+        let Some(shape) = &shape else { return };
+        // At points, a field that is not steep skips members of its unions by itself.
+        let whole = Pieces::whole(shape);
+        let pieces =
+            if *is_steep { pieces.get_or_insert_with(|| Pieces::of(shape)) } else { &whole };
+        let due: Vec<usize> = (0..lanes.len()).filter(|i| is_due(&lanes[*i])).collect();
+        for lane in &due {
+            places.points[*lane] = beams[lanes[*lane].beam].at(place(&lanes[*lane]));
+        }
+        let mut shares = [1.0; BLOCK];
+        pieces.free(places, &due, &mut shares);
+        work.evaluations += std::mem::take(&mut places.evaluations);
+        let mut number = 0;
+        lanes.retain(|lane| {
+            let is_free = shares[number] > 0.0;
+            number += 1;
+            if !is_free {
+                let (end, is_beside) = (End::Surface, lane.is_beside);
+                met[lane.beam] = Met { end, distance: place(lane), is_beside };
+            }
+            is_free
+        });
+    }
+
+    /// Advances rays to their ends.
+    fn finish(&mut self, goal: Goal, beams: &[Beam], met: &mut [Met]) {
         let mut budget = self.limits.budget;
         let mut rounds = |most: u32| {
             let rounds = most.min(budget);
@@ -139,10 +245,12 @@ impl<'a> Tracer<'a> {
         };
         let by_balls = rounds(if self.is_steep { 0 } else { ROUNDS_BY_BALLS });
         for _ in 0..by_balls {
-            self.round(beams, met, false);
+            self.round_by_balls(beams, met);
+            self.give_up(goal, met);
         }
         for _ in 0..rounds(ROUNDS_BY_MODELS) {
-            self.round(beams, met, true);
+            self.round_by_models(beams, met);
+            self.give_up(goal, met);
         }
         for lane in std::mem::take(&mut self.lanes) {
             let end = self.cast(&beams[lane.beam], lane, budget);
@@ -151,35 +259,48 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Ends rays that are at a surface, and advances the others.
-    fn round(&mut self, beams: &[Beam], met: &mut [Met], by_models: bool) {
-        if self.lanes.is_empty() {
+    /// Ends rays that are at a surface, and advances the others by balls.
+    fn round_by_balls(&mut self, beams: &[Beam], met: &mut [Met]) {
+        let Some(shape) = self.shape.as_ref().filter(|_| !self.lanes.is_empty()) else {
             return;
-        }
-        let Self { shape, lanes, block, values, models, work, limits, .. } = self;
+        };
+        let Self { lanes, block, values, work, limits, .. } = self;
         block.fill(lanes.len(), |i| beams[lanes[i].beam].at(lanes[i].distance));
         shape.block_distances(block, lanes.len(), values);
         work.evaluations += lanes.len() as u64;
-        let mut kept = 0;
-        for i in 0..lanes.len() {
-            let (mut lane, value) = (lanes[i], values.get(i));
-            let beam = &beams[lane.beam];
-            if value <= limits.tolerance {
-                let Lane { distance, is_beside, .. } = lane;
+        let mut number = 0;
+        lanes.retain_mut(|lane| {
+            let value = values.get(number);
+            number += 1;
+            let is_free = value > limits.tolerance;
+            if is_free {
+                lane.advance_by_ball(shape, &beams[lane.beam], value);
+            } else {
+                let Lane { distance, is_beside, .. } = *lane;
                 met[lane.beam] = Met { end: End::Surface, distance, is_beside };
-                continue;
             }
-            if !by_models {
-                lane.advance_by_ball(shape, beam, value);
-            }
-            (lanes[kept], kept) = (lane, kept + 1);
-        }
-        lanes.truncate(kept);
-        if by_models {
-            models.advance(shape, beams, lanes);
-            work.evaluations += lanes.len() as u64;
-        }
-        lanes.retain(|lane| {
+            is_free
+        });
+        self.end(beams, met);
+    }
+
+    /// Ends rays that are at a surface, and advances the others by models.
+    fn round_by_models(&mut self, beams: &[Beam], met: &mut [Met]) {
+        self.look(beams, met, |lane| lane.look == Look::Due, |lane| lane.distance);
+        let Self { lanes, shape, pieces, cells, work, .. } = self;
+        let Some(shape) = shape.as_ref().filter(|_| !lanes.is_empty()) else { return };
+        lanes.iter_mut().filter(|lane| lane.look == Look::Due).for_each(|lane| {
+            lane.look = Look::Done;
+        });
+        let pieces = pieces.get_or_insert_with(|| Pieces::of(shape));
+        models::advance(pieces, beams, lanes, cells);
+        work.evaluations += std::mem::take(&mut cells.evaluations);
+        self.end(beams, met);
+    }
+
+    /// Ends rays that have come to their end.
+    fn end(&mut self, beams: &[Beam], met: &mut [Met]) {
+        self.lanes.retain(|lane| {
             let beam = &beams[lane.beam];
             let is_under_way = lane.distance < beam.far;
             if !is_under_way {
@@ -190,6 +311,19 @@ impl<'a> Tracer<'a> {
         });
     }
 
+    /// Ends rays of which all is known that is to be found out.
+    fn give_up(&mut self, goal: Goal, met: &mut [Met]) {
+        if goal == Goal::Cone {
+            self.lanes.retain(|lane| {
+                if lane.is_near {
+                    let (end, distance) = (End::Surface, lane.distance);
+                    met[lane.beam] = Met { end, distance, is_beside: true };
+                }
+                !lane.is_near
+            });
+        }
+    }
+
     /// Casts what is left of a ray.
     fn cast(&mut self, beam: &Beam, lane: Lane, budget: u32) -> Met {
         self.work.grazing += 1;
@@ -197,9 +331,8 @@ impl<'a> Tracer<'a> {
         let undecided = Met { end: End::Undecided, distance, is_beside: true };
         let ray = Ray::new(beam.at(distance), beam.direction, beam.far - distance);
         let limits = self.limits.with_budget(budget);
-        let Ok(found) = ray.and_then(|ray| cast_ray(self.shape, &ray, &limits)) else {
-            return undecided;
-        };
+        let Some((shape, ray)) = self.shape.as_ref().zip(ray.ok()) else { return undecided };
+        let Ok(found) = cast_ray(shape, &ray, &limits) else { return undecided };
         self.work.evaluations += u64::from(found.evaluations);
         match (found.stop, found.best) {
             (Stop::SignKnown, _) => {
@@ -219,9 +352,11 @@ impl Lane {
             beam: number,
             distance: beam.near,
             step: models::first_step(beam),
+            too_long: f64::INFINITY,
             is_near: false,
             is_beside: false,
             is_thin: false,
+            look: Look::Due,
         }
     }
 }

@@ -10,52 +10,44 @@
 //! the field has there, however steep it is elsewhere, and along a surface they follow its curve.
 
 use palpate_field::scalar::Model;
-use palpate_field::{BLOCK, Block, Column, Shape, Vector};
+use palpate_field::{BLOCK, Vector};
 
-use super::Lane;
+use super::pieces::{Cells, Pieces};
+use super::{Lane, Look};
 use crate::beam::Beam;
 
 /// The first step, as a share of the ray.
 const FIRST: f64 = 0.25;
 
-/// How much longer the step after a whole one is, and how much shorter after none.
+/// How much longer the step after a whole one is, and how much shorter after another; it stays
+/// below the last length that was too long, which may be tried again after a few steps.
 const GROWTH: f64 = 2.5;
-const SHRINKAGE: f64 = 0.3;
+const SHRINKAGE: f64 = 0.35;
+const BELOW: f64 = 0.8;
+const RELIEF: f64 = 1.2;
 
-/// A cell this many times as long as its cone is wide is not made shorter: the surface is in the
-/// cone. A ray that passes as long a cell alone has left the surface.
+/// A cell shorter than its cone is wide is not made shorter: the surface is in the cone. A ray
+/// that passes a cell so many times as long alone has left the surface.
 const SLENDER: f64 = 8.0;
 
 /// The rounding of the middle of a cell and of its sides, in units of their sizes.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
-
-/// Memory for the models of a block of rays.
-#[derive(Debug)]
-pub(super) struct Models {
-    cells: Block<Model, 3, BLOCK>,
-    models: Column<Model, BLOCK>,
-}
 
 /// The length of the first step of a beam [m].
 pub(super) fn first_step(beam: &Beam) -> f64 {
     FIRST * (beam.far - beam.near)
 }
 
-impl Models {
-    pub(super) fn new() -> Self {
-        Self { cells: Block::zero(), models: Column::zero() }
+/// Advances rays by what models of the pieces prove.
+pub(super) fn advance(pieces: &Pieces, beams: &[Beam], lanes: &mut [Lane], cells: &mut Cells) {
+    let all: Vec<usize> = (0..lanes.len()).collect();
+    for (lane, cell) in lanes.iter().zip(&mut cells.cells) {
+        *cell = lane.cell(&beams[lane.beam]);
     }
-
-    /// Advances rays by what models of the field prove.
-    pub(super) fn advance(&mut self, shape: &Shape<3>, beams: &[Beam], lanes: &mut [Lane]) {
-        if lanes.is_empty() {
-            return;
-        }
-        self.cells.fill(lanes.len(), |i| lanes[i].cell(&beams[lanes[i].beam]));
-        shape.block_distances(&self.cells, lanes.len(), &mut self.models);
-        for (i, lane) in lanes.iter_mut().enumerate() {
-            lane.advance_by_model(&beams[lane.beam], &self.models.get(i));
-        }
+    let mut shares = [0.0; BLOCK];
+    pieces.free(cells, &all, &mut shares);
+    for (lane, share) in lanes.iter_mut().zip(shares) {
+        lane.advance_by_model(&beams[lane.beam], share);
     }
 }
 
@@ -82,56 +74,29 @@ impl Lane {
         }))
     }
 
-    fn advance_by_model(&mut self, beam: &Beam, model: &Model) {
+    /// Advances, where a share of the next cell from its beginning is free.
+    fn advance_by_model(&mut self, beam: &Beam, share: f64) {
         let (end, cone) = (self.end(beam), beam.radius(self.end(beam)));
         let length = end - self.distance;
-        if model.minimum() > 0.0 {
+        if share >= 1.0 {
             self.distance = end;
             if self.is_thin && length > SLENDER * cone {
                 self.is_beside |= self.is_near;
                 self.is_thin = false;
             }
-            self.step = GROWTH * length;
+            self.step = (GROWTH * length).min(BELOW * self.too_long);
+            self.too_long *= RELIEF;
+            self.look = Look::Needless;
             return;
         }
-        let share = passed(model);
-        if share < 0.5 && length < SLENDER * self.cone(beam) {
+        if share < 0.5 && length < self.cone(beam) {
             (self.is_near, self.is_thin) = (true, true);
         }
+        // Where no step is proven, the surface may be as near as the ray.
+        if share > 0.0 || self.look == Look::Needless {
+            self.look = Look::Due;
+        }
         self.distance += share * length;
-        self.step = SHRINKAGE * length;
-    }
-}
-
-/// The share of a cell from its beginning over which a model is positive.
-fn passed(model: &Model) -> f64 {
-    let [along, across, other] = model.gradient;
-    // Room for the roundings of this sum, as `Model::minimum` has it.
-    let inflated = 1.0 + 8.0 * f64::EPSILON;
-    let below = (across.abs() + other.abs() + model.lower) * inflated;
-    let least = model.value - below - 4.0 * f64::EPSILON * model.value.abs();
-    // At u along the cell, from −1 to 1, the field is at least `least + along u`.
-    if least - along > 0.0 && along < 0.0 {
-        let share = 0.5 * (1.0 - least / along);
-        (share * (1.0 - 1e-9)).min(1.0)
-    } else {
-        0.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_linear_field_is_passed_up_to_its_zero() {
-        let falling = Model { value: 1.0, gradient: [-4.0, 0.0, 0.0], lower: 0.0, upper: 0.0 };
-        // From 5 to −3 over the cell: zero after 5/8 of it.
-        assert!((passed(&falling) - 0.625).abs() < 1e-8 && passed(&falling) < 0.625);
-        let rising = Model { gradient: [4.0, 0.0, 0.0], ..falling };
-        assert_eq!(passed(&rising), 0.0);
-        // Half as far if it may be 2.5 less anywhere.
-        let loose = Model { lower: 2.5, ..falling };
-        assert!((passed(&loose) - 0.3125).abs() < 1e-8);
+        (self.step, self.too_long) = (SHRINKAGE * length, length);
     }
 }

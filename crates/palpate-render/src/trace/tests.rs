@@ -28,13 +28,15 @@ fn middles() -> Vec<[f64; 2]> {
 }
 
 /// The beams of all pixels, and what they meet.
-fn traced(studio: &Studio, tracer: &mut Tracer<'_>) -> Vec<(Beam, Met)> {
+fn traced(studio: &Studio, tracer: &mut Tracer<'_>, by_models: bool) -> Vec<(Beam, Met)> {
     let beam = |place: &[f64; 2]| studio.cut(&studio.camera.beam(*place, SIZE));
     let beams: Vec<Beam> = middles().iter().map(beam).collect();
     let mut all = Vec::new();
     for block in beams.chunks(BLOCK) {
         let mut met = Vec::new();
-        tracer.trace(block, &mut met);
+        tracer.aim(block);
+        tracer.is_steep |= by_models;
+        tracer.trace(Goal::First, block, &mut met);
         all.extend(block.iter().copied().zip(met));
     }
     all
@@ -69,15 +71,14 @@ fn rays_and_cones_through_random_trees_skip_nothing() {
             return Ok(Ok(()));
         };
         let whole = &studio.surfaces.whole;
-        for is_steep in [false, true] {
-            let mut tracer = studio.tracer();
-            tracer.is_steep |= is_steep;
-            for (pixel, (beam, met)) in middles().iter().zip(traced(&studio, &mut tracer)) {
+        for by_models in [false, true] {
+            let all = traced(&studio, &mut studio.tracer(), by_models);
+            for (pixel, (beam, met)) in middles().iter().zip(all) {
                 let wrong = |what: String| Ok(Err(format!("{what}: {met:?} of {beam:?}")));
                 rays += 1;
                 let passed = least(whole, &beam, met.distance);
                 if beam.near < beam.far && passed <= 0.0 && met.distance > beam.near {
-                    return wrong(format!("{passed} m before its end, by models: {is_steep}"));
+                    return wrong(format!("{passed} m before its end, by models: {by_models}"));
                 }
                 match met.end {
                     End::Undecided => undecided += 1,
@@ -98,7 +99,7 @@ fn rays_and_cones_through_random_trees_skip_nothing() {
                             let line = Beam { near: beam.near, far: beam.far, ..line };
                             let passed = least(whole, &line, line.far);
                             if beam.near < beam.far && passed <= 0.0 {
-                                return wrong(format!("{passed} m in its cone: {is_steep}"));
+                                return wrong(format!("{passed} m in its cone: {by_models}"));
                             }
                         }
                     }
@@ -125,10 +126,8 @@ fn rays_meet_a_ball_where_its_equation_says() {
     let gap = studio.surfaces.gap;
     assert!((gap - 8.0 * 0.3_f64.tan() / 9.0 / 32.0).abs() < 1e-15);
     let (mut hits, mut free) = (0, 0);
-    for is_steep in [false, true] {
-        let mut tracer = studio.tracer();
-        tracer.is_steep = is_steep;
-        for (beam, met) in traced(&studio, &mut tracer) {
+    for by_models in [false, true] {
+        for (beam, met) in traced(&studio, &mut studio.tracer(), by_models) {
             // |o + t d|² = r² of the ball, and of the ball grown by the gap.
             let along = -beam.origin.dot(beam.direction);
             let enters = |radius: f64| {
@@ -157,7 +156,7 @@ fn no_ray_passes_a_wall_however_thin() {
     for thickness in [1e-3, 1e-6, 1e-9] {
         let wall = Shape::cuboid([8.0, 8.0, thickness]).unwrap();
         let studio = studio(wall, &Settings::new(SIZE[0], SIZE[1]));
-        for (beam, met) in traced(&studio, &mut studio.tracer()) {
+        for (beam, met) in traced(&studio, &mut studio.tracer(), false) {
             assert_eq!(met.end, End::Surface);
             let depth = beam.at(met.distance)[2] - 0.5 * thickness;
             assert!((0.0..=studio.surfaces.gap).contains(&depth), "{depth}");
@@ -190,7 +189,7 @@ fn a_ray_without_budget_is_undecided() {
     let shape = Shape::torus(1.0, 0.3).unwrap();
     let studio = studio(shape, &settings);
     let mut tracer = studio.tracer();
-    let all = traced(&studio, &mut tracer);
+    let all = traced(&studio, &mut tracer, false);
     let undecided = all.iter().filter(|(_, met)| met.end == End::Undecided).count();
     assert!(undecided > 20, "{undecided}");
     assert_eq!(tracer.work.undecided, undecided as u64);

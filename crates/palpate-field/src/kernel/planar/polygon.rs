@@ -20,6 +20,12 @@ const MOST_EDGES: usize = 100_000;
 /// side of the edge may disagree.
 const ON_EDGE: f64 = 64.0;
 
+/// The most edges that a model is made of; more are bounded by a constant.
+const MOST_NEAR: usize = 8;
+
+/// Sides in a group, whose box rules all of them out at once.
+const GROUP: usize = 8;
+
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 16.0;
 
@@ -45,6 +51,8 @@ const OPERATIONS: f64 = 16.0;
 pub struct Polygon {
     rings: Arc<[Vec<Point<2>>]>,
     sides: Arc<[Side]>,
+    /// The boxes around so many sides each, in their order.
+    groups: Arc<[Aabb<2>]>,
     bounds: Bounds<2>,
 }
 
@@ -115,7 +123,82 @@ impl Polygon {
         let (Some(aabb), false) = (aabb, sides.is_empty()) else {
             return count("two different points", 0);
         };
-        Ok(Self { rings: rings.into(), sides: sides.into(), bounds: Bounds::of_box(aabb) })
+        let ends = |side: &Side| [side.low, [side.low[0] + side.rise[0], side.top]].map(Vector);
+        let around = |group: &[Side]| Aabb::around(group.iter().flat_map(ends)).unwrap_or(aabb);
+        let groups = sides.chunks(GROUP).map(around).collect();
+        let bounds = Bounds::of_box(aabb);
+        Ok(Self { rings: rings.into(), sides: sides.into(), groups, bounds })
+    }
+
+    /// The model of the few edges that may be nearest in a cell of this radius, `value` being the
+    /// distance at its centre; `None` if they are many, or meet in the cell.
+    ///
+    /// An edge that is 2r farther from the centre than the nearest is nearest nowhere. The sign
+    /// is the same in all of a cell that no edge meets. A cell that meets one edge, beside its
+    /// ends, has the distance to its line, with opposite signs on its sides.
+    fn affine<const N: usize>(
+        &self,
+        cell: Vector<AffineModel<N>, 2>,
+        value: f64,
+        radius: f64,
+    ) -> Option<AffineModel<N>> {
+        let centre = Vector(cell.0.map(|x| x.value));
+        let reach = value.abs() + 2.0 * radius;
+        let is_near = |side: &&Side| {
+            let [across, past] = side.edge.offsets(centre);
+            across.abs() <= reach && past <= reach
+        };
+        let is_near_group =
+            |(group, _): &(&Aabb<2>, _)| distance_to_box(group, centre) <= reach;
+        let groups = self.groups.iter().zip(self.sides.chunks(GROUP)).filter(is_near_group);
+        let near = groups.flat_map(|(_, group)| group).filter(is_near);
+        let mut near = near.map(|side| &side.edge);
+        if value.abs() > radius {
+            let zero = AffineModel::constant(0.0);
+            let mut least: Option<AffineModel<N>> = None;
+            for (count, edge) in near.enumerate() {
+                if count == MOST_NEAR {
+                    return None;
+                }
+                let [across, past] = edge.offsets(cell);
+                let past_an_end = AffineModel::norm([across, past]);
+                let distance = AffineModel::select_less(zero, past, past_an_end, across.abs());
+                least = Some(least.map_or(distance, |least| least.min(distance)));
+            }
+            return least.map(|distance| if value < 0.0 { -distance } else { distance });
+        }
+        let (edge, others) = (near.next()?, near.next());
+        let [across, past] = edge.offsets(cell);
+        if others.is_some() || past.maximum() > 0.0 {
+            return None;
+        }
+        Some(if (value < 0.0) == (across.value < 0.0) { across } else { -across })
+    }
+
+    /// The distance, without groups of sides that are farther than others by more than an
+    /// `error`, or that a ray along x does not cross.
+    fn signed_distance(&self, p: Point<2>, error: f64) -> f64 {
+        let groups = || self.groups.iter().zip(self.sides.chunks(GROUP));
+        let least = |nearest: f64, group: &[Side]| {
+            group.iter().fold(nearest, |nearest, side| nearest.min(side.edge.distance(p)))
+        };
+        // The group whose box is nearest rules out most of the others.
+        let apart = |group: &(&Aabb<2>, &[Side])| distance_to_box(group.0, p);
+        let first = groups().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let nearest = first.map_or(f64::INFINITY, |(_, group)| least(f64::INFINITY, group));
+        let nearest = groups().fold(nearest, |nearest, group| {
+            // Written so that NaN is looked at.
+            if apart(&group) > nearest + error { nearest } else { least(nearest, group.1) }
+        });
+        let inside = groups().fold(1.0, |inside, (around, group)| {
+            let is_beside =
+                p[1] < around.min[1] || p[1] > around.max[1] || p[0] > around.max[0];
+            if is_beside {
+                return inside;
+            }
+            group.iter().fold(inside, |inside, side| side.crossed(p, inside))
+        });
+        if inside < 0.0 { -nearest } else { nearest }
     }
 
     /// `-1` inside, `1` outside.
@@ -123,6 +206,12 @@ impl Polygon {
     fn side_of<S: Scalar>(&self, p: Vector<S, 2>) -> S {
         self.sides.iter().fold(S::constant(1.0), |inside, side| side.crossed(p, inside))
     }
+}
+
+/// The distance of a point from a box [m].
+fn distance_to_box(around: &Aabb<2>, p: Point<2>) -> f64 {
+    let past = [0, 1].map(|k| (around.min[k] - p[k]).max(p[k] - around.max[k]).max(0.0));
+    Vector(past).norm()
 }
 
 impl Kernel<2> for Polygon {
@@ -167,10 +256,25 @@ impl Kernel<2> for Polygon {
 
     fn model<const N: usize>(&self, cell: Vector<AffineModel<N>, 2>) -> AffineModel<N> {
         let centre = Vector(cell.0.map(|x| x.value));
-        let size = self.bounds.radius_about_origin();
-        let far = size + centre.norm() + AffineModel::radius(&cell.0);
+        let radius = AffineModel::radius(&cell.0);
+        let far = self.bounds.radius_about_origin() + centre.norm() + radius;
+        let value = self.signed_distance(centre, ON_EDGE * f64::EPSILON * far);
         let rounding = OPERATIONS * f64::EPSILON * far;
-        AffineModel::lipschitz(self.distance(centre), 1.0, &cell.0, rounding)
+        let constant = AffineModel::lipschitz(value, 1.0, &cell.0, rounding);
+        let error = ON_EDGE * f64::EPSILON * far;
+        // On an edge, the value does not say which side of it is inside.
+        if value.abs() <= error {
+            return constant;
+        }
+        let Some(affine) = self.affine(cell, value, radius + error) else { return constant };
+        let (lower, upper) = (affine.lower + error, affine.upper + error);
+        let width = |model: &AffineModel<N>| model.maximum() - model.minimum();
+        // Both round up: of two that are as wide, the one with a slope says more.
+        if width(&affine) <= width(&constant) {
+            AffineModel { lower, upper, ..affine }
+        } else {
+            constant
+        }
     }
 
     fn promise(&self) -> Promise<2> {
