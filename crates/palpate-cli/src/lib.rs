@@ -28,6 +28,7 @@ mod picture;
 mod plot;
 mod schema;
 mod shapes;
+mod table;
 mod times;
 mod trace;
 

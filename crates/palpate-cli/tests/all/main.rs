@@ -11,4 +11,5 @@ mod messages;
 mod outputs;
 mod pictures;
 mod program;
+mod tables;
 mod touch;

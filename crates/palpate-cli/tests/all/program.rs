@@ -76,20 +76,6 @@ fn eval_streams_the_same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_bad_row_is_named_by_its_line() {
-    let folder = Folder::new();
-    let points = folder.write("points.csv", "x_m,y_m,z_m\n0,0,0\n0,oops,0\n");
-    let output = palpate(&["eval", "scenes/s1.json", "--points", &points]);
-    assert_eq!(status(&output), 2);
-    assert!(
-        errors(&output).contains("line 3: a coordinate must be a finite number, got \"oops\"")
-    );
-    let flat = folder.write("flat.csv", "x_m,y_m\n0,0\n");
-    let output = palpate(&["eval", "scenes/s1.json", "--points", &flat]);
-    assert!(errors(&output).contains("there is no column z_m for a 3D scene"));
-}
-
-#[test]
 fn check_answers_yes_or_no() {
     let output = palpate(&["check", "scenes/cup.json"]);
     assert_eq!(status(&output), 0);
