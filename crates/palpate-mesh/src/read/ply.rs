@@ -102,7 +102,8 @@ fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadPr
         Some((line, problem)) => (format!("line {line}"), problem),
         None => (format!("byte {byte}"), message.as_str()),
     };
-    let is_end = byte == bytes.len() || error.kind() == std::io::ErrorKind::UnexpectedEof;
+    let is_end = error.kind() == std::io::ErrorKind::UnexpectedEof
+        || byte == bytes.len() && !bytes.ends_with(b"\n");
     let cut = if is_end { "; the file ends there: it is cut off" } else { "" };
     Format::Ply.malformed(format_args!("{place}: {problem}{cut}"))
 }
