@@ -55,6 +55,7 @@ impl<const D: usize> Kernel<D> for Ball {
 primitive! {
     Ball, ball, any,
     about: "All points within a radius of the origin.",
+    origin: "centred",
     parameters: { radius: Length = "the radius" },
     example: (0.7),
 }

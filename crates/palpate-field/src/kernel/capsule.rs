@@ -79,6 +79,7 @@ fn promise<const D: usize>(half_length: f64, radius: f64) -> Promise<D> {
 primitive! {
     Capsule, capsule, any,
     about: "A rod with round ends along the y axis.",
+    origin: "centred; its length along y",
     parameters: {
         radius: Length = "the radius of the rod",
         height: Length = "the length from tip to tip",
@@ -135,6 +136,7 @@ impl<const D: usize> Kernel<D> for Segment<D> {
 primitive! {
     Segment<D>, segment, any,
     about: "All points within a radius of the segment between two points.",
+    origin: "at its points",
     parameters: {
         from: Vector = "one end" => |kernel| kernel.between.from(),
         to: Vector = "the other end" => |kernel| kernel.between.to(),

@@ -73,6 +73,7 @@ impl<const D: usize> Kernel<D> for Cuboid<D> {
 primitive! {
     Cuboid<D>, cuboid, any,
     about: "A box along the axes: a rectangle in 2D.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
     },
@@ -137,6 +138,7 @@ impl<const D: usize> Kernel<D> for RoundedCuboid<D> {
 primitive! {
     RoundedCuboid<D>, rounded_cuboid, any,
     about: "A box along the axes, its edges rounded inwards.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths",
         rounding: LengthOrZero = "the radius of the edges",

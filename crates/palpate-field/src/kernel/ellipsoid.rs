@@ -160,6 +160,7 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
 primitive! {
     Ellipsoid<2>, ellipse, 2,
     about: "An ellipse along the axes.",
+    origin: "centred; radii along the axes",
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
@@ -169,6 +170,7 @@ primitive! {
 primitive! {
     Ellipsoid<3>, ellipsoid, 3,
     about: "An ellipsoid along the axes.",
+    origin: "centred; radii along the axes",
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },

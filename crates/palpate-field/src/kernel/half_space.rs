@@ -58,6 +58,7 @@ impl<const D: usize> Kernel<D> for HalfSpace<D> {
 primitive! {
     HalfSpace<D>, half_space, any,
     about: "All points behind a plane.",
+    origin: "endless; `offset` from the origin along `normal`, which points out",
     parameters: {
         normal: Direction = "the direction out of the half-space, of any length",
         offset: Coordinate = "where the plane is along the normal",

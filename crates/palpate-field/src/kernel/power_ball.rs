@@ -71,6 +71,7 @@ impl<const D: usize> Kernel<D> for PowerBall {
 primitive! {
     PowerBall, power_ball, any,
     about: "A ball in the norm of fourth, sixth or eighth powers: a rounded cube.",
+    origin: "centred",
     parameters: {
         radius: Length = "the radius along the axes",
         exponent: Count = "the power that the norm adds up, 4, 6 or 8"

@@ -80,6 +80,7 @@ impl<const D: usize> Kernel<D> for PowerCuboid<D> {
 primitive! {
     PowerCuboid<D>, power_cuboid, any,
     about: "A box along the axes, its edges rounded inwards in a norm of higher powers.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| kernel.rounded.size,
         rounding: LengthOrZero = "the radius of the edges along the axes"

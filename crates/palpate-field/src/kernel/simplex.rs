@@ -218,6 +218,7 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
 primitive! {
     Simplex<2>, triangle, 2,
     about: "The solid triangle of three points.",
+    origin: "at its points",
     parameters: { points: Points = "the three corners" },
     example: (vec![Vector([-0.6, -0.4]), Vector([0.7, -0.3]), Vector([0.1, 0.6])]),
 }
@@ -225,6 +226,7 @@ primitive! {
 primitive! {
     Simplex<3>, tetrahedron, 3,
     about: "The solid tetrahedron of four points.",
+    origin: "at its points",
     parameters: { points: Points = "the four corners" },
     example: (vec![
         Vector([-0.6, -0.4, -0.3]),

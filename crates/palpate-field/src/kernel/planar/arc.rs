@@ -91,6 +91,7 @@ impl Kernel<2> for Arc {
 primitive! {
     Arc, arc, 2,
     about: "All points within a radius of an arc of a circle, open downwards.",
+    origin: "at the centre of its circle; open downwards",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         angle: Angle = "how much of the circle, about the +y axis",

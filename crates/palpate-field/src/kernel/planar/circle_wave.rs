@@ -148,6 +148,7 @@ impl Kernel<2> for CircleWave {
 primitive! {
     CircleWave, circle_wave, 2,
     about: "All points within a radius of an endless line of arcs, up and down in turn.",
+    origin: "endless along x; a crest at x = 0, its ends at y = 0",
     parameters: {
         ring_radius: Length = "the radius of the arcs",
         angle: Angle = "how much of a circle each arc is, at most 300°"

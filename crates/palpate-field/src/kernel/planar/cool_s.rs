@@ -106,6 +106,7 @@ impl Kernel<2> for CoolS {
 primitive! {
     CoolS, cool_s, 2,
     about: "The S that every pupil draws, two fifths as wide as high.",
+    origin: "centred",
     parameters: {
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },

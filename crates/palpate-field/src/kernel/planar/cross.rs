@@ -90,6 +90,7 @@ impl Kernel<2> for Cross {
 primitive! {
     Cross, cross, 2,
     about: "A bar along x and one along y, crossed at the origin.",
+    origin: "centred; bars along the axes",
     parameters: {
         length: Length = "the full length of a bar" => |kernel| 2.0 * kernel.half_length,
         width: Length = "the full width of a bar" => |kernel| 2.0 * kernel.half_width,
@@ -200,6 +201,7 @@ impl Kernel<2> for RoundedX {
 primitive! {
     RoundedX, rounded_x, 2,
     about: "Two crossed diagonal strokes with round ends.",
+    origin: "centred; strokes along the diagonals",
     parameters: {
         size: Length = "the full width and height",
         radius: Length = "half the width of a stroke",

@@ -89,6 +89,7 @@ impl Kernel<2> for CutDisk {
 primitive! {
     CutDisk, cut_disk, 2,
     about: "What is above a line of a disc.",
+    origin: "at the centre of its disc; a flat side down",
     parameters: {
         radius: Length = "the radius of the disc",
         cut_height: Coordinate = "how far above the centre the cut is",
@@ -177,6 +178,7 @@ impl Kernel<2> for Moon {
 primitive! {
     Moon, moon, 2,
     about: "A disc without a second one above it: a crescent with its horns up.",
+    origin: "at the centre of its disc; hollow upwards",
     parameters: {
         radius: Length = "the radius of the disc",
         cut_radius: Length = "the radius of the disc that is taken off"

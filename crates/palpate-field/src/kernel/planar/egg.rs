@@ -110,6 +110,7 @@ impl Kernel<2> for Egg {
 primitive! {
     Egg, egg, 2,
     about: "An egg of four arcs, its thin end up.",
+    origin: "at the centre of its bottom circle; the thin end up",
     parameters: {
         bottom_radius: Length = "the radius of the bottom, half the width",
         top_radius: Length = "the radius of the top, at most that of the bottom",

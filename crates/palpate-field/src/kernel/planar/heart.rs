@@ -101,6 +101,7 @@ impl Kernel<2> for Heart {
 primitive! {
     Heart, heart, 2,
     about: "A heart, its tip down: a square on its corner with half a disc on each upper edge.",
+    origin: "centred, at half its height; a tip down",
     parameters: { height: Length = "the full height" },
     example: (1.7),
 }

@@ -134,6 +134,7 @@ impl Kernel<2> for Horseshoe {
 primitive! {
     Horseshoe, horseshoe, 2,
     about: "A band along an arc and its tangents at both ends, open downwards.",
+    origin: "at the centre of its arc; open downwards",
     parameters: {
         ring_radius: Length = "the radius of the arc, to the middle of the band",
         angle: Angle = "how much of the circle, about the +y axis",

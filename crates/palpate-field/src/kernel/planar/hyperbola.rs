@@ -161,6 +161,7 @@ impl Kernel<2> for Hyperbola {
 primitive! {
     Hyperbola, hyperbola, 2,
     about: "What is beyond the upper branch of a hyperbola.",
+    origin: "endless; at the middle of both vertices, the branch above",
     parameters: {
         radii: Vector = "the semi-axes along x and y" => |kernel| Vector(kernel.radii),
     },

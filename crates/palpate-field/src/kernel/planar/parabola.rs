@@ -92,6 +92,7 @@ fn unfolded<T: Float>(x: T, [across, up]: [T; 2]) -> Vector<T, 2> {
 primitive! {
     Parabola, parabola, 2,
     about: "What is above a parabola.",
+    origin: "endless; at its vertex, opening upwards",
     parameters: { focal_length: Length = "from the vertex to the focus" },
     example: (0.2),
 }
@@ -213,6 +214,7 @@ impl Kernel<2> for ParabolaSegment {
 primitive! {
     ParabolaSegment, parabola_segment, 2,
     about: "What is under a parabolic arch and above its chord.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         width: Length = "the length of the chord" => |kernel| 2.0 * kernel.half_width,
         height: Length = "the full height",

@@ -123,6 +123,7 @@ impl Kernel<2> for QuadraticCircle {
 primitive! {
     QuadraticCircle, quadratic_circle, 2,
     about: "A round shape whose outline is four arcs of parabolas.",
+    origin: "centred",
     parameters: { radius: Length = "from the centre to where it meets the axes" },
     example: (0.8),
 }
@@ -245,6 +246,7 @@ impl Kernel<2> for BobblyCross {
 primitive! {
     BobblyCross, bobbly_cross, 2,
     about: "A cross with four tips on the axes between hollow arcs of parabolas, rounded.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         width: Length = "the full width and height",
         dip: Length = "how far the sides are drawn in from the line between two tips",

@@ -182,6 +182,7 @@ impl Kernel<2> for Polygon {
 primitive! {
     Polygon, polygon, 2,
     about: "The inside of closed rings by the even-odd rule: rings in rings are holes.",
+    origin: "at its points",
     parameters: { rings: Rings = "lists of at least 3 points, each closed by itself" },
     example: (vec![
         vec![

@@ -289,6 +289,7 @@ impl Kernel<2> for QuadraticBezier {
 primitive! {
     QuadraticBezier, quadratic_bezier, 2,
     about: "All points within a radius of a quadratic Bézier curve.",
+    origin: "at its points",
     parameters: {
         from: Vector = "one end" => |kernel| Vector(kernel.from),
         control: Vector = "where the tangents of both ends meet",

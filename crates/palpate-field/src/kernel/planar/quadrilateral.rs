@@ -73,6 +73,7 @@ impl Kernel<2> for Rhombus {
 primitive! {
     Rhombus, rhombus, 2,
     about: "A rhombus, its diagonals along the axes.",
+    origin: "centred; diagonals along the axes",
     parameters: {
         size: Vector = "the full diagonals along x and y"
             => |kernel| Vector(kernel.0.corners()) * 2.0,
@@ -166,6 +167,7 @@ impl Kernel<2> for Parallelogram {
 primitive! {
     Parallelogram, parallelogram, 2,
     about: "A parallelogram, two of its edges along x.",
+    origin: "centred; two edges along x",
     parameters: {
         width: Length = "the length of the top and of the bottom",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_extents[1],
@@ -260,6 +262,7 @@ impl Kernel<2> for IsoscelesTrapezoid {
 primitive! {
     IsoscelesTrapezoid, isosceles_trapezoid, 2,
     about: "A trapezoid about the y axis.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         bottom_width: LengthOrZero = "the full width at the bottom"
             => |kernel| 2.0 * kernel.bottom,
@@ -304,6 +307,7 @@ answered_by_inner!(IsoscelesTriangle.0, 2);
 primitive! {
     IsoscelesTriangle, isosceles_triangle, 2,
     about: "A triangle about the y axis, its tip up.",
+    origin: "centred, at half its height; a tip up, a flat side down",
     parameters: {
         base: Length = "the length of the base" => |kernel| kernel.0.bottom_width(),
         height: Length = "the full height" => |kernel| kernel.0.height(),

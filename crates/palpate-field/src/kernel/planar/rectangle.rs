@@ -116,6 +116,7 @@ impl Kernel<2> for RoundedRectangle {
 primitive! {
     RoundedRectangle, rounded_rectangle, 2,
     about: "A rectangle along the axes, each corner rounded inwards with its own radius.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths before rounding"
             => |kernel| Vector(kernel.half_extents) * 2.0,
@@ -218,6 +219,7 @@ impl Kernel<2> for ChamferedRectangle {
 primitive! {
     ChamferedRectangle, chamfered_rectangle, 2,
     about: "A rectangle along the axes with its corners cut off at 45°.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths before cutting"
             => |kernel| Vector(kernel.half_extents) * 2.0,
@@ -280,6 +282,7 @@ impl Kernel<2> for OrientedRectangle {
 primitive! {
     OrientedRectangle, oriented_rectangle, 2,
     about: "The rectangle around the line between two points.",
+    origin: "at its points",
     parameters: {
         from: Vector = "the middle of one end",
         to: Vector = "the middle of the other end",

@@ -140,6 +140,7 @@ impl Kernel<2> for RegularPolygon {
 primitive! {
     RegularPolygon, regular_polygon, 2,
     about: "A regular polygon, one corner up.",
+    origin: "at the centre of its circle; a tip up",
     parameters: {
         sides: Count = "how many sides, 3 to 256",
         radius: Length = "from the centre to a corner",
@@ -275,6 +276,7 @@ impl Kernel<2> for RegularStar {
 primitive! {
     RegularStar, regular_star, 2,
     about: "A regular star, one tip up.",
+    origin: "at the centre of its circle; a tip up",
     parameters: {
         branches: Count = "how many branches, 3 to 256",
         outer_radius: Length = "from the centre to a tip",

@@ -79,6 +79,7 @@ impl Kernel<2> for Ring {
 primitive! {
     Ring, ring, 2,
     about: "All points between two circles.",
+    origin: "centred",
     parameters: {
         inner_radius: Length = "the radius of the hole",
         outer_radius: Length = "the radius of the outer circle",

@@ -107,6 +107,7 @@ impl Kernel<2> for RoundedCross {
 primitive! {
     RoundedCross, rounded_cross, 2,
     about: "A cross with four tips on the axes between arcs that are hollow.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         size: Vector = "from tip to tip along x and y" => |kernel| Vector(kernel.half) * 2.0,
         arc_radius: Length = "the radius of the arcs",

@@ -92,6 +92,7 @@ impl Kernel<2> for Pie {
 primitive! {
     Pie, pie, 2,
     about: "A sector of a disc, spread about the +y axis.",
+    origin: "at the centre of its disc; spread about +y",
     parameters: {
         radius: Length = "the radius of the disc" => |kernel| kernel.0.outer(),
         angle: Angle = "how much of the disc, about the +y axis" => |kernel| kernel.0.angle(),
@@ -173,6 +174,7 @@ impl Kernel<2> for RingSector {
 primitive! {
     RingSector, ring_sector, 2,
     about: "A sector of a ring with flat ends, spread about the +y axis.",
+    origin: "at the centre of its ring; open downwards",
     parameters: {
         inner_radius: Length = "the radius of the hole" => |kernel| kernel.wedge.inner(),
         outer_radius: Length = "the radius of the outer circle"

@@ -171,6 +171,7 @@ impl Kernel<2> for Stairs {
 primitive! {
     Stairs, stairs, 2,
     about: "A solid staircase that rises to the right.",
+    origin: "centred; rising to the right",
     parameters: {
         step_width: Length = "the depth of a step" => |kernel| kernel.step[0],
         step_height: Length = "the height of a step" => |kernel| kernel.step[1],

@@ -78,6 +78,7 @@ impl Kernel<2> for Tunnel {
 primitive! {
     Tunnel, tunnel, 2,
     about: "A rectangle below and half a disc on top.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         width: Length = "the full width" => |kernel| 2.0 * kernel.radius,
         height: Length = "the full height, the half disc included"
@@ -172,6 +173,7 @@ impl Kernel<2> for UnevenCapsule {
 primitive! {
     UnevenCapsule, uneven_capsule, 2,
     about: "Two discs on the y axis and all between their common tangents.",
+    origin: "midway between its centres; the bottom disc down",
     parameters: {
         bottom_radius: Length = "the radius of the lower disc",
         top_radius: Length = "the radius of the upper disc",

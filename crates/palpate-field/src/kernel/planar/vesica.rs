@@ -78,6 +78,7 @@ impl Kernel<2> for Vesica {
 primitive! {
     Vesica, vesica, 2,
     about: "A lens of two equal arcs that meet on the y axis.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         width: Length = "the full width" => |kernel| 2.0 * kernel.half_extents[0],
         height: Length = "from tip to tip, at least the width"
@@ -142,6 +143,7 @@ impl Kernel<2> for OrientedVesica {
 primitive! {
     OrientedVesica, oriented_vesica, 2,
     about: "A lens of two equal arcs between two points.",
+    origin: "at its points",
     parameters: {
         from: Vector = "one tip",
         to: Vector = "the other tip",

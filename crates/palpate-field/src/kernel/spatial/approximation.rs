@@ -72,6 +72,7 @@ impl Kernel<3> for CubeApproximation {
 primitive! {
     CubeApproximation, cube_approximation, 3,
     about: "The article's approximate cube: a bound with sharp isolines.",
+    origin: "centred; edges along the axes",
     parameters: {
         side: Length = "the edge length" => |kernel| 2.0 * kernel.half_side,
     },
@@ -127,6 +128,7 @@ impl Kernel<3> for CylinderApproximation {
 primitive! {
     CylinderApproximation, cylinder_approximation, 3,
     about: "The article's approximate cylinder: a bound with sharp isolines.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
@@ -204,6 +206,7 @@ impl Kernel<3> for ConeApproximation {
 primitive! {
     ConeApproximation, cone_approximation, 3,
     about: "The article's approximate cone, corrected to be a bound.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
@@ -258,6 +261,7 @@ impl Kernel<3> for PyramidApproximation {
 primitive! {
     PyramidApproximation, pyramid_approximation, 3,
     about: "The article's approximate pyramid, corrected to be a bound.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,

@@ -92,6 +92,7 @@ impl Kernel<3> for SolidAngle {
 primitive! {
     SolidAngle, solid_angle, 3,
     about: "The part of a ball in a cone about the +y axis, its tip at the origin.",
+    origin: "at its tip; spread about +y",
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.outer(),
         angle: Angle = "the opening from side to side, less than a full turn"
@@ -170,6 +171,7 @@ impl Kernel<3> for CutBall {
 primitive! {
     CutBall, cut_ball, 3,
     about: "A ball about the origin, cut off below a height.",
+    origin: "at the centre of its ball; a flat side down",
     parameters: {
         radius: Length = "the radius of the ball",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
@@ -252,6 +254,7 @@ impl Kernel<3> for CutHollowSphere {
 primitive! {
     CutHollowSphere, cut_hollow_sphere, 3,
     about: "A bowl: a hollow sphere about the origin, cut off above a height, its rim round.",
+    origin: "at the centre of its sphere; hollow upwards",
     parameters: {
         radius: Length = "from the origin to the middle of the wall",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
@@ -325,6 +328,7 @@ impl Kernel<3> for DeathStar {
 primitive! {
     DeathStar, death_star, 3,
     about: "A ball about the origin with a ball-shaped bite from above.",
+    origin: "at the centre of its ball; hollow upwards",
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.radius,
         cut_radius: Length = "the radius of the bite" => |kernel| kernel.0.cut_radius,

@@ -81,6 +81,7 @@ impl Kernel<3> for CylinderBetween {
 primitive! {
     CylinderBetween, cylinder_between, 3,
     about: "A cylinder with flat ends between two points.",
+    origin: "at its points",
     parameters: {
         from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
         to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),
@@ -154,6 +155,7 @@ impl Kernel<3> for CappedConeBetween {
 primitive! {
     CappedConeBetween, capped_cone_between, 3,
     about: "A cone between two points, with a radius at each.",
+    origin: "at its points",
     parameters: {
         from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
         to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),

@@ -116,6 +116,7 @@ impl Kernel<3> for CappedCone {
 primitive! {
     CappedCone, capped_cone, 3,
     about: "A cone about the y axis with its tip cut off.",
+    origin: "centred, at half its height; axis along y, `bottom_radius` below",
     parameters: {
         bottom_radius: LengthOrZero = "the radius at the bottom",
         top_radius: LengthOrZero = "the radius at the top",
@@ -158,6 +159,7 @@ answered_by_inner!(Cone.0, 3);
 primitive! {
     Cone, cone, 3,
     about: "A cone about the y axis, its tip up.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.bottom_radius,
         height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
@@ -235,6 +237,7 @@ impl Kernel<3> for InfiniteCone {
 primitive! {
     InfiniteCone, infinite_cone, 3,
     about: "A cone without a base, its tip at the origin, opening downwards.",
+    origin: "endless; at its tip, opening downwards",
     parameters: { angle: Angle = "the opening from side to side, less than half a turn" },
     example: (0.9),
 }

@@ -83,6 +83,7 @@ impl Kernel<3> for Cylinder {
 primitive! {
     Cylinder, cylinder, 3,
     about: "A cylinder about the y axis.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
@@ -151,6 +152,7 @@ impl Kernel<3> for RoundedCylinder {
 primitive! {
     RoundedCylinder, rounded_cylinder, 3,
     about: "A cylinder about the y axis, its rims rounded inwards.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height",
@@ -200,6 +202,7 @@ impl Kernel<3> for InfiniteCylinder {
 primitive! {
     InfiniteCylinder, infinite_cylinder, 3,
     about: "A cylinder without ends about the y axis.",
+    origin: "endless along y; about the y axis",
     parameters: { radius: Length = "the radius" },
     example: (0.3),
 }

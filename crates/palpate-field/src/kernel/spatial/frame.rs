@@ -102,6 +102,7 @@ impl Kernel<3> for CuboidFrame {
 primitive! {
     CuboidFrame, cuboid_frame, 3,
     about: "The twelve edges of a box as square bars.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
         thickness: Length = "the thickness of the bars, less than half the shortest edge",

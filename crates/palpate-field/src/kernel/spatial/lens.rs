@@ -102,6 +102,7 @@ impl Kernel<3> for Spindle {
 primitive! {
     VesicaSegment, vesica_segment, 3,
     about: "A spindle between two points: an arc turned about the line between them.",
+    origin: "at its points",
     parameters: {
         from: Vector = "one tip" => |kernel| kernel.between.from(),
         to: Vector = "the other tip" => |kernel| kernel.between.to(),

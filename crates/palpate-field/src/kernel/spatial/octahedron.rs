@@ -83,6 +83,7 @@ impl Kernel<3> for Octahedron {
 primitive! {
     Octahedron, octahedron, 3,
     about: "A regular octahedron with corners on the axes.",
+    origin: "centred; corners on the axes",
     parameters: { radius: Length = "from the centre to a corner" },
     example: (0.8),
 }

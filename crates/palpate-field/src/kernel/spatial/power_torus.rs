@@ -106,6 +106,7 @@ impl Kernel<3> for PowerTorus {
 primitive! {
     PowerTorus, power_torus, 3,
     about: "A torus about the y axis, its ring and its tube circles in norms of higher powers.",
+    origin: "centred; axis along y",
     parameters: {
         ring_radius: Length = "the radius of the ring along the axes"
             => |kernel| kernel.round.ring_radius,

@@ -91,6 +91,7 @@ answered_by_inner!(HexagonalPrism.0, 3);
 primitive! {
     HexagonalPrism, hexagonal_prism, 3,
     about: "A prism along y on a regular hexagon.",
+    origin: "centred; axis along y, two corners on z",
     parameters: {
         radius: Length = "from the axis to a corner of the hexagon"
             => |kernel| kernel.0.polygon.radius(),
@@ -135,6 +136,7 @@ answered_by_inner!(TriangularPrism.prism, 3);
 primitive! {
     TriangularPrism, triangular_prism, 3,
     about: "A prism along y on a regular triangle.",
+    origin: "at the centre of its triangle, at half its height; axis along y, a corner towards +z",
     parameters: {
         side: Length = "the edge of the triangle",
         height: Length = "the full height" => |kernel| 2.0 * kernel.prism.half_height,

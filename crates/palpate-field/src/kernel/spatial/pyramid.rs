@@ -124,6 +124,7 @@ impl Kernel<3> for Pyramid {
 primitive! {
     Pyramid, pyramid, 3,
     about: "A pyramid on a square, its tip up along y.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.half_side,
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,

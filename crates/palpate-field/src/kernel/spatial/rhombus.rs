@@ -102,6 +102,7 @@ impl Kernel<3> for RhombusPrism {
 primitive! {
     RhombusPrism, rhombus_prism, 3,
     about: "A prism along y on a rhombus, its edges rounded inwards.",
+    origin: "centred; axis along y, diagonals along x and z",
     parameters: {
         size: Vector = "the diagonals along x and z, and the height along y",
         rounding: LengthOrZero = "the radius of the edges",

@@ -96,6 +96,7 @@ impl Kernel<3> for RoundCone {
 primitive! {
     RoundCone, round_cone, 3,
     about: "Two balls above each other and all that is between them.",
+    origin: "midway between its centres; the bottom ball down",
     parameters: {
         bottom_radius: Length = "the radius of the lower ball" => |kernel| kernel.0.radii()[0],
         top_radius: Length = "the radius of the upper ball" => |kernel| kernel.0.radii()[1],
@@ -178,6 +179,7 @@ impl Kernel<3> for RoundConeBetween {
 primitive! {
     RoundConeBetween, round_cone_between, 3,
     about: "Balls about two points and all that is between them.",
+    origin: "at its points",
     parameters: {
         from: Vector = "the centre of one ball" => |kernel| kernel.between.from(),
         to: Vector = "the centre of the other ball" => |kernel| kernel.between.to(),

@@ -226,6 +226,7 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
 primitive! {
     Sheet<3>, triangle_sheet, 3,
     about: "All points within a radius of a triangle in space.",
+    origin: "at its points",
     parameters: {
         points: Points = "the three corners",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",
@@ -239,6 +240,7 @@ primitive! {
 primitive! {
     Sheet<4>, quad_sheet, 3,
     about: "All points within a radius of a flat convex quadrilateral in space.",
+    origin: "at its points",
     parameters: {
         points: Points = "the four corners, in their order around it, in one plane",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",

@@ -73,6 +73,7 @@ impl Kernel<3> for Torus {
 primitive! {
     Torus, torus, 3,
     about: "All points within a radius of a circle about the y axis.",
+    origin: "centred; axis along y",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: Length = "the radius of the tube",
@@ -164,6 +165,7 @@ impl Kernel<3> for CappedTorus {
 primitive! {
     CappedTorus, capped_torus, 3,
     about: "All points within a radius of an arc of a circle about the y axis, open towards -z.",
+    origin: "at the centre of its circle; axis along y, open towards -z",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
@@ -241,6 +243,7 @@ impl Kernel<3> for Link {
 primitive! {
     Link, link, 3,
     about: "A chain's link: a torus about the y axis with straight sides along z.",
+    origin: "centred; axis along y, straight sides along z",
     parameters: {
         ring_radius: Length = "the radius of the circle of each bow",
         radius: Length = "the radius of the tube",
