@@ -24,6 +24,7 @@ const CRATES: &[&str] = &[
     "palpate-mesh",
     "palpate-plot",
     "palpate-query",
+    "palpate-render",
     "palpate-safety",
     "palpate-scene",
     "palpate-vibration",
@@ -103,15 +104,27 @@ fn dead_link(page: &str) -> Option<&str> {
 
 /// What the list lacks, or has too much.
 fn difference(kept: &str, now: &str) -> Option<String> {
-    let lines = |text: &str| text.lines().map(str::to_owned).collect::<BTreeSet<_>>();
-    let (kept_lines, now_lines) = (lines(kept), lines(now));
+    let (kept_lines, now_lines) = (with_items(kept), with_items(now));
     let added = now_lines.difference(&kept_lines).next();
     let removed = kept_lines.difference(&now_lines).next();
     match (added, removed) {
-        (Some(added), _) => Some(format!("lacks `{}`", added.trim())),
-        (None, Some(removed)) => Some(format!("has `{}`, which is gone", removed.trim())),
+        (Some(added), _) => Some(format!("lacks {added}")),
+        (None, Some(removed)) => Some(format!("has {removed}, which is gone")),
         (None, None) => (kept != now).then(|| "has another order".to_owned()),
     }
+}
+
+/// The items of a list, and their members with their items: many items have a `new`.
+fn with_items(list: &str) -> BTreeSet<String> {
+    let mut item = "";
+    let named = list.lines().map(|line| {
+        if let Some(member) = line.strip_prefix("    ") {
+            return format!("`{member}` of `{item}`");
+        }
+        item = line;
+        format!("`{item}`")
+    });
+    named.collect()
 }
 
 /// The items of the crate whose pages are in `folder`, a line each, with their members indented.
@@ -217,8 +230,20 @@ mod tests {
         let kept = "struct Ball\n    method new\n";
         assert_eq!(difference(kept, kept), None);
         let added = "struct Ball\n    method new\n    method radius\n";
-        assert_eq!(difference(kept, added).as_deref(), Some("lacks `method radius`"));
+        let lacks = difference(kept, added);
+        assert_eq!(lacks.as_deref(), Some("lacks `method radius` of `struct Ball`"));
         let gone = difference(added, kept);
-        assert_eq!(gone.as_deref(), Some("has `method radius`, which is gone"));
+        let said = "has `method radius` of `struct Ball`, which is gone";
+        assert_eq!(gone.as_deref(), Some(said));
+    }
+
+    #[test]
+    fn a_member_that_another_item_has_too_is_named() {
+        let kept = "struct Ball\n    method new\nstruct Cube\n";
+        let lacks =
+            difference(kept, "struct Ball\n    method new\nstruct Cube\n    method new\n");
+        assert_eq!(lacks.as_deref(), Some("lacks `method new` of `struct Cube`"));
+        let other = difference(kept, "struct Cube\nstruct Ball\n    method new\n");
+        assert_eq!(other.as_deref(), Some("has another order"));
     }
 }

@@ -18,7 +18,7 @@ const STAGES: &[Stage] = &[
     ("links", links::check),
     ("sizes", sizes::check),
     ("layers", || layers::check(&metadata()?, &architecture()?)),
-    ("dependencies", builds::count),
+    ("dependencies", builds::dependencies),
     ("licences", || licences::check(&metadata()?)),
     ("clippy", || {
         cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"])

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-query",
@@ -20,6 +20,7 @@ const LAYERS: [&str; 15] = [
     "palpate-devices",
     "palpate-scene",
     "palpate-plot",
+    "palpate-render",
     "palpate",
     "palpate-cli",
     "palpate-bench",

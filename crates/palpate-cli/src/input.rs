@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use palpate::field::{Aabb, LARGEST_LENGTH, Promise, Quality, Vector};
+use palpate::local::GradientMethod;
 use palpate::scene::{AnyScene, BuiltScene, Scene, SceneError, unknown_name};
 
 use crate::kind::Kind;
@@ -132,6 +133,25 @@ pub(crate) fn written_point<const D: usize>(point: Vector<f64, D>) -> String {
     rounded.map(|x| x.to_string()).join(",")
 }
 
+/// The numbers that `text` lists, joined by commas, if there are `N`.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers = text.split(',').map(|number| number.trim().parse().ok());
+    numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// The way to a gradient of this name, for `D` dimensions.
+pub(crate) fn gradient<const D: usize>(name: &str) -> Result<GradientMethod, Failure> {
+    let method: GradientMethod =
+        name.parse().map_err(|error| Failure::input(format!("--gradient: {error}")))?;
+    if D > 2 && method.is_planar() {
+        return Err(Failure::input(format!(
+            "--gradient {method} turns in the plane, and this scene is in 3D: \
+             take differences, closest_vector or exact"
+        )));
+    }
+    Ok(method)
+}
+
 /// Numbers as one text, joined by commas.
 pub(crate) fn joined(numbers: &[f64]) -> String {
     numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
@@ -143,6 +163,11 @@ pub(crate) const NO_BOUNDS: &str = "the scene must have a body with bounds";
 /// The box around all bounded bodies of a scene.
 pub(crate) fn bounds<const D: usize>(scene: &BuiltScene<D>) -> Result<Aabb<D>, Failure> {
     scene.bounds().ok_or_else(|| Failure::input(NO_BOUNDS))
+}
+
+/// The longest edge of a box [m].
+pub(crate) fn longest_edge<const D: usize>(bounds: &Aabb<D>) -> f64 {
+    2.0 * bounds.half_extents().0.into_iter().fold(0.0, f64::max)
 }
 
 /// A promise in a few words: "exact outside, bound inside".

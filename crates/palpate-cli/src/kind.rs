@@ -106,7 +106,9 @@ fn is_table(line: &str) -> bool {
         field.chars().all(is_plain)
     };
     let separator = [',', ';', '\t'].into_iter().find(|separator| line.contains(*separator));
-    separator.is_some_and(|separator| line.split(separator).all(is_field))
+    // A list of JSON is no table.
+    !line.starts_with('[')
+        && separator.is_some_and(|separator| line.split(separator).all(is_field))
 }
 
 #[cfg(test)]

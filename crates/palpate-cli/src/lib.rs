@@ -12,9 +12,11 @@ mod contact;
 mod descend;
 mod devices;
 mod emptiness;
+mod error_map;
 mod eval;
 mod feel;
 mod gallery;
+mod gradients;
 mod hand_csv;
 mod input;
 mod interrupt;
@@ -25,12 +27,16 @@ mod mesh;
 mod outcome;
 mod output;
 mod picture;
+mod plane;
 mod plot;
+mod render;
 mod schema;
 mod shapes;
 mod table;
+mod threads;
 mod times;
 mod trace;
+mod views;
 
 use std::ffi::OsString;
 
@@ -94,7 +100,9 @@ fn obey(command: &Command, interrupt: &Interrupt) -> Result<Outcome, Failure> {
         Command::Eval(options) => eval::run(options, interrupt),
         Command::Contact(options) => contact::run(options, interrupt),
         Command::Descend(options) => descend::run(options),
+        Command::Gradients(options) => gradients::run(options),
         Command::Plot(options) => plot::run(options),
+        Command::Render(options) => render::run(options, interrupt),
         Command::Gallery(options) => gallery::run(options, interrupt),
         Command::Check(options) => check::run(options),
         Command::Mass(options) => mass::run(options, interrupt),

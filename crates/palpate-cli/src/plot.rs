@@ -6,21 +6,24 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use palpate::field::{Aabb, Vector};
-use palpate::plot::{Figure, Gauge, Measured, Sampling, Slice};
-use palpate::scene::{AnyScene, BuiltScene};
+use palpate::field::{Aabb, LARGEST_LENGTH, Vector};
+use palpate::plot::{Figure, Gauge, Isolines, Measured, PlotError, Sampling, Slice, View};
+use palpate::scene::{AnyScene, BuiltScene, View as SceneView};
 use serde_json::{Value, json};
 
-use crate::arguments::{Map, PlotOptions};
+use crate::arguments::{PlotMap, PlotOptions};
 use crate::contact::Touched;
 use crate::emptiness;
+use crate::error_map::Compared;
 use crate::input::{self, promise_in_words};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Files, shown};
 use crate::picture::{self, Dimensions, Drawable, Picture};
+use crate::{plane, views};
 
 pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
-    let mut files = Files::reading([options.scene.as_path()]);
+    let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
+    let mut files = Files::reading(inputs.into_iter().flatten());
     let picture = Picture::new(&mut files, &output(options))?;
     picture.check_width(options.width)?;
     check_contacts(options)?;
@@ -36,10 +39,15 @@ pub(crate) fn run(options: &PlotOptions) -> Result<Outcome, Failure> {
                     "is for scenes in space; this scene is in the plane, and drawn whole";
                 return Err(Failure::input(format!("{option} {problem}")));
             }
-            Plot::of(options, &picture, scene)?.draw(&Slice::planar())
+            let scene = views::at(scene, options.time)?;
+            Plot::of(options, &picture, &scene)?.draw(&Slice::planar())
         }
         AnyScene::Spatial(scene) => {
-            let plot = Plot::of(options, &picture, scene)?;
+            let scene = views::at(scene, options.time)?;
+            let plot = Plot::of(options, &picture, &scene)?;
+            if let Some(view) = plot.named {
+                return plot.draw(&views::plane(view)?);
+            }
             let deepest = plot.touched.as_ref().and_then(Touched::deepest);
             let deepest = deepest.filter(|_| options.centre.is_none());
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
@@ -86,9 +94,7 @@ impl<const D: usize> Window<D> {
     /// has bounds.
     fn of(options: &PlotOptions, scene: &BuiltScene<D>) -> Result<Self, Failure> {
         if let (Some(centre), Some(size)) = (&options.centre, options.size) {
-            let centre = input::point::<D>(centre)?;
-            let half = Vector::constant(0.5 * size);
-            let bounds = Aabb { min: centre - half, max: centre + half };
+            let bounds = square(input::point::<D>(centre)?, size)?;
             return Ok(Self { bounds, margin: 0.0 });
         }
         let whole =
@@ -97,13 +103,30 @@ impl<const D: usize> Window<D> {
     }
 }
 
+/// A square about `centre`, or a cube, with edges of the length of `--size` [m].
+pub(crate) fn square<const D: usize>(
+    centre: Vector<f64, D>,
+    size: f64,
+) -> Result<Aabb<D>, Failure> {
+    // Written so that NaN is refused.
+    if !(size > 0.0 && size <= LARGEST_LENGTH) {
+        let rule = format!("positive and at most {LARGEST_LENGTH:e} m, got {size:?} m");
+        return Err(Failure::input(format!("--size must be {rule}")));
+    }
+    let half = Vector::constant(0.5 * size);
+    Ok(Aabb { min: centre - half, max: centre + half })
+}
+
 /// A scene and what to draw of it.
 struct Plot<'a, const D: usize> {
     options: &'a PlotOptions,
     picture: &'a Picture,
     scene: &'a BuiltScene<D>,
     window: Window<D>,
+    /// The view of the scene that was asked for.
+    named: Option<&'a SceneView>,
     touched: Option<Touched<D>>,
+    compared: Compared<'a, D>,
 }
 
 impl<'a, const D: usize> Plot<'a, D>
@@ -116,28 +139,46 @@ where
         picture: &'a Picture,
         scene: &'a BuiltScene<D>,
     ) -> Result<Self, Failure> {
-        if options.step.is_some() && options.map != Map::Distance {
+        if options.step.is_some() && options.map != PlotMap::Distance {
             return Err(Failure::input(
                 "--step is only for --map distance: other maps have no isolines",
             ));
         }
         emptiness::warn(scene);
+        let compared = Compared::of(options, scene)?;
         let window = Window::of(options, scene)?;
+        let named =
+            options.view.as_deref().map(|name| views::named(scene, name)).transpose()?;
         let touched = touched(options, scene)?;
-        Ok(Self { options, picture, scene, window, touched })
+        Ok(Self { options, picture, scene, window, named, touched, compared })
+    }
+
+    /// The window of the picture; what a view of the scene leaves out shows the whole scene.
+    fn view(&self, plane: &Slice) -> Result<View, Failure> {
+        let whole = Dimensions::view(plane, &self.window.bounds, self.window.margin);
+        let whole = whole.map_err(Failure::input)?;
+        let Some(named) = self.named else { return Ok(whole) };
+        let centre = named.center.unwrap_or(whole.center());
+        let width = named.width.unwrap_or(whole.width());
+        let height = named.height.unwrap_or(whole.height());
+        View::new(centre, width, height).map_err(Failure::input)
+    }
+
+    /// The distance between isolines, if one is asked for [m].
+    fn step(&self) -> Option<f64> {
+        let of_view = self.named.and_then(|view| view.spacing);
+        self.options.step.or(of_view.filter(|_| self.options.map == PlotMap::Distance))
     }
 
     /// Draws the scene on `plane`, and reports the picture.
     fn draw(&self, plane: &Slice) -> Result<Outcome, Failure> {
-        let Self { options, scene, window, .. } = self;
-        let view = Dimensions::view(plane, &window.bounds, window.margin);
-        let view = view.map_err(Failure::input)?;
+        let Self { options, scene, .. } = self;
+        let view = self.view(plane)?;
         let isolines = picture::isolines(&scene.whole, plane, &view, Sampling::default())
             .map_err(Failure::input)?;
-        let isolines = match options.step {
+        let isolines = match self.step() {
             Some(step) => isolines.with_step(step).map_err(Failure::input)?,
-            None => picture::mapped(&scene.whole, plane, isolines, options.map)
-                .map_err(Failure::input)?,
+            None => self.mapped(isolines, plane).map_err(Failure::input)?,
         };
         let drawn = Drawn {
             step: isolines.step(),
@@ -149,7 +190,7 @@ where
             None => isolines,
         };
         let figure = Figure::new(title(&options.scene))
-            .with_caption(promise_in_words(scene.whole.promise()))
+            .with_caption(self.caption())
             .with_isolines(isolines);
         self.picture.save(&figure, options.width.unwrap_or(picture::WIDTH))?;
         if options.json {
@@ -161,6 +202,21 @@ where
         Ok(Outcome::Yes)
     }
 
+    /// The picture with the colours of the map.
+    fn mapped(&self, isolines: Isolines, plane: &Slice) -> Result<Isolines, PlotError> {
+        let (shape, map) = (&self.scene.whole, self.options.map);
+        match (&self.compared, map.of_one_field()) {
+            (Compared::Nothing, Some(map)) => picture::mapped(shape, plane, isolines, map),
+            (compared, _) => compared.draw(map, shape, isolines, plane),
+        }
+    }
+
+    /// The promise, and what the field is compared with.
+    fn caption(&self) -> String {
+        let promise = promise_in_words(self.scene.whole.promise());
+        self.compared.in_words().map_or(promise.clone(), |words| format!("{promise}; {words}"))
+    }
+
     fn described(&self, drawn: &Drawn, plane: &Slice) -> Value {
         let mut answer = json!({
             "output": self.picture.path(),
@@ -168,12 +224,12 @@ where
             "smallest_m": drawn.range.0,
             "largest_m": drawn.range.1,
         });
-        if self.options.map == Map::Distance {
+        if self.options.map == PlotMap::Distance {
             answer["step_m"] = json!(drawn.step);
         }
         let point = |st| <Dimensions as Drawable<D>>::point(plane, st).0.to_vec();
         if let Some(measured) = &drawn.measured {
-            answer[gauge::<D>()] = json!({
+            answer[self.measured_key()] = json!({
                 "smallest": measured.smallest,
                 "smallest_at_m": point(measured.smallest_at),
                 "largest": measured.largest,
@@ -190,12 +246,29 @@ where
 
     fn in_words(&self, drawn: &Drawn) -> String {
         match (self.options.map, &drawn.measured) {
-            (Map::Distance, _) => format!("isolines every {} m", drawn.step),
-            (Map::Gradient, _) => "directions of the gradient".to_owned(),
-            (Map::Promise, None) => "promises".to_owned(),
-            (Map::Promise, Some(Measured { smallest, largest, .. })) => {
+            (PlotMap::Distance, _) => format!("isolines every {} m", drawn.step),
+            (PlotMap::Gradient, _) => "directions of the gradient".to_owned(),
+            (PlotMap::Promise, None) => "promises".to_owned(),
+            (PlotMap::Promise, Some(Measured { smallest, largest, .. })) => {
                 format!("promises; {} from {smallest:.3} to {largest:.3}", gauge::<D>())
             }
+            (PlotMap::Error, None) => "errors: there is no direction in view".to_owned(),
+            (PlotMap::Error, Some(Measured { smallest, largest, .. })) => {
+                let (what, unit) = match self.compared {
+                    Compared::Other(_) => ("differences of values", "m"),
+                    _ => ("angles from the exact gradient", "degrees"),
+                };
+                format!("{what} from {smallest:.6} to {largest:.6} {unit}")
+            }
+        }
+    }
+
+    /// The JSON key of the number that colours show.
+    fn measured_key(&self) -> &'static str {
+        match (&self.compared, self.options.map) {
+            (Compared::Other(_), _) => "difference_m",
+            (Compared::Gradient(_), PlotMap::Error) => "error_degrees",
+            _ => gauge::<D>(),
         }
     }
 }
@@ -241,20 +314,5 @@ fn plane(options: &PlotOptions, middle: Vector<f64, 3>) -> Result<Slice, Failure
         let problem = "both say where the plane is; leave out --at";
         return Err(Failure::input(format!("--at and the point of {other} {problem}")));
     }
-    let at = |axis: usize| options.at.unwrap_or(middle[axis]);
-    match plane {
-        "xy" => Slice::xy(at(2)),
-        "xz" => Slice::xz(at(1)),
-        "yz" => Slice::yz(at(0)),
-        free => {
-            let points: Vec<_> =
-                free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
-            let [origin, right, up] = points.try_into().map_err(|_| {
-                let rule = "xy, xz, yz, or origin:right:up, each of these three numbers joined by commas";
-                Failure::input(format!("--plane must be {rule}, got {free:?}"))
-            })?;
-            Slice::free(origin.0, right.0, up.0)
-        }
-    }
-    .map_err(Failure::input)
+    plane::named("--plane", plane, options.at, middle)
 }

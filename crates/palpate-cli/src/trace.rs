@@ -6,14 +6,15 @@
 
 use std::io::Write;
 
-use palpate::field::Vector;
+use palpate::field::{Pose, Rotation, Vector};
+use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, TraceRow};
 
 use crate::input::AXES;
 use crate::outcome::Failure;
 
 /// The names of the columns. Those of a tool with a shape come last, followed by those of a
-/// device with rotation.
+/// device with rotation; those of bodies that move follow.
 pub(crate) fn header<const D: usize>(has_tool: bool, turns_hand: bool) -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "point".to_owned()];
     let vectors =
@@ -73,8 +74,22 @@ fn fields<const D: usize>(row: &TraceRow<D>) -> Vec<String> {
     fields
 }
 
-/// Writes all rows of `recorder` to `out`.
+/// The names of the columns for the poses of bodies that move.
+fn pose_header<const D: usize>(body: usize) -> Vec<String> {
+    let along = AXES[..D].iter().map(|axis| format!("body_{body}_{axis}_m"));
+    let about = turns::<_, D>(AXES).map(|axis| format!("body_{body}_turn_{axis}_rad"));
+    along.chain(about).collect()
+}
+
+fn pose_fields<const D: usize>(pose: &Pose<D>) -> Vec<String> {
+    let turn = Rotation::identity().turn_to(&pose.rotation);
+    let numbers = pose.translation.0.into_iter().chain(turns::<_, D>(turn.0));
+    numbers.map(|x| x.to_string()).collect()
+}
+
+/// Writes all rows of `recorder` to `out`, and where the moving bodies of `scene` are.
 pub(crate) fn write<const D: usize>(
+    scene: &BuiltScene<D>,
     recorder: &Recorder<D>,
     out: &mut dyn Write,
 ) -> Result<(), Failure> {
@@ -82,9 +97,12 @@ pub(crate) fn write<const D: usize>(
     let tools = || recorder.rows().iter().filter_map(|row| row.tool.as_ref());
     let (has_tool, turns_hand) =
         (tools().next().is_some(), tools().any(|tool| tool.given.is_some()));
-    writer.write_record(header::<D>(has_tool, turns_hand))?;
+    let poses = scene.moving().flat_map(pose_header::<D>);
+    writer.write_record(header::<D>(has_tool, turns_hand).into_iter().chain(poses))?;
     for row in recorder.rows() {
-        writer.write_record(fields(row))?;
+        let poses =
+            scene.moving().flat_map(|body| pose_fields(&scene.pose_at(body, row.time_s)));
+        writer.write_record(fields(row).into_iter().chain(poses))?;
     }
     Ok(writer.flush()?)
 }

@@ -5,11 +5,11 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::error::DeviceError;
 use crate::hand_path::HandPath;
 use palpate_field::Vector;
-use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, NumberError, PointState, limited,
-};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState};
+use palpate_safety::internal::limited;
 
 /// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
 /// point.
@@ -65,8 +65,8 @@ impl<const D: usize> Glove<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there are no paths.
-    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::NoContactPoint`] if there are no paths.
+    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, DeviceError> {
         let finger =
             |path| Finger { path, offset: Vector::ZERO, limit: 0.0, force: Vector::ZERO };
         Self::of(paths.into_iter().map(finger).collect())
@@ -77,12 +77,12 @@ impl<const D: usize> Glove<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there are no offsets, [`HapticsError::Number`] if one
+    /// [`DeviceError::NoContactPoint`] if there are no offsets, [`DeviceError::Number`] if one
     /// is not finite.
     pub fn from_hand(
         hand: &HandPath<D>,
         offsets: &[Vector<f64, D>],
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         for component in offsets.iter().flat_map(|offset| offset.0) {
             NumberError::check_not_negative("finger offset", component.abs(), "m")?;
         }
@@ -95,9 +95,9 @@ impl<const D: usize> Glove<D> {
         Self::of(offsets.iter().map(finger).collect())
     }
 
-    fn of(fingers: Vec<Finger<D>>) -> Result<Self, HapticsError> {
+    fn of(fingers: Vec<Finger<D>>) -> Result<Self, DeviceError> {
         if fingers.is_empty() {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         let profile = DeviceProfile::unlimited("glove").with_max_force(0.0);
         Ok(Self { fingers, profile })
@@ -109,12 +109,12 @@ impl<const D: usize> Glove<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::OneForEach`] if there are not as many limits as fingers,
-    /// [`HapticsError::Number`] if one is negative or not finite.
-    pub fn with_limits(mut self, limits: &[f64]) -> Result<Self, HapticsError> {
+    /// [`DeviceError::OneForEach`] if there are not as many limits as fingers,
+    /// [`DeviceError::Number`] if one is negative or not finite.
+    pub fn with_limits(mut self, limits: &[f64]) -> Result<Self, DeviceError> {
         if limits.len() != self.fingers.len() {
             let (given, points) = (limits.len(), self.fingers.len());
-            return Err(HapticsError::OneForEach { items: "limits", given, points });
+            return Err(DeviceError::OneForEach { items: "limits", given, points });
         }
         for (finger, limit) in self.fingers.iter_mut().zip(limits) {
             finger.limit = NumberError::check_not_negative("max_force", *limit, "N")?;
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn wrong_gloves_are_refused() {
-        assert_eq!(Glove::<2>::new(Vec::new()).unwrap_err(), HapticsError::NoContactPoint);
+        assert_eq!(Glove::<2>::new(Vec::new()).unwrap_err(), DeviceError::NoContactPoint);
         let far = Glove::from_hand(&path(0.0), &[Vector([f64::NAN, 0.0])]).unwrap_err();
         assert!(far.to_string().starts_with("finger offset must be"), "{far}");
         let glove = Glove::new(vec![path(0.0)]).unwrap();

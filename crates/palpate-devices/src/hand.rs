@@ -3,9 +3,10 @@
 
 //! The hand that holds a simulated device.
 
+use crate::error::DeviceError;
 use crate::hand_path::{HandPath, Interpolation};
 use palpate_field::{Point, Vector};
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_haptics::NumberError;
 
 /// A hand that holds a simulated device: a mass that moves with the device, a spring and a
 /// damper that pull it to a target, and a constant push.
@@ -33,7 +34,7 @@ use palpate_haptics::{HapticsError, NumberError};
 /// use palpate_devices::Hand;
 /// use palpate_field::Vector;
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_devices::DeviceError> {
 /// let hand = Hand::resting(Vector([0.0, 0.1]))?.with_mass(0.2)?.with_spring(400.0, 8.0)?;
 /// assert_eq!((hand.mass(), hand.stiffness(), hand.damping()), (0.2, 400.0, 8.0));
 /// let error = hand.with_mass(-1.0).unwrap_err();
@@ -85,18 +86,19 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::SampleNotFinite`] if a coordinate of `place` is not finite or exceeds
+    /// [`DeviceError::SampleNotFinite`] if a coordinate of `place` is not finite or exceeds
     /// 1e15 m.
-    pub fn resting(place: Point<D>) -> Result<Self, HapticsError> {
-        HandPath::new(vec![0.0, 1.0], vec![place; 2], Interpolation::Linear).map(Self::new)
+    pub fn resting(place: impl Into<Point<D>>) -> Result<Self, DeviceError> {
+        HandPath::new(vec![0.0, 1.0], vec![place.into(); 2], Interpolation::Linear)
+            .map(Self::new)
     }
 
     /// This hand with another mass [kg].
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the number is negative or not finite.
-    pub fn with_mass(self, mass: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if the number is negative or not finite.
+    pub fn with_mass(self, mass: f64) -> Result<Self, DeviceError> {
         Ok(Self { mass: NumberError::check_not_negative("mass", mass, "kg")?, ..self })
     }
 
@@ -104,8 +106,8 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if either is negative or not finite.
-    pub fn with_spring(self, stiffness: f64, damping: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if either is negative or not finite.
+    pub fn with_spring(self, stiffness: f64, damping: f64) -> Result<Self, DeviceError> {
         let stiffness = NumberError::check_not_negative("hand stiffness", stiffness, "N/m")?;
         let damping = NumberError::check_not_negative("hand damping", damping, "N·s/m")?;
         Ok(Self { stiffness, damping, ..self })
@@ -115,8 +117,9 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if a coordinate is not finite.
-    pub fn with_push(self, push: Vector<f64, D>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if a coordinate is not finite.
+    pub fn with_push(self, push: impl Into<Vector<f64, D>>) -> Result<Self, DeviceError> {
+        let push = push.into();
         for component in push.0 {
             NumberError::check_not_negative("hand push", component.abs(), "N")?;
         }
@@ -154,8 +157,8 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the number is negative or not finite.
-    pub fn with_inertia(self, inertia: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if the number is negative or not finite.
+    pub fn with_inertia(self, inertia: f64) -> Result<Self, DeviceError> {
         let inertia = NumberError::check_not_negative("hand inertia", inertia, "kg·m²")?;
         Ok(Self { wrist: Wrist { inertia, ..self.wrist }, ..self })
     }
@@ -164,12 +167,12 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if either is negative or not finite.
+    /// [`DeviceError::Number`] if either is negative or not finite.
     pub fn with_angular_spring(
         self,
         stiffness: f64,
         damping: f64,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         let stiffness =
             NumberError::check_not_negative("hand angular stiffness", stiffness, "N·m/rad")?;
         let damping =
@@ -181,8 +184,9 @@ impl<const D: usize> Hand<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if a coordinate is not finite.
-    pub fn with_torque(self, torque: Vector<f64, 3>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if a coordinate is not finite.
+    pub fn with_torque(self, torque: impl Into<Vector<f64, 3>>) -> Result<Self, DeviceError> {
+        let torque = torque.into();
         for component in torque.0 {
             NumberError::check_not_negative("hand torque", component.abs(), "N·m")?;
         }

@@ -3,9 +3,9 @@
 
 //! The motion of a hand, as recorded samples.
 
+use crate::error::DeviceError;
 use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use palpate_haptics::HapticsError;
 use palpate_haptics::PointState;
 
 /// The interpolation between two samples of a hand path.
@@ -29,7 +29,7 @@ pub enum Interpolation {
 /// use palpate_field::Vector;
 /// use palpate_devices::{HandPath, Interpolation};
 ///
-/// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+/// # fn main() -> Result<(), palpate_devices::DeviceError> {
 /// let path = HandPath::new(
 ///     vec![0.0, 1.0, 3.0],
 ///     vec![Vector([0.0, 0.0]), Vector([2.0, 0.0]), Vector([2.0, 4.0])],
@@ -61,13 +61,13 @@ impl<const D: usize> HandPath<D> {
         times: Vec<f64>,
         positions: Vec<Point<D>>,
         interpolation: Interpolation,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, DeviceError> {
         let (count, paired) = (times.len(), positions.len());
         if count != paired {
-            return Err(HapticsError::UnpairedSamples { times: count, positions: paired });
+            return Err(DeviceError::UnpairedSamples { times: count, positions: paired });
         }
         if count < 2 {
-            return Err(HapticsError::TooFewSamples { count });
+            return Err(DeviceError::TooFewSamples { count });
         }
         let samples = times.iter().zip(&positions);
         for (index, (&time, position)) in samples.enumerate() {
@@ -75,14 +75,14 @@ impl<const D: usize> HandPath<D> {
             // Written so that NaN fails.
             let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
             if let Some(value) = numbers.find(|x| !is_usable(x)) {
-                return Err(HapticsError::SampleNotFinite { index, value });
+                return Err(DeviceError::SampleNotFinite { index, value });
             }
         }
         for (index, pair) in times.windows(2).enumerate() {
             let (previous, time) = (pair[0], pair[1]);
             if time <= previous {
                 let index = index + 1;
-                return Err(HapticsError::TimeNotIncreasing { index, previous, time });
+                return Err(DeviceError::TimeNotIncreasing { index, previous, time });
             }
         }
         let velocities = bessel_tangents(&times, &positions);
@@ -136,9 +136,9 @@ impl<const D: usize> HandPath<D> {
                 PointState { position: from + way * part, velocity: way * (1.0 / span) }
             }
             Interpolation::Smooth => {
-                let (start, end) =
-                    (self.velocities[before] * span, self.velocities[after] * span);
-                hermite(from, way, (start, end), (part, span))
+                let start = self.velocities[before] * span;
+                let end = self.velocities[after] * span;
+                Cubic { from, way, start, end }.at(part, span)
             }
         }
     }
@@ -148,30 +148,36 @@ impl<const D: usize> HandPath<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::SampleNotFinite`] if the map leads beyond any scene.
-    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::SampleNotFinite`] if the map leads beyond any scene.
+    pub fn mapped(&self, map: impl Fn(Point<D>) -> Point<D>) -> Result<Self, DeviceError> {
         let positions = self.positions().iter().map(|point| map(*point)).collect();
         Self::new(self.times().to_vec(), positions, Interpolation::Smooth)
     }
 }
 
-/// The cubic from `from` over `way` with the derivatives `start` and `end` by the part `u` of
-/// its `span`:
+/// The cubic from `from` over `way`, whose derivatives by the part `u` of its time are `start`
+/// and `end`:
 ///
 /// ```text
 /// p = from + u s + u² (3w − 2s − e) + u³ (s + e − 2w)
 /// ```
-fn hermite<const D: usize>(
+struct Cubic<const D: usize> {
     from: Point<D>,
     way: Vector<f64, D>,
-    (start, end): (Vector<f64, D>, Vector<f64, D>),
-    (u, span): (f64, f64),
-) -> PointState<D> {
-    let square = way * 3.0 - start * 2.0 - end;
-    let cube = start + end - way * 2.0;
-    let position = from + (start + (square + cube * u) * u) * u;
-    let velocity = (start + (square * 2.0 + cube * (3.0 * u)) * u) * (1.0 / span);
-    PointState { position, velocity }
+    start: Vector<f64, D>,
+    end: Vector<f64, D>,
+}
+
+impl<const D: usize> Cubic<D> {
+    /// Position and velocity at the part `u` of its time `span` [s].
+    fn at(&self, u: f64, span: f64) -> PointState<D> {
+        let Self { from, way, start, end } = *self;
+        let square = way * 3.0 - start * 2.0 - end;
+        let cube = start + end - way * 2.0;
+        let position = from + (start + (square + cube * u) * u) * u;
+        let velocity = (start + (square * 2.0 + cube * (3.0 * u)) * u) * (1.0 / span);
+        PointState { position, velocity }
+    }
 }
 
 /// At each sample the slope of the parabola through it and its neighbours; zero at both ends,
@@ -195,20 +201,20 @@ fn bessel_tangents<const D: usize>(
 mod tests {
     use super::*;
 
-    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath<2>, HapticsError> {
+    fn path(times: &[f64], xs: &[f64]) -> Result<HandPath<2>, DeviceError> {
         let positions = xs.iter().map(|x| Vector([*x, 0.0])).collect();
         HandPath::new(times.to_vec(), positions, Interpolation::Smooth)
     }
 
     #[test]
     fn wrong_paths_are_refused_with_their_numbers() {
-        assert_eq!(path(&[0.0], &[0.0]), Err(HapticsError::TooFewSamples { count: 1 }));
-        let unpaired = HapticsError::UnpairedSamples { times: 2, positions: 1 };
+        assert_eq!(path(&[0.0], &[0.0]), Err(DeviceError::TooFewSamples { count: 1 }));
+        let unpaired = DeviceError::UnpairedSamples { times: 2, positions: 1 };
         assert_eq!(path(&[0.0, 1.0], &[0.0]), Err(unpaired));
-        let backwards = HapticsError::TimeNotIncreasing { index: 2, previous: 1.0, time: 1.0 };
+        let backwards = DeviceError::TimeNotIncreasing { index: 2, previous: 1.0, time: 1.0 };
         assert_eq!(path(&[0.0, 1.0, 1.0], &[0.0; 3]), Err(backwards));
         let error = path(&[0.0, 1.0], &[0.0, f64::NAN]).unwrap_err();
-        assert!(matches!(error, HapticsError::SampleNotFinite { index: 1, .. }));
+        assert!(matches!(error, DeviceError::SampleNotFinite { index: 1, .. }));
         assert!(path(&[0.0, f64::INFINITY], &[0.0, 0.0]).is_err());
     }
 

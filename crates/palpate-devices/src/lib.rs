@@ -45,6 +45,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod error;
 mod glove;
 mod hand;
 mod hand_path;
@@ -59,6 +60,7 @@ mod tour;
 mod turning;
 mod wrists;
 
+pub use error::DeviceError;
 pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};

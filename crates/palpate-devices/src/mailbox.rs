@@ -5,10 +5,11 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::error::DeviceError;
 use palpate_field::Vector;
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, LatestReader, LatestWriter, PointState,
-    TurnState, latest_value,
+    Device, DeviceLost, DeviceProfile, LatestReader, LatestWriter, PointState, TurnState,
+    latest_value,
 };
 
 /// A device whose driver runs in another thread or another language, where a call from the
@@ -95,13 +96,13 @@ impl<const D: usize> MailboxDevice<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there are none.
+    /// [`DeviceError::NoContactPoint`] if there are none.
     pub fn new(
         profile: DeviceProfile,
         start: &[PointState<D>],
-    ) -> Result<(Self, Mailbox<D>), HapticsError> {
+    ) -> Result<(Self, Mailbox<D>), DeviceError> {
         if start.is_empty() {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         let start = start.to_vec();
         let no_forces = Forces { ticks: 0, points: vec![Vector::ZERO; start.len()] };
@@ -137,12 +138,12 @@ impl<const D: usize> Mailbox<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::OneForEach`] if there is not one state for each point.
-    pub fn set(&mut self, states: &[PointState<D>]) -> Result<(), HapticsError> {
+    /// [`DeviceError::OneForEach`] if there is not one state for each point.
+    pub fn set(&mut self, states: &[PointState<D>]) -> Result<(), DeviceError> {
         let points = self.reading.points.len();
         if states.len() != points {
             let (items, given) = ("states", states.len());
-            return Err(HapticsError::OneForEach { items, given, points });
+            return Err(DeviceError::OneForEach { items, given, points });
         }
         self.reading.points.clone_from_slice(states);
         self.publish();

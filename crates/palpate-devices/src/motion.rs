@@ -14,8 +14,9 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_haptics::NumberError;
 
+use crate::error::DeviceError;
 use crate::oscillator::{Drive, Nodes, Oscillator};
 
 /// The most pieces of motion in one call: at [`FASTEST`], a tenth of a second. A device that is
@@ -122,9 +123,9 @@ pub(crate) struct Parts {
 impl Body {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the total mass is zero, damping or friction are negative or
+    /// [`DeviceError::Number`] if the total mass is zero, damping or friction are negative or
     /// not finite, or the motion is faster than [`FASTEST`].
-    pub(crate) fn new(parts: &Parts) -> Result<Self, HapticsError> {
+    pub(crate) fn new(parts: &Parts) -> Result<Self, DeviceError> {
         let (device, hand) = (parts.device_mass, parts.hand_mass);
         NumberError::check_not_negative("mass", device, "kg")?;
         let mass = NumberError::check_positive("mass of device and hand", device + hand, "kg")?;
@@ -136,12 +137,12 @@ impl Body {
         };
         let fastest = oscillator.fastest();
         if fastest.is_nan() || fastest > FASTEST {
-            return Err(HapticsError::Number(NumberError {
-                parameter: "the rate of damping and spring per mass",
-                rule: "at most 1e4",
-                value: fastest,
-                unit: "1/s",
-            }));
+            return Err(DeviceError::Number(NumberError::new(
+                "the rate of damping and spring per mass",
+                "at most 1e4",
+                fastest,
+                "1/s",
+            )));
         }
         Ok(Self {
             mass,
@@ -188,7 +189,7 @@ impl Body {
             let longest = left.min(self.oscillator.longest());
             let stop = piece.stop(&self.oscillator, longest);
             let length = stop.unwrap_or(longest);
-            energies.add(&self.glide(axis, &load, (&piece, length)));
+            energies.add(&self.glide(axis, &load, &piece, length));
             if stop.is_some() {
                 axis.velocity = 0.0;
             }
@@ -229,12 +230,7 @@ impl Body {
     }
 
     /// Moves `axis` along a piece without a change of direction.
-    fn glide(
-        &mut self,
-        axis: &mut Axis,
-        load: &Load,
-        (piece, length): (&Piece, f64),
-    ) -> Energies {
+    fn glide(&mut self, axis: &mut Axis, load: &Load, piece: &Piece, length: f64) -> Energies {
         if self.nodes.length != length {
             self.nodes = Nodes::new(&self.oscillator, length);
         }

@@ -76,12 +76,13 @@ const fn profile(
     published: Published,
     assumed: Assumed,
 ) -> DeviceProfile {
-    turning_profile((origin, name), published, assumed, None)
+    turning_profile(origin, name, published, assumed, None)
 }
 
 /// The rotational profile of a device, if it has one.
 const fn turning_profile(
-    (origin, name): (&Origin, &'static str),
+    origin: &Origin,
+    name: &'static str,
     published: Published,
     assumed: Assumed,
     turning: Option<TurningProfile>,
@@ -156,7 +157,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "premium15",
         turning_profile(
-            (&DRIVERS, "Phantom Premium 1.5 6DOF"),
+            &DRIVERS,
+            "Phantom Premium 1.5 6DOF",
             Published { force: 8.5, stiffness: 800.0, damping: 5.0, workspace: 0.12 },
             Assumed {
                 continuous_force: 1.4,
@@ -186,7 +188,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "premium30",
         turning_profile(
-            (&DRIVERS, "Phantom Premium 3.0 6DOF"),
+            &DRIVERS,
+            "Phantom Premium 3.0 6DOF",
             Published { force: 22.0, stiffness: 1000.0, damping: 5.0, workspace: 0.25 },
             Assumed {
                 continuous_force: 3.0,
@@ -276,7 +279,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "omega6",
         turning_profile(
-            (&DRIVERS, "Force Dimension omega.6"),
+            &DRIVERS,
+            "Force Dimension omega.6",
             Published { force: 12.0, stiffness: 5000.0, damping: 30.0, workspace: 0.075 },
             Assumed {
                 continuous_force: 12.0,
@@ -291,7 +295,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "omega7",
         turning_profile(
-            (&DRIVERS, "Force Dimension omega.7"),
+            &DRIVERS,
+            "Force Dimension omega.7",
             Published { force: 12.0, stiffness: 5000.0, damping: 30.0, workspace: 0.075 },
             Assumed {
                 continuous_force: 12.0,
@@ -306,7 +311,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "sigma7",
         turning_profile(
-            (&DRIVERS, "Force Dimension sigma.7"),
+            &DRIVERS,
+            "Force Dimension sigma.7",
             Published { force: 12.0, stiffness: 4000.0, damping: 30.0, workspace: 0.075 },
             Assumed {
                 continuous_force: 12.0,
@@ -321,7 +327,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "lambda7",
         turning_profile(
-            (&DRIVERS, "Force Dimension lambda.7"),
+            &DRIVERS,
+            "Force Dimension lambda.7",
             Published { force: 12.0, stiffness: 8000.0, damping: 30.0, workspace: 0.1125 },
             Assumed {
                 continuous_force: 12.0,
@@ -336,7 +343,8 @@ pub static PROFILES: [(&str, DeviceProfile); 16] = [
     (
         "virtuose6d",
         turning_profile(
-            (&ASSUMED, "Haption Virtuose 6D"),
+            &ASSUMED,
+            "Haption Virtuose 6D",
             Published { force: 35.0, stiffness: 2000.0, damping: 30.0, workspace: 0.3 },
             Assumed {
                 continuous_force: 10.0,

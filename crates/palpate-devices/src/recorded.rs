@@ -3,10 +3,10 @@
 
 //! A device without hardware, whose hand follows a path whatever the force.
 
+use crate::error::DeviceError;
 use palpate_field::{Rotation, Vector};
 
 use crate::hand_path::HandPath;
-use palpate_haptics::HapticsError;
 use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, TurnState};
 
 /// A device whose points follow recorded hand paths.
@@ -50,10 +50,10 @@ impl<const D: usize> RecordedDevice<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there are no paths.
-    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, HapticsError> {
+    /// [`DeviceError::NoContactPoint`] if there are no paths.
+    pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, DeviceError> {
         if paths.is_empty() {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         let forces = vec![Vector::ZERO; paths.len()];
         let (turns, turn, torque) = (None, None, Vector::ZERO);

@@ -5,11 +5,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
-use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, NumberError, PointState, TurnState,
-    limited,
-};
+use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState, TurnState};
+use palpate_safety::internal::limited;
 
 use crate::hand::Hand;
 use crate::motion::{Axis, Body, Energies, Load, Parts};
@@ -97,14 +96,14 @@ impl<const D: usize> SimulatedDevice<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NoContactPoint`] if there is no hand. [`HapticsError::Number`] if the
+    /// [`DeviceError::NoContactPoint`] if there is no hand. [`DeviceError::Number`] if the
     /// profile's mass, least damping, friction or encoder step is negative or not finite, its
     /// largest force is negative or NaN, neither device nor hand has a mass, or `c / M + √(k /
     /// M)` of both together, with the damping `c`, stiffness `k` and mass `M`, is more than 1e4
     /// / s; the same rules hold for rotation.
-    pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, HapticsError> {
+    pub fn new(profile: DeviceProfile, hands: Vec<Hand<D>>) -> Result<Self, DeviceError> {
         if hands.is_empty() {
-            return Err(HapticsError::NoContactPoint);
+            return Err(DeviceError::NoContactPoint);
         }
         NumberError::check_not_negative("encoder_step", profile.encoder_step, "m")?;
         if profile.max_force != f64::INFINITY {
@@ -134,7 +133,7 @@ impl<const D: usize> SimulatedDevice<D> {
                 energies: Energies::default(),
             })
         });
-        let points = points.collect::<Result<_, HapticsError>>()?;
+        let points = points.collect::<Result<_, DeviceError>>()?;
         Ok(Self { profile, points, turning, time: None })
     }
 
@@ -415,7 +414,7 @@ mod tests {
             SimulatedDevice::new(profile, hand()).unwrap_err().to_string()
         };
         let none = SimulatedDevice::<2>::new(profile.clone(), Vec::new());
-        assert_eq!(none.unwrap_err(), HapticsError::NoContactPoint);
+        assert_eq!(none.unwrap_err(), DeviceError::NoContactPoint);
         let unlimited = error(DeviceProfile::unlimited("x"));
         assert_eq!(unlimited, "least_damping must be zero or more and finite, got inf N·s/m");
         let negative = error(profile.clone().with_friction(-1.0));

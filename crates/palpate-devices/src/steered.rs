@@ -5,10 +5,11 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::error::DeviceError;
 use palpate_field::{Point, Vector};
 use palpate_haptics::{
-    Device, DeviceLost, DeviceProfile, HapticsError, LatestReader, LatestWriter, NumberError,
-    PointState, TurnState, latest_value,
+    Device, DeviceLost, DeviceProfile, LatestReader, LatestWriter, NumberError, PointState,
+    TurnState, latest_value,
 };
 
 use crate::simulated::SimulatedDevice;
@@ -104,19 +105,20 @@ impl<const D: usize> Steering<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::OneForEach`] if there is not one target for each hand;
-    /// [`HapticsError::SampleNotFinite`] if one is not finite. No hand is led anywhere then.
-    pub fn steer(&mut self, targets: &[Point<D>]) -> Result<(), HapticsError> {
+    /// [`DeviceError::OneForEach`] if there is not one target for each hand;
+    /// [`DeviceError::TargetNotFinite`] if one is not finite. No hand is led anywhere then.
+    pub fn steer(&mut self, targets: &[impl Into<Point<D>> + Copy]) -> Result<(), DeviceError> {
         if targets.len() != self.hands {
             let (items, given) = ("targets", targets.len());
-            return Err(HapticsError::OneForEach { items, given, points: self.hands });
+            return Err(DeviceError::OneForEach { items, given, points: self.hands });
         }
-        for (index, target) in targets.iter().enumerate() {
+        let targets = || targets.iter().map(|target| (*target).into());
+        for (index, target) in targets().enumerate() {
             if let Some(value) = target.0.into_iter().find(|x| !x.is_finite()) {
-                return Err(HapticsError::SampleNotFinite { index, value });
+                return Err(DeviceError::TargetNotFinite { index, value });
             }
         }
-        self.targets.set(|all| all.clone_from_slice(targets));
+        self.targets.set(|all| all.iter_mut().zip(targets()).for_each(|(one, new)| *one = new));
         Ok(())
     }
 }
@@ -127,11 +129,11 @@ impl<const D: usize> SteeredDevice<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the speed is not positive.
+    /// [`DeviceError::Number`] if the speed is not positive.
     pub fn new(
         mut device: SimulatedDevice<D>,
         max_speed: f64,
-    ) -> Result<(Self, Steering<D>), HapticsError> {
+    ) -> Result<(Self, Steering<D>), DeviceError> {
         let max_speed = NumberError::check_positive("max_speed", max_speed, "m/s")?;
         let places = device.start_places();
         let ways = places.iter().map(|at| {
@@ -253,8 +255,11 @@ mod tests {
     #[test]
     fn what_leads_nowhere_is_refused() {
         let (mut device, mut steering) = steered(1.0);
-        assert!(steering.steer(&[]).is_err());
-        assert!(steering.steer(&[Vector([f64::NAN, 0.0])]).is_err());
+        let none: [Point<2>; 0] = [];
+        let error = steering.steer(&none).unwrap_err();
+        assert_eq!(error.to_string(), "1 contact points need as many targets, got 0");
+        let error = steering.steer(&[Vector([f64::NAN, 0.0])]).unwrap_err();
+        assert_eq!(error.to_string(), "target 0 must be finite, got NaN m");
         assert_eq!(hand_at(&mut device, 1.0), 1.0);
         assert!(SteeredDevice::new(device.device.clone(), 0.0).is_err());
     }

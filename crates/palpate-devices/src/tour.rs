@@ -6,10 +6,11 @@
 mod orbit;
 mod smoothing;
 
+use crate::error::DeviceError;
 use palpate_field::{Aabb, Point, Shape, Vector};
 
 use crate::hand_path::{HandPath, Interpolation};
-use palpate_haptics::{HapticsError, NumberError};
+use palpate_haptics::NumberError;
 
 use orbit::orbit;
 use smoothing::{highest, smoothed, smoothed_points};
@@ -137,9 +138,9 @@ impl<const D: usize> Tour<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the duration or the size of the box is not positive and
+    /// [`DeviceError::Number`] if the duration or the size of the box is not positive and
     /// finite.
-    pub fn new(bounds: Aabb<D>, duration: f64) -> Result<Self, HapticsError> {
+    pub fn new(bounds: Aabb<D>, duration: f64) -> Result<Self, DeviceError> {
         let edges = bounds.half_extents() * 2.0;
         let size = NumberError::check_positive(
             "size of the box",
@@ -156,8 +157,8 @@ impl<const D: usize> Tour<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the radius is negative or not finite.
-    pub fn with_probe_radius(self, radius: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if the radius is negative or not finite.
+    pub fn with_probe_radius(self, radius: f64) -> Result<Self, DeviceError> {
         Ok(Self {
             probe_radius: NumberError::check_not_negative("radius", radius, "m")?,
             ..self
@@ -168,8 +169,8 @@ impl<const D: usize> Tour<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the depth is negative or not finite.
-    pub fn with_depth(self, depth: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if the depth is negative or not finite.
+    pub fn with_depth(self, depth: f64) -> Result<Self, DeviceError> {
         Ok(Self { depth: Some(NumberError::check_not_negative("depth", depth, "m")?), ..self })
     }
 
@@ -178,8 +179,8 @@ impl<const D: usize> Tour<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the speed is not positive and finite.
-    pub fn with_speed(self, speed: f64) -> Result<Self, HapticsError> {
+    /// [`DeviceError::Number`] if the speed is not positive and finite.
+    pub fn with_speed(self, speed: f64) -> Result<Self, DeviceError> {
         Ok(Self { speed: NumberError::check_positive("speed", speed, "m/s")?, ..self })
     }
 
@@ -201,8 +202,8 @@ impl<const D: usize> Tour<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::NothingToTouch`] if no ray meets a surface.
-    pub fn over(&self, shape: &Shape<D>) -> Result<HandPath<D>, HapticsError> {
+    /// [`DeviceError::NothingToTouch`] if no ray meets a surface.
+    pub fn over(&self, shape: &Shape<D>) -> Result<HandPath<D>, DeviceError> {
         // The hand is nearer to the shape than its orbit, so its path is shorter; the second
         // orbit is longer by the same factor.
         let way = self.speed * self.duration;
@@ -235,7 +236,7 @@ impl<const D: usize> Tour<D> {
     }
 
     /// The path of the hand for an orbit of length `way` [m].
-    fn follow(&self, shape: &Shape<D>, way: f64) -> Result<Route<D>, HapticsError> {
+    fn follow(&self, shape: &Shape<D>, way: f64) -> Result<Route<D>, DeviceError> {
         let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
         let height = ORBIT_HEIGHT * self.size + self.probe_radius;
@@ -243,7 +244,7 @@ impl<const D: usize> Tour<D> {
             .map(|from| self.look(shape, from))
             .collect();
         if sights.iter().all(|s| s.seen.is_none()) {
-            return Err(HapticsError::NothingToTouch);
+            return Err(DeviceError::NothingToTouch);
         }
         let window = ((0.5 * self.detail() / step).ceil() as usize).max(1);
         let mut press = self.presses(&sights, step, window);
@@ -258,7 +259,7 @@ impl<const D: usize> Tour<D> {
             press.iter_mut().zip(lifted).for_each(|(press, lift)| *press *= ease(1.0 - lift));
             positions = self.positions(shape, &sights, &press, window);
         }
-        Ok(Route { passed: passed(&positions, &press, (step, window)), positions })
+        Ok(Route { passed: passed(&positions, &press, step, window), positions })
     }
 
     /// The smooth path with the depth that `press` gives, corrected by the field.
@@ -470,7 +471,8 @@ fn bridge<const D: usize>(sights: &mut [Sight<D>]) {
 fn passed<const D: usize>(
     positions: &[Point<D>],
     press: &[f64],
-    (step, window): (f64, usize),
+    step: f64,
+    window: usize,
 ) -> Vec<f64> {
     let last = positions.len() - 2;
     let ways: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();

@@ -11,8 +11,10 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use crate::error::DeviceError;
 use palpate_field::{Rotation, Vector};
-use palpate_haptics::{HapticsError, NumberError, TurnState, TurningProfile, limited};
+use palpate_haptics::{NumberError, TurnState, TurningProfile};
+use palpate_safety::internal::limited;
 
 use crate::hand::{Hand, Wrist};
 use crate::motion::{Axis, Body, Energies, Load, Parts};
@@ -39,10 +41,10 @@ pub(crate) struct Turning<const D: usize> {
 impl<const D: usize> Turning<D> {
     /// # Errors
     ///
-    /// [`HapticsError::Number`] if the profile's inertia, least damping, friction or encoder
+    /// [`DeviceError::Number`] if the profile's inertia, least damping, friction or encoder
     /// step is negative or not finite, its largest torque is negative or NaN, the total inertia
     /// is zero, or the motion of device and hand is too fast to be integrated.
-    pub(crate) fn new(profile: &TurningProfile, hand: &Hand<D>) -> Result<Self, HapticsError> {
+    pub(crate) fn new(profile: &TurningProfile, hand: &Hand<D>) -> Result<Self, DeviceError> {
         let wrist = hand.wrist().clone();
         NumberError::check_not_negative("inertia", profile.inertia, "kg·m²")?;
         NumberError::check_positive(

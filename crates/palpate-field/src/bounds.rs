@@ -209,18 +209,3 @@ impl<const D: usize> Bounds<D> {
         self.ball.centre.norm() + self.ball.radius
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_ball_of_two_balls_touches_both() {
-        let a = BoundingBall { centre: Vector([0.0, 0.0]), radius: 1.0 };
-        let b = BoundingBall { centre: Vector([4.0, 0.0]), radius: 2.0 };
-        let both = a.union(&b);
-        assert_eq!(both.centre, Vector([2.5, 0.0]));
-        assert!((both.radius - 3.5).abs() < 1e-14);
-        assert_eq!(a.union(&BoundingBall { radius: 0.5, ..a }), a);
-    }
-}

@@ -17,6 +17,8 @@
 //! leaves cells alone that cannot hold it. A volume is a sum: every cell counts, and which
 //! cells to cut follows from the errors of all.
 
+use std::fmt;
+
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, positive};
 use crate::field::{EvaluateBlock, Field};
@@ -121,6 +123,13 @@ impl<const D: usize> Mass<D> {
     #[must_use]
     pub fn polar_inertia(&self) -> f64 {
         (0..D).map(|i| self.second_moments[i][i]).sum()
+    }
+}
+
+impl<const D: usize> fmt::Display for Mass<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mass, error, centroid) = (self.mass(), self.mass_error(), self.centroid.0);
+        write!(f, "{mass} ± {error} kg about {centroid:?} ± {} m", self.centroid_error)
     }
 }
 
@@ -356,6 +365,7 @@ impl<const D: usize> Shape<D> {
     /// assert!((mass.volume - volume).abs() <= mass.volume_error);
     /// assert!(mass.volume_error <= 1e-3 * volume);
     /// assert!((mass.centroid[0] - 1.0).abs() <= mass.centroid_error);
+    /// assert!(mass.to_string().starts_with(&format!("{} ± ", mass.mass())));
     /// # Ok(())
     /// # }
     /// ```

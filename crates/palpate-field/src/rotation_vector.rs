@@ -85,39 +85,3 @@ fn vector_of<const D: usize>(rotation: Rotation<D>) -> Vector<f64, 3> {
     let sine = axis.norm();
     if sine > 0.0 { axis * (2.0 * libm::atan2(sine, w) / sine) } else { Vector::ZERO }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use palpate_testkit::cases::each as cases;
-
-    #[test]
-    fn a_turn_between_two_rotations_leads_from_one_to_the_other() {
-        cases(300, |u| {
-            let mut draw = || u.int_in_range(-1000..=1000).map(|x| f64::from(x) * 1e-3);
-            let mut vector = || Ok::<_, arbitrary::Error>(Vector([draw()?, draw()?, draw()?]));
-            let from = Rotation::<3>::identity().turned(vector()? * 3.0);
-            let by = vector()?;
-            assert!((from.turn_to(&from.turned(by)) - by).norm() < 1e-14, "{by:?}");
-            let flat = Vector([0.0, 0.0, by[2]]);
-            let planar = Rotation::<2>::identity().turned(flat);
-            assert!((planar.angle() - by[2]).abs() < 1e-15);
-            assert!((Rotation::identity().turn_to(&planar) - flat).norm() < 1e-15);
-            Ok(())
-        });
-    }
-
-    #[test]
-    fn a_quarter_about_z_takes_x_to_y_and_a_thousand_turns_keep_a_rotation_one() {
-        let quarter = Vector([0.0, 0.0, std::f64::consts::FRAC_PI_2]);
-        let turned_once = Rotation::<3>::identity().turned(quarter);
-        let y = turned_once.rotate(Vector([1.0, 0.0, 0.0]));
-        assert!((y - Vector([0.0, 1.0, 0.0])).norm() < 1e-15);
-        let mut rotation = turned_once;
-        for _ in 0..1000 {
-            rotation = rotation.turned([0.3, -0.2, 0.5]);
-        }
-        let there_and_back = rotation * rotation.inverse();
-        assert!(Rotation::identity().turn_to(&there_and_back).norm() < 1e-15);
-    }
-}

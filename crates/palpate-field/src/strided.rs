@@ -130,32 +130,3 @@ impl<'a, T: Copy, const N: usize> StridedMut<'a, T, N> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strides_may_go_back_and_skip() -> Result<(), ShapeError> {
-        let data = [0, 1, 2, 3, 4, 5, 6, 7];
-        let layout = Layout { start: 7, rows: 2, row_stride: -4, column_stride: -2 };
-        let table = Strided::<_, 2>::new(&data, layout)?;
-        assert_eq!([table.row(0), table.row(1)], [[7, 5], [3, 1]]);
-        Ok(())
-    }
-
-    #[test]
-    fn numbers_outside_the_slice_are_refused() {
-        let fits = |start, rows, row_stride, column_stride| {
-            let layout = Layout { start, rows, row_stride, column_stride };
-            Strided::<_, 3>::new(&[0.0; 12], layout).is_ok()
-        };
-        assert!(fits(0, 4, 3, 1));
-        assert!(!fits(1, 4, 3, 1));
-        assert!(!fits(0, 5, 3, 1));
-        assert!(fits(11, 4, -3, -1));
-        assert!(!fits(10, 4, -3, -1));
-        assert!(!fits(0, 4, isize::MAX, isize::MAX));
-        assert!(fits(99, 0, 1, 1));
-    }
-}

@@ -265,19 +265,3 @@ impl<const D: usize> SubAssign for Vector<f64, D> {
         *self = *self - other;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Vector;
-
-    #[test]
-    fn normalizing_survives_tiny_and_huge_vectors() {
-        for scale in [1e-300, 1.0, 1e300] {
-            let v = Vector([3.0 * scale, 4.0 * scale]).normalized().unwrap();
-            assert!((v - Vector([0.6, 0.8])).norm() < 1e-15);
-        }
-        assert_eq!(Vector([0.0, 0.0, 0.0]).normalized(), None);
-        assert_eq!(Vector([f64::NAN, 1.0]).normalized(), None);
-        assert_eq!(Vector([f64::INFINITY, 1.0]).normalized(), None);
-    }
-}

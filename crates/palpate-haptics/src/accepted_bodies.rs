@@ -8,9 +8,10 @@
 use std::sync::Arc;
 
 use crate::bodies::Bodies;
+use crate::error::HapticsError;
 use crate::protection::Protection;
 use crate::tool::Coupling;
-use palpate_safety::Accepted;
+use palpate_safety::{Acceptance, Accepted, DeviceLimits, Impedance, TurningProfile};
 
 /// Bodies, and the virtual coupling of a tool, with stiffness and damping that a device can
 /// render.
@@ -80,4 +81,105 @@ impl<const D: usize> AcceptedBodies<D> {
             _ => None,
         }
     }
+}
+
+impl<const D: usize> Protection<D> {
+    /// Accepts everything that a servo renders: its bodies, and with a tool the requested
+    /// virtual coupling. A device that gives no force takes bodies as they are.
+    pub(crate) fn accepted_bodies(
+        self: &Arc<Self>,
+        bodies: Bodies<D>,
+        requested: Option<Coupling>,
+        rate: f64,
+    ) -> Result<AcceptedBodies<D>, HapticsError> {
+        let protection = Some(self.clone());
+        if self.profile.max_force == 0.0 {
+            return Ok(AcceptedBodies { protection, ..AcceptedBodies::unchanged(bodies) });
+        }
+        if let Some(coupling) = requested {
+            let (bodies, coupling, accepted) = self.accept_tool(bodies, coupling, rate)?;
+            return Ok(AcceptedBodies {
+                bodies,
+                coupling: Some(coupling),
+                accepted,
+                protection,
+            });
+        }
+        let (bodies, accepted) = self.accept(bodies, rate)?;
+        Ok(AcceptedBodies { bodies, coupling: None, accepted, protection })
+    }
+
+    /// Accepts bodies and the coupling of a tool together: the factor that the worst layer in
+    /// series with the coupling needs scales all of them. If the device gives a torque, a
+    /// second entry holds the accepted angular stiffness and damping.
+    fn accept_tool(
+        &self,
+        mut bodies: Bodies<D>,
+        mut coupling: Coupling,
+        rate: f64,
+    ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
+        let mut worst: Option<Accepted> = None;
+        for layer in layers(&bodies)? {
+            let accepted = self.accepted(coupling.on(layer)?, rate)?;
+            if worst.as_ref().is_none_or(|worst| accepted.factor < worst.factor) {
+                worst = Some(accepted);
+            }
+        }
+        if let Some(worst) = worst.as_ref().filter(|worst| worst.factor < 1.0) {
+            bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(worst.factor));
+            coupling = coupling.softened(worst.factor);
+        }
+        let mut accepted: Vec<_> = worst.into_iter().collect();
+        if let Some(turning) = self.torques() {
+            let turning = self.accept_turning(&layers(&bodies)?, &mut coupling, turning, rate);
+            accepted.push(turning?);
+        }
+        Ok((bodies, coupling, accepted))
+    }
+
+    /// The rotational properties of a device that gives a torque.
+    fn torques(&self) -> Option<&TurningProfile> {
+        // Written so that NaN gives `None`.
+        self.profile.turning.as_ref().filter(|turning| turning.max_torque > 0.0)
+    }
+
+    /// Scales the angular coupling to what the device can render on the stiffest layer. The
+    /// device damping that remains limits the lever arms on which the bodies' dampers act.
+    fn accept_turning(
+        &self,
+        layers: &[Impedance],
+        coupling: &mut Coupling,
+        turning: &TurningProfile,
+        rate: f64,
+    ) -> Result<Accepted, HapticsError> {
+        let (mut part, mut damping) = (0.0_f64, 0.0_f64);
+        for layer in layers {
+            part = part.max((layer.stiffness() / coupling.stiffness).min(1.0));
+            damping = damping.max(layer.damping());
+        }
+        let limits = DeviceLimits::about(turning);
+        // A torque at the device is this multiple of the torque in the world.
+        let scale = 1.0 / self.map.scale();
+        let of =
+            |impedance, acceptance| Accepted::of(impedance, scale, &limits, acceptance, rate);
+        if self.acceptance == Acceptance::Strict {
+            return Ok(of(coupling.turning_on(part, damping)?, Acceptance::Strict)?);
+        }
+        let accepted = of(coupling.turning_on(part, 0.0)?, self.acceptance)?;
+        *coupling = coupling.softened_about_axes(accepted.factor);
+        if self.acceptance == Acceptance::Scaled {
+            let taken = 0.5 * accepted.device_stiffness / rate + accepted.device_damping;
+            let left = (turning.least_damping - taken)
+                .min(turning.max_damping - accepted.device_damping)
+                .max(0.0);
+            let needed = scale * coupling.damping_on_arms(damping);
+            coupling.arms = if needed > left { (left / needed).sqrt() } else { 1.0 };
+        }
+        Ok(accepted)
+    }
+}
+
+/// Stiffness and damping of every layer of every body.
+fn layers<const D: usize>(bodies: &Bodies<D>) -> Result<Vec<Impedance>, HapticsError> {
+    bodies.bodies().iter().flat_map(|body| body.surface().impedances()).collect()
 }

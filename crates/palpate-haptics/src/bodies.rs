@@ -11,7 +11,6 @@ use palpate_field::{
 
 use crate::error::HapticsError;
 use crate::event::Reaction;
-use crate::nearby::Nearby;
 use crate::surface::Surface;
 
 /// Rounding errors of mapping a point into body coordinates, in units of rounding per metre
@@ -183,7 +182,7 @@ impl<const D: usize> Body<D> {
     /// The distance from a point of the world to the bounding balls before and after the motion
     /// of this tick [m].
     #[inline]
-    fn above_way(&self, point: Point<D>) -> f64 {
+    pub(crate) fn above_way(&self, point: Point<D>) -> f64 {
         if self.has_moved { self.above_moved(point) } else { self.above_ball(point) }
     }
 
@@ -378,39 +377,6 @@ impl<const D: usize> Bodies<D> {
         if std::mem::take(&mut self.has_moved) {
             self.bodies.iter_mut().for_each(Body::settle);
         }
-    }
-
-    /// All bodies, however far away.
-    #[must_use]
-    pub fn everything(&self) -> Nearby<'_, D> {
-        Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
-    }
-
-    /// The bodies within `radius` of `centre` [m]; `list` receives their indices. If `list` is
-    /// full, the horizon moves nearer, so that the bodies left out lie beyond it.
-    ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
-    #[must_use]
-    pub fn nearby<'a>(
-        &'a self,
-        centre: Point<D>,
-        radius: f64,
-        list: &'a mut [u32],
-    ) -> Nearby<'a, D> {
-        let (mut horizon, mut count) = (f64::INFINITY, 0);
-        for (index, body) in (0..).zip(&self.bodies) {
-            let away = body.above_way(centre);
-            // Written so that NaN counts as near.
-            let is_far = away > radius;
-            match list.get_mut(count) {
-                Some(place) if !is_far => {
-                    *place = index;
-                    count += 1;
-                }
-                _ => horizon = horizon.min(away),
-            }
-        }
-        Nearby { bodies: self, list: list.get(..count), centre, horizon }
     }
 }
 

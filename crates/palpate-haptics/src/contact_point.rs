@@ -12,13 +12,15 @@ use crate::event::{Event, EventKind};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::protection::Port;
+use crate::ports::Port;
 use crate::proxy::{Probe, Proxy};
 use crate::surface::{Press, Ringing};
-use palpate_safety::{PointState, PortState, WorkspaceMap, limited, shortening};
+use palpate_safety::internal::{limited, shortening};
+use palpate_safety::{PointState, PortState, WorkspaceMap};
 
 /// One contact point after a tick. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Touch<const D: usize> {
     /// The device point (haptic interface point) [m]; as read, even if it is not finite.
     pub device: Point<D>,

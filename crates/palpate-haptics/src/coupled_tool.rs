@@ -11,9 +11,10 @@ use palpate_field::{Point, Pose, Vector};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::contact_point::{ContactPoint, FreeForce, Setting, Touch};
-use crate::protection::TurningPort;
+use crate::ports::TurningPort;
 use crate::tool::{Coupling, HeldTool, Tool, ToolState};
-use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState, limited};
+use palpate_safety::internal::limited;
+use palpate_safety::{PointState, SpatialVector, TurnState, WrenchChain, WrenchState};
 
 /// The two sides of a tool: the contact point that holds it, and the bodies that stop it.
 pub(crate) struct Sides<'a, const D: usize> {

@@ -6,6 +6,7 @@
 /// Energy at a contact point since the start [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Energy {
     /// Energy that the rendered forces took from the hand.
     pub taken: f64,

@@ -10,6 +10,7 @@ use palpate_field::{Point, Vector};
 /// An event at a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Event {
     /// The tick, counted from 0.
     pub tick: u64,
@@ -26,6 +27,7 @@ pub struct Event {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum EventKind {
     /// The contact point begins to touch the body.
     Touch {
@@ -48,6 +50,7 @@ pub enum EventKind {
 /// The number of events of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct EventCounts {
     /// Contacts that began.
     pub touches: u64,
@@ -79,6 +82,7 @@ impl EventCounts {
 /// Force and torque of all contact points on a body in a tick, in world coordinates: input for
 /// a physics engine that moves the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reaction<const D: usize> {
     /// The force [N].
     pub force: Vector<f64, D>,

@@ -57,6 +57,7 @@ mod material;
 mod nearby;
 mod options;
 mod planes;
+mod ports;
 mod protection;
 mod proxy;
 mod sampler;
@@ -85,12 +86,13 @@ pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
     Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,
     SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport,
-    VelocityEstimator, WatchdogReport, WorkspaceMap, limited,
+    VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
-pub use servo::{Renderer, Servo, UnprotectedServo};
+pub use servo::{AnyServo, Renderer, Servo, UnprotectedServo};
 pub use surface::Surface;
 pub use tool::{
-    Coupling, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState, ToolTouch,
+    Coupling, Handle, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState,
+    ToolTouch,
 };

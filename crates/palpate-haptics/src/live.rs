@@ -9,6 +9,7 @@ use crate::tool::HeldTool;
 
 /// The progress of a running servo, as of a recent tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Progress {
     /// Ticks done.
     pub ticks: u64,
@@ -28,6 +29,7 @@ pub struct Progress {
 
 /// The state of a servo after one tick: all parts are of the same tick.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Snapshot<const D: usize> {
     /// Counts and largest values.
     pub progress: Progress,

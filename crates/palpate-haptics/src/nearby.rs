@@ -87,6 +87,41 @@ pub struct Nearby<'a, const D: usize> {
     pub(crate) horizon: f64,
 }
 
+impl<const D: usize> Bodies<D> {
+    /// All bodies, however far away.
+    #[must_use]
+    pub fn everything(&self) -> Nearby<'_, D> {
+        Nearby { bodies: self, list: None, centre: Vector::ZERO, horizon: f64::INFINITY }
+    }
+
+    /// The bodies within `radius` of `centre` [m]; `list` receives their indices. If `list` is
+    /// full, the horizon moves nearer, so that the bodies left out lie beyond it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    #[must_use]
+    pub fn nearby<'a>(
+        &'a self,
+        centre: Point<D>,
+        radius: f64,
+        list: &'a mut [u32],
+    ) -> Nearby<'a, D> {
+        let (mut horizon, mut count) = (f64::INFINITY, 0);
+        for (index, body) in (0..).zip(self.bodies()) {
+            let away = body.above_way(centre);
+            // Written so that NaN counts as near.
+            let is_far = away > radius;
+            match list.get_mut(count) {
+                Some(place) if !is_far => {
+                    *place = index;
+                    count += 1;
+                }
+                _ => horizon = horizon.min(away),
+            }
+        }
+        Nearby { bodies: self, list: list.get(..count), centre, horizon }
+    }
+}
+
 impl<'a, const D: usize> Nearby<'a, D> {
     /// The body with this index.
     pub(crate) fn body(&self, body: u32) -> Option<&'a Body<D>> {

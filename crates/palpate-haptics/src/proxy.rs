@@ -81,7 +81,7 @@ impl Probe {
         if budget < LEAST_BUDGET {
             let value = f64::from(budget);
             let (parameter, rule, unit) = ("budget", "at least 4", "evaluations");
-            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
         }
         Ok(Self { budget, ..self })
     }
@@ -108,6 +108,7 @@ impl Default for Probe {
 
 /// The state of a proxy after a tick, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Following<const D: usize> {
     /// The proxy [m], on or outside the surface offset by the probe's radius. Without contact
     /// it is the device point, unless the device point lies outside the region of the field's

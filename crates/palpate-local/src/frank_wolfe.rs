@@ -7,7 +7,7 @@
 use palpate_field::Shape;
 use palpate_query::Element;
 
-use crate::{Descent, least_vertex, support};
+use crate::{Descent, Weights, least_vertex, support};
 
 /// Goes from the lowest vertex `2/(k + 2)` of the way to the vertex that lies farthest
 /// against the gradient, in step k.
@@ -68,14 +68,34 @@ impl FrankWolfe {
 }
 
 impl FrankWolfe {
-    /// The search for the least value of a field over an element.
+    /// The search for the least value of a field over an element, from its lowest vertex.
     #[must_use]
     pub fn descend<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
     ) -> Descent<D> {
-        let (_, mut descent) = least_vertex(shape, element);
+        self.follow(shape, element, least_vertex(shape, element).1)
+    }
+
+    /// The same search from another point of the element.
+    #[must_use]
+    pub fn descend_from<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: &Weights<N>,
+    ) -> Descent<D> {
+        self.follow(shape, element, Descent::from_weights(shape, element, start))
+    }
+
+    /// The search from the point that `descent` has visited.
+    fn follow<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        mut descent: Descent<D>,
+    ) -> Descent<D> {
         let mut p = descent.best;
         for k in 0..self.steps {
             let (value, gradient) = shape.distance_gradient(p);

@@ -8,7 +8,7 @@
 use palpate_field::{Point, Shape, Vector};
 use palpate_query::Element;
 
-use crate::{Descent, least_vertex, support};
+use crate::{Descent, Weights, least_vertex, support};
 
 /// 1/φ: what is left of a bracket after a section, so that one of its two points is
 /// used again.
@@ -82,26 +82,52 @@ impl GoldenSection {
 }
 
 impl GoldenSection {
-    /// The search for the least value of a field over an element.
+    /// The search for the least value of a field over an element, from its lowest vertex.
     #[must_use]
     pub fn descend<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
     ) -> Descent<D> {
-        let (start, mut descent) = least_vertex(shape, element);
-        for k in 0..self.steps {
+        let (least, descent) = least_vertex(shape, element);
+        // The line from one end of a segment is all of it.
+        let other_end = (N == 2).then(|| element.vertices()[(least + 1) % N]);
+        self.follow(shape, element, descent, other_end)
+    }
+
+    /// The same search from another point of the element.
+    #[must_use]
+    pub fn descend_from<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: &Weights<N>,
+    ) -> Descent<D> {
+        self.follow(shape, element, Descent::from_weights(shape, element, start), None)
+    }
+
+    /// The search from the point that `descent` has visited; its first line leads to `first`, if
+    /// that is given, and the others against the gradient.
+    fn follow<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        mut descent: Descent<D>,
+        mut first: Option<Point<D>>,
+    ) -> Descent<D> {
+        for _ in 0..self.steps {
             let p = descent.best;
-            let mut towards = element.vertices()[(start + 1) % N];
-            if N > 2 || k > 0 {
+            let towards = if let Some(first) = first.take() {
+                first
+            } else {
                 let (_, gradient) = shape.distance_gradient(p);
                 descent.evaluations += 2;
                 let (vertex, drop) = support(element, p, gradient);
                 if drop <= self.tolerance * element.farthest(p) {
                     break;
                 }
-                towards = element.vertices()[vertex];
-            }
+                element.vertices()[vertex]
+            };
             descent.steps += 1;
             let (lowest, value) = self.line(shape, p, towards - p);
             descent.evaluations += self.sections + 1;

@@ -11,16 +11,20 @@
 //!
 //! | method | of | source |
 //! |---|---|---|
+//! | [`NaiveDescent`] | field and element | memoir 2.4 and 3.2, as printed |
 //! | [`ProjectedGradient`] | field and element | memoir 3.2; Macklin et al. 2020 |
 //! | [`FrankWolfe`] | field and element | Macklin et al. 2020 |
-//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles, the half of it in space) |
+//! | [`GoldenSection`] | field and element | Macklin et al. 2020 (edges); Pelletier-Guénette et al. 2025 (triangles; the spatial part of their space-time search) |
 //! | [`AlternatingProjection`] | two fields | memoir 3.3, after Liu et al. 2024 |
 //! | [`MinimaxProximal`] | two fields | the bundle method with two planes |
 //!
 //! Constants are those of the documents, or of the programs that use their methods. What
-//! is wrong in the documents is mended: steps are not constant along a unit gradient, the
-//! best point is returned and not the last one, and it is the projected step that says
-//! when to stop.
+//! is wrong in the documents is mended, but in [`NaiveDescent`]: steps are not constant along a
+//! unit gradient, the best point is returned and not the last one, and it is the projected
+//! step that says when to stop.
+//!
+//! [`GradientSampler`] finds directions of gradients in the ways of the memoir's section 2.3,
+//! for comparison with [`Shape::distance_gradient`].
 //!
 //! ```
 //! use palpate_field::{Shape, Vector, kernel::Ball};
@@ -38,18 +42,26 @@
 //! let found = method.descend(&balls, &segment);
 //! let certified = minimum(&balls, &segment, &Limits::new(1e-4), &mut ElementWorkspace::new())?;
 //! assert!(found.value > 0.02 && certified.upper < -0.032);
+//! assert!(found.to_string().starts_with(&format!("{} m at ", found.value)));
 //! # Ok(())
 //! # }
 //! ```
 
+#[macro_use]
+mod named;
+
 mod alternating_projection;
 mod frank_wolfe;
 mod golden_section;
+mod gradient;
 mod minimax_proximal;
+mod naive;
+mod nearest;
+mod oscillation;
 mod projected_gradient;
+mod weights;
 
 use std::fmt;
-use std::str::FromStr;
 
 use palpate_field::{Point, Shape};
 use palpate_query::{Element, Placed, QueryError};
@@ -57,11 +69,19 @@ use palpate_query::{Element, Placed, QueryError};
 pub use alternating_projection::AlternatingProjection;
 pub use frank_wolfe::FrankWolfe;
 pub use golden_section::GoldenSection;
+pub use gradient::{
+    FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
+    central_differences, closest_vector, dichotomy,
+};
 pub use minimax_proximal::MinimaxProximal;
+pub use naive::NaiveDescent;
+pub use named::UnknownMethod;
 pub use projected_gradient::ProjectedGradient;
+pub use weights::{Weights, WeightsError};
 
 /// What a local search found, and how it came there.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Descent<const D: usize> {
     /// The best point on the way [m].
     pub best: Point<D>,
@@ -82,6 +102,16 @@ impl<const D: usize> Descent<D> {
         Self { best: start, value, steps: 0, evaluations, path: vec![start] }
     }
 
+    /// A search that starts at this point of an element.
+    fn from_weights<const N: usize>(
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: &Weights<N>,
+    ) -> Self {
+        let start = element.at(start.of_vertices());
+        Self::from_start(start, shape.distance(start), 1)
+    }
+
     /// The search is at `p`.
     fn visit(&mut self, p: Point<D>, value: f64) {
         self.path.push(p);
@@ -91,15 +121,11 @@ impl<const D: usize> Descent<D> {
     }
 }
 
-/// A name that no method has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no method {name:?}; there are {known}")]
-#[non_exhaustive]
-pub struct UnknownMethod {
-    /// The name.
-    pub name: String,
-    /// The names of the methods, separated by commas.
-    pub known: String,
+impl<const D: usize> fmt::Display for Descent<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { best, value, steps, evaluations, .. } = self;
+        write!(f, "{value} m at {:?} m, {steps} steps, {evaluations} evaluations", best.0)
+    }
 }
 
 /// Refuses a start or a tolerance that cannot be computed with.
@@ -108,43 +134,11 @@ fn check_start<const D: usize>(start: Point<D>, tolerance: f64) -> Result<(), Qu
     QueryError::check_length(tolerance)
 }
 
-/// Writes the names of methods, and reads them.
-macro_rules! named {
-    ($method:ident: $($variant:ident = $name:literal),+) => {
-        impl $method {
-            /// All there are.
-            pub const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// The name on command lines.
-            #[must_use]
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),+ }
-            }
-        }
-
-        impl fmt::Display for $method {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-
-        impl FromStr for $method {
-            type Err = UnknownMethod;
-
-            fn from_str(name: &str) -> Result<Self, UnknownMethod> {
-                let is_meant = |method: &&Self| method.name() == name;
-                Self::ALL.iter().find(is_meant).copied().ok_or_else(|| {
-                    let known: Vec<_> = Self::ALL.iter().map(|method| method.name()).collect();
-                    UnknownMethod { name: name.to_owned(), known: known.join(", ") }
-                })
-            }
-        }
-    };
-}
-
 /// A local search for the least value of a field over an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementMethod {
+    /// [`NaiveDescent`].
+    Naive,
     /// [`ProjectedGradient`].
     ProjectedGradient,
     /// [`FrankWolfe`].
@@ -154,6 +148,7 @@ pub enum ElementMethod {
 }
 
 named!(ElementMethod:
+    Naive = "naive",
     ProjectedGradient = "projected_gradient",
     FrankWolfe = "frank_wolfe",
     GoldenSection = "golden_section"
@@ -168,9 +163,28 @@ impl ElementMethod {
         element: &Element<N, D>,
     ) -> Descent<D> {
         match self {
+            Self::Naive => NaiveDescent::default().descend(shape, element),
             Self::ProjectedGradient => ProjectedGradient::default().descend(shape, element),
             Self::FrankWolfe => FrankWolfe::default().descend(shape, element),
             Self::GoldenSection => GoldenSection::default().descend(shape, element),
+        }
+    }
+
+    /// The same search from another point of the element than its usual start.
+    #[must_use]
+    pub fn descend_from<const N: usize, const D: usize>(
+        self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: &Weights<N>,
+    ) -> Descent<D> {
+        match self {
+            Self::Naive => NaiveDescent::default().descend_from(shape, element, start),
+            Self::ProjectedGradient => {
+                ProjectedGradient::default().descend_from(shape, element, start)
+            }
+            Self::FrankWolfe => FrankWolfe::default().descend_from(shape, element, start),
+            Self::GoldenSection => GoldenSection::default().descend_from(shape, element, start),
         }
     }
 }

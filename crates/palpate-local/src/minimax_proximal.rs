@@ -4,7 +4,8 @@
 //! Steps that lower the larger of two fields, by both their gradients.
 
 use palpate_field::Point;
-use palpate_query::{DistanceBound, Placed, QueryError, minimax_step};
+use palpate_query::internal::minimax_step;
+use palpate_query::{DistanceBound, Placed, QueryError};
 
 use crate::{Descent, check_start};
 
@@ -86,7 +87,8 @@ impl MinimaxProximal {
         let mut size = descent.value.abs().max(tolerance);
         while descent.steps < self.steps && size >= tolerance && size > 0.0 {
             descent.steps += 1;
-            let next = descent.best - minimax_step(here, size);
+            let [(a, slope_a), (b, slope_b)] = here;
+            let next = descent.best - minimax_step([a, b], [slope_a, slope_b], size);
             let there = slopes(next);
             descent.evaluations += 4;
             let value = there[0].0.max(there[1].0);

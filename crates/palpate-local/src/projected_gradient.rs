@@ -7,7 +7,7 @@
 use palpate_field::{Point, Shape, Vector};
 use palpate_query::Element;
 
-use crate::Descent;
+use crate::{Descent, Weights};
 
 /// The share of the promised descent that a step must keep.
 const KEPT: f64 = 0.5;
@@ -84,14 +84,38 @@ impl ProjectedGradient {
 }
 
 impl ProjectedGradient {
-    /// The search for the least value of a field over an element.
+    /// The search for the least value of a field over an element, from the lowest of its
+    /// vertices and its centroid.
     #[must_use]
     pub fn descend<const N: usize, const D: usize>(
         &self,
         shape: &Shape<D>,
         element: &Element<N, D>,
     ) -> Descent<D> {
-        let (mut weights, mut descent) = start(shape, element);
+        let (weights, descent) = start(shape, element);
+        self.follow(shape, element, weights, descent)
+    }
+
+    /// The same search from another point of the element.
+    #[must_use]
+    pub fn descend_from<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        start: &Weights<N>,
+    ) -> Descent<D> {
+        let descent = Descent::from_weights(shape, element, start);
+        self.follow(shape, element, *start.of_vertices(), descent)
+    }
+
+    /// The search from the point with these weights, which `descent` has visited.
+    fn follow<const N: usize, const D: usize>(
+        &self,
+        shape: &Shape<D>,
+        element: &Element<N, D>,
+        mut weights: [f64; N],
+        mut descent: Descent<D>,
+    ) -> Descent<D> {
         let mut p = descent.best;
         let farthest = element.farthest(p);
         if farthest == 0.0 {

@@ -38,6 +38,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod clock;
+mod display;
 mod pacer;
 mod priority;
 mod recorder;
@@ -49,11 +50,11 @@ mod thread;
 mod tool_report;
 
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
-pub use pacer::Lateness;
+pub use pacer::{Lateness, Pace};
 pub use priority::{Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunError, RunReport};
-pub use run::{Pace, Run, RunOptions, Seconds, Watch, run, run_on};
+pub use run::{Motion, Run, RunOptions, Seconds, Watch, run, run_on};
 pub use statistics::{Bucket, Distribution};
-pub use thread::{EndedThread, ServoThread, ThreadOptions};
+pub use thread::{EndedThread, ServoThread, StartError, ThreadOptions};
 pub use tool_report::ToolReport;

@@ -9,8 +9,18 @@ use palpate_haptics::{HapticsError, NumberError};
 use std::time::Duration;
 
 use crate::clock::Clock;
-use crate::run::ticks;
 use crate::statistics::{Distribution, Times};
+
+/// The pace of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pace {
+    /// In real time, at the servo's rate on the clock.
+    #[default]
+    RealTime,
+    /// Without waiting between ticks; the servo's time advances by a period a tick as in real
+    /// time.
+    AsFastAsPossible,
+}
 
 /// The most warm-ups before a deadline: on a clock that stands still, they would never end.
 const MOST_WARM_UPS: u32 = 64;
@@ -71,13 +81,20 @@ impl Pacer {
     }
 }
 
+/// The number of ticks in `duration` [s], rounded, so that 10 s at 1 kHz are 10 000 ticks in
+/// spite of rounding.
+pub(crate) fn ticks(duration: f64, rate: f64) -> u64 {
+    (duration * rate).round() as u64
+}
+
 pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
 /// How late an idle loop wakes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Lateness {
     /// The distribution of lateness; `None` if the loop had no tick.
     pub times: Option<Distribution>,

@@ -8,6 +8,7 @@ use palpate_haptics::{Energy, HeldTool, Servo};
 
 /// One contact point in one tick: a row of a trace. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TraceRow<const D: usize> {
     /// The time of the tick since the servo started [s].
     pub time_s: f64,
@@ -40,6 +41,30 @@ pub struct TraceRow<const D: usize> {
     pub cost_ns: u64,
     /// How late the tick started [ns]; zero in a run without pacing.
     pub lateness_ns: u64,
+}
+
+impl<const D: usize> TraceRow<D> {
+    /// A contact point at `device` [m] that touches nothing at this time [s].
+    #[must_use]
+    pub fn free(time_s: f64, point: u32, device: Point<D>) -> Self {
+        Self {
+            time_s,
+            point,
+            device,
+            proxy: device,
+            wanted: Vector::ZERO,
+            force: Vector::ZERO,
+            normal: Vector::ZERO,
+            contact: false,
+            body: 0,
+            is_slipping: false,
+            energy: Energy::default(),
+            tool: None,
+            evaluations: 0,
+            cost_ns: 0,
+            lateness_ns: 0,
+        }
+    }
 }
 
 /// Times of a tick.
@@ -85,9 +110,6 @@ impl<const D: usize> Recorder<D> {
                 continue;
             }
             self.rows.push(TraceRow {
-                time_s: times.time_s,
-                point,
-                device: touch.device,
                 proxy: touch.proxy,
                 wanted: touch.wanted,
                 force: touch.force,
@@ -100,6 +122,7 @@ impl<const D: usize> Recorder<D> {
                 evaluations: touch.evaluations,
                 cost_ns: times.cost_ns,
                 lateness_ns: times.lateness_ns,
+                ..TraceRow::free(times.time_s, point, touch.device)
             });
         }
     }

@@ -11,6 +11,7 @@ use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
 /// The report of a run of a servo.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct RunReport {
     /// Why the run ended.
     pub ending: Ending,
@@ -80,7 +81,7 @@ pub enum RunError {
     /// The device was lost, or did not take the zero forces at the end.
     #[error(transparent)]
     DeviceLost(#[from] DeviceLost),
-    /// The loop panicked, which is a defect; zero forces were written.
+    /// The loop panicked, which is a defect.
     #[error("the servo's loop panicked, which is a defect: {message}")]
     Panicked {
         /// The panic's message.
@@ -93,6 +94,7 @@ pub enum RunError {
 /// How often the shape was evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Evaluations {
     /// In all ticks.
     pub total: u64,
@@ -108,6 +110,7 @@ pub struct Evaluations {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum Ending {
     /// The duration was over, or the handle of the servo's thread ended the run.
     Finished,
@@ -118,7 +121,8 @@ pub enum Ending {
         /// The message of the transport.
         reason: String,
     },
-    /// The loop panicked, which is a defect; zero forces were written.
+    /// The loop panicked, which is a defect. [`RunReport::is_released`] says whether the device
+    /// took the zero forces after it.
     Panicked {
         /// The panic's message.
         message: String,
@@ -190,12 +194,10 @@ impl Tally {
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
-        let mut progress = Progress {
-            ticks: self.ticks,
-            time: times.time_s,
-            cost_ns: times.cost_ns,
-            ..Progress::default()
-        };
+        let mut progress = Progress::default();
+        progress.ticks = self.ticks;
+        progress.time = times.time_s;
+        progress.cost_ns = times.cost_ns;
         let mut is_spent = false;
         for touch in touches {
             progress.contacts += u64::from(touch.contact);

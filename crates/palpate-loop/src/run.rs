@@ -3,6 +3,7 @@
 
 //! Running a servo with a device for a time.
 
+use palpate_field::Pose;
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, NumberError, Progress, Servo, handoff,
 };
@@ -10,23 +11,33 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::clock::{Clock, WallClock};
+use crate::pacer::{Pace, ticks};
 use crate::recorder::Recorder;
 use crate::report::RunReport;
 use crate::servo_loop::{Schedule, ServoLoop};
 
-/// The pace of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pace {
-    /// In real time, at the servo's rate on the clock.
-    #[default]
-    RealTime,
-    /// Without waiting between ticks; the servo's time advances by a period a tick as in real
-    /// time.
-    AsFastAsPossible,
+/// A closure that receives the progress of a run, on a separate thread.
+pub struct Watch<'a> {
+    /// The time between two calls.
+    pub interval: Duration,
+    /// The closure; it is called once more at the end.
+    pub show: &'a mut (dyn FnMut(&Progress) + Send),
 }
 
-/// A closure that receives the progress of a run.
-pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) + Send);
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Watch").field("interval", &self.interval).finish_non_exhaustive()
+    }
+}
+
+/// A closure that moves bodies before each tick: it gets the time of the tick [s] and a function
+/// that sets the pose of a body by its index, as [`Servo::set_pose`] does.
+///
+/// Set the poses of moving bodies at every tick: the velocity of a body is its motion since the
+/// tick before.
+///
+/// Real-time: the closure runs in the loop, and should not allocate, wait or panic.
+pub type Motion<'a, const D: usize> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>));
 
 /// Options of a run.
 ///
@@ -48,8 +59,10 @@ pub struct RunOptions<'a, const D: usize> {
     pub rehearses: bool,
     /// Keeps every tick until its memory is full.
     pub recorder: Option<&'a mut Recorder<D>>,
-    /// A closure that a separate thread calls at this interval, and once at the end.
-    pub watch: Option<(Duration, Watch<'a>)>,
+    /// A closure that a separate thread calls.
+    pub watch: Option<Watch<'a>>,
+    /// Moves bodies before each tick.
+    pub motion: Option<Motion<'a, D>>,
     /// Ends the run before its next tick once the flag is `true`; a signal handler may set it.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -64,6 +77,7 @@ impl<'a, const D: usize> RunOptions<'a, D> {
             rehearses: false,
             recorder: None,
             watch: None,
+            motion: None,
             interrupt: None,
         }
     }
@@ -88,8 +102,44 @@ impl<'a, const D: usize> RunOptions<'a, D> {
 
     /// The same options with a closure that a separate thread calls at `interval`.
     #[must_use]
-    pub const fn with_watch(self, interval: Duration, watch: Watch<'a>) -> Self {
-        Self { watch: Some((interval, watch)), ..self }
+    pub const fn with_watch(
+        self,
+        interval: Duration,
+        show: &'a mut (dyn FnMut(&Progress) + Send),
+    ) -> Self {
+        Self { watch: Some(Watch { interval, show }), ..self }
+    }
+
+    /// The same options with a closure that moves bodies before each tick.
+    ///
+    /// # Examples
+    ///
+    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it, and pushes:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{Pace, RunOptions, run};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Smooth)?;
+    /// let mut device = RecordedDevice::new(vec![hand])?;
+    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
+    /// let mut servo = Servo::for_device(floor, &device)?; // with a probe of 2 mm
+    /// let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
+    /// };
+    /// let options = RunOptions::new(0.01).with_pace(Pace::AsFastAsPossible);
+    /// let report = run(&mut servo, &mut device, options.with_motion(&mut rise))?;
+    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_motion(self, motion: Motion<'a, D>) -> Self {
+        Self { motion: Some(motion), ..self }
     }
 
     /// The same options with a flag that ends the run.
@@ -165,7 +215,8 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("pace", &self.pace)
             .field("rehearses", &self.rehearses)
             .field("recorder", &self.recorder.is_some())
-            .field("watch", &self.watch.as_ref().map(|(every, _)| every))
+            .field("watch", &self.watch)
+            .field("motion", &self.motion.is_some())
             .field("interrupt", &self.interrupt)
             .finish()
     }
@@ -252,27 +303,23 @@ pub fn run_on<const D: usize>(
     let room = HandoffOptions::default().with_events(0).with_bodies(0);
     let (control, mut end) = options.watch.is_some().then(|| handoff(&*servo, room)).unzip();
     servo.check_device(device)?;
+    // Within an option the closure's lifetime would have to be that of the loop.
+    let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let servo_loop = ServoLoop::new(servo, device)
         .recording(options.recorder)
+        .moving(motion)
         .interrupted_by(options.interrupt)
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
     Ok(match control.zip(options.watch) {
         None => run(),
-        Some((control, (every, watch))) => watched(control, every, watch, run),
+        Some((control, watch)) => watched(control, watch, run),
     })
-}
-
-/// The number of ticks in `duration` [s], rounded, so that 10 s at 1 kHz are 10 000 ticks in
-/// spite of rounding.
-pub(crate) fn ticks(duration: f64, rate: f64) -> u64 {
-    (duration * rate).round() as u64
 }
 
 /// Runs `work` while another thread calls the watch.
 fn watched<T, const D: usize>(
     mut control: Control<D>,
-    every: Duration,
     watch: Watch<'_>,
     work: impl FnOnce() -> T,
 ) -> T {
@@ -282,12 +329,12 @@ fn watched<T, const D: usize>(
                 // Read before the snapshot, so that the last snapshot is that of the last tick.
                 let is_last = control.has_ended();
                 if let Some(snapshot) = control.latest() {
-                    watch(&snapshot.progress);
+                    (watch.show)(&snapshot.progress);
                 }
                 if is_last {
                     break;
                 }
-                std::thread::park_timeout(every);
+                std::thread::park_timeout(watch.interval);
             }
         });
         let result = work();

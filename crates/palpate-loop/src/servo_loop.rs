@@ -14,10 +14,10 @@ use std::time::Duration;
 use palpate_field::Vector;
 
 use crate::clock::Clock;
-use crate::pacer::{Pacer, nanoseconds};
+use crate::pacer::{Pace, Pacer, nanoseconds};
 use crate::recorder::{Recorder, TickTimes};
 use crate::report::{Ending, RunReport, Tally};
-use crate::run::Pace;
+use crate::run::Motion;
 
 /// How long before a tick its rehearsals begin: the first loads the caches, the others train
 /// the branch predictors.
@@ -29,6 +29,7 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     device: &'a mut dyn Device<D>,
     recorder: Option<&'a mut Recorder<D>>,
     end: Option<&'a mut ServoEnd<D>>,
+    motion: Option<Motion<'a, D>>,
     interrupt: Option<&'a AtomicBool>,
     states: Vec<PointState<D>>,
     /// The states with which the next tick is rehearsed.
@@ -59,6 +60,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             device,
             recorder: None,
             end: None,
+            motion: None,
             interrupt: None,
             states: vec![PointState::at_rest(Vector::ZERO); points],
             expected: vec![PointState::at_rest(Vector::ZERO); points],
@@ -75,6 +77,11 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
 
     pub(crate) fn handing_off(mut self, end: Option<&'a mut ServoEnd<D>>) -> Self {
         self.end = end;
+        self
+    }
+
+    pub(crate) fn moving(mut self, motion: Option<Motion<'a, D>>) -> Self {
+        self.motion = motion;
         self
     }
 
@@ -155,6 +162,9 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     fn tick(&mut self, clock: &mut dyn Clock, time_s: f64) -> Result<u64, DeviceLost> {
         if let Some(end) = &mut self.end {
             end.receive(self.servo);
+        }
+        if let Some(motion) = &mut self.motion {
+            motion(time_s, &mut |body, pose| self.servo.set_pose(body, pose));
         }
         self.device.read(time_s, &mut self.states)?;
         let turn = self.device.read_turn()?;

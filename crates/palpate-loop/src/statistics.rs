@@ -12,8 +12,9 @@ const LONGEST_NS: u64 = 10_000_000_000;
 const DIGITS: u8 = 3;
 
 /// A distribution of times.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Distribution {
     /// The number of measured times.
     pub count: u64,

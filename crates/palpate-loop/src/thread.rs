@@ -12,10 +12,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::clock::{Clock, WallClock};
+use crate::pacer::{Pace, ticks};
 use crate::priority::{Priority, raise_priority};
 use crate::recorder::Recorder;
 use crate::report::RunReport;
-use crate::run::{Pace, ticks};
 use crate::servo_loop::{Schedule, ServoLoop};
 
 /// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
@@ -91,6 +91,27 @@ impl ThreadOptions {
     }
 }
 
+/// Why a thread does not run a servo.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// Servo, device and options do not fit; as for [`run`](crate::run()).
+    #[error(transparent)]
+    Haptics(#[from] HapticsError),
+    /// The operating system starts no thread.
+    #[error("the servo's thread did not start: {reason}")]
+    ThreadNotStarted {
+        /// Its error.
+        reason: String,
+    },
+}
+
+impl From<NumberError> for StartError {
+    fn from(error: NumberError) -> Self {
+        Self::Haptics(error.into())
+    }
+}
+
 /// A servo that runs with its device in a thread.
 ///
 /// The loop is that of [`run`](crate::run()): tick `k` is at `k / rate`, a panic in a tick ends
@@ -156,6 +177,7 @@ impl<const D: usize> Drop for Handle<D> {
 }
 
 /// What remains of a servo thread that has ended.
+#[non_exhaustive]
 pub struct EndedThread<const D: usize> {
     /// The servo after its last tick.
     pub servo: Servo<D>,
@@ -187,12 +209,12 @@ impl<const D: usize> ServoThread<D> {
     ///
     /// # Errors
     ///
-    /// As [`run`](crate::run()), and if the thread cannot be started.
+    /// [`StartError::Haptics`] as [`run`](crate::run()); [`StartError::ThreadNotStarted`].
     pub fn start(
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, StartError> {
         Self::start_with(WallClock::suited_to, servo, device, options)
     }
 
@@ -206,7 +228,7 @@ impl<const D: usize> ServoThread<D> {
         servo: Servo<D>,
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, StartError> {
         Self::start_with(|_| clock, servo, device, options)
     }
 
@@ -215,7 +237,7 @@ impl<const D: usize> ServoThread<D> {
         mut servo: Servo<D>,
         mut device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
-    ) -> Result<Self, HapticsError> {
+    ) -> Result<Self, StartError> {
         servo.check_device(&*device)?;
         let ticks = match options.duration {
             None => u64::MAX,
@@ -238,9 +260,10 @@ impl<const D: usize> ServoThread<D> {
             Left { servo, device, _end: end, report, recorder, priority }
         };
         let thread =
-            std::thread::Builder::new().name("palpate servo".to_owned()).spawn(work).map_err(
-                |error| HapticsError::ThreadNotStarted { reason: error.to_string() },
-            )?;
+            std::thread::Builder::new()
+                .name("palpate servo".to_owned())
+                .spawn(work)
+                .map_err(|error| StartError::ThreadNotStarted { reason: error.to_string() })?;
         Ok(Self { control, thread: Handle(Some(thread)) })
     }
 

@@ -12,6 +12,7 @@ use palpate_haptics::Tool;
 /// The report of a rigid tool in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ToolReport {
     /// Points of its shell.
     pub points: u32,

@@ -16,7 +16,7 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_mesh::centre_weights;
+/// use palpate_mesh::internal::centre_weights;
 ///
 /// let right = [Vector([0.0, 0.0]), Vector([3.0, 0.0]), Vector([0.0, 4.0])];
 /// assert_eq!(centre_weights(&right), [0.0, 0.5, 0.5]);
@@ -28,13 +28,7 @@ pub fn centre_weights<const N: usize, const D: usize>(vertices: &[Point<D>; N]) 
     if N == 2 {
         return [0.5; N];
     }
-    let squared = |i: usize, k: usize| {
-        let edge = vertices[i] - vertices[k];
-        edge.dot(edge)
-    };
-    let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
-    let sum: f64 = edges.iter().sum();
-    let parts = edges.map(|edge| edge * (sum - 2.0 * edge));
+    let (edges, parts) = circumcentre(vertices);
     let longest = (1..3).fold(0, |k, i| if edges[i] > edges[k] { i } else { k });
     let whole: f64 = parts.iter().sum();
     let is_acute = parts[longest] > 0.0 && whole.is_normal();
@@ -56,6 +50,57 @@ pub fn smallest_ball<const N: usize, const D: usize>(
         centre += *vertex * weight;
     }
     BoundingBall { centre, radius: radius_about(centre, vertices) }
+}
+
+/// The ball about the circumcentre of a triangle that its vertices lie on, its radius rounded up;
+/// the smallest ball of a segment. `None` if the vertices of a triangle lie on a line, up to
+/// rounding: the circle through them then has no bounds.
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_mesh::internal::{circumscribed_ball, smallest_ball};
+///
+/// // 1 m long and 1 cm high: R = abc/4A.
+/// let sliver = [Vector([0.0, 0.0]), Vector([1.0, 0.0]), Vector([0.5, 0.01])];
+/// let around = circumscribed_ball(&sliver).ok_or("the corners lie on a line")?;
+/// assert!((around.radius - 12.505).abs() < 1e-9);
+/// assert!((around.centre - Vector([0.5, -12.495])).norm() < 1e-9);
+/// assert!(smallest_ball(&sliver).radius < 0.5 + 1e-14);
+/// # Ok::<(), &str>(())
+/// ```
+#[must_use]
+pub fn circumscribed_ball<const N: usize, const D: usize>(
+    vertices: &[Point<D>; N],
+) -> Option<BoundingBall<D>> {
+    /// Cancellation in the weights makes a centre of thinner triangles meaningless.
+    const FLATTEST: f64 = 64.0 * f64::EPSILON;
+    if N == 2 {
+        return Some(smallest_ball(vertices));
+    }
+    let (edges, parts) = circumcentre(vertices);
+    let (whole, sum): (f64, f64) = (parts.iter().sum(), edges.iter().sum());
+    // Sixteen times the squared area, beside the fourth power of the size.
+    let is_flat = whole.is_nan() || whole <= FLATTEST * sum * sum;
+    let mut centre = Vector::ZERO;
+    for (vertex, part) in vertices.iter().zip(parts) {
+        centre += *vertex * (part / whole);
+    }
+    (!is_flat).then(|| BoundingBall { centre, radius: radius_about(centre, vertices) })
+}
+
+/// The squared lengths of the edges opposite to the vertices of a triangle, and the weights
+/// `a²(b² + c² − a²)` of its circumcentre, whose sum is sixteen times the squared area.
+#[inline]
+fn circumcentre<const N: usize, const D: usize>(
+    vertices: &[Point<D>; N],
+) -> ([f64; 3], [f64; 3]) {
+    let squared = |i: usize, k: usize| {
+        let edge = vertices[i] - vertices[k];
+        edge.dot(edge)
+    };
+    let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
+    let sum: f64 = edges.iter().sum();
+    (edges, edges.map(|edge| edge * (sum - 2.0 * edge)))
 }
 
 /// The radius of a ball about `centre` that holds all `points`, rounded up.

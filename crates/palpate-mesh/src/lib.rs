@@ -6,8 +6,7 @@
 //! [`Mesh::new`] checks that all numbers are finite, that elements name vertices that
 //! exist, and that there is at least one element. [`Mesh::report`] says whether the mesh is
 //! watertight, and lists its defects. With the feature `files`, which is on by default,
-//! `Mesh::open`, `read_file` and `read` take OBJ, STL, PLY and GLB files. A [`BallTree`]
-//! over the elements serves searches.
+//! `Mesh::open`, `read_file` and `read` take OBJ, STL, PLY and GLB files.
 //!
 //! ```
 //! use palpate_field::Vector;
@@ -20,6 +19,7 @@
 //! let report = mesh.report();
 //! assert!(report.is_watertight());
 //! assert_eq!(report.enclosed, Some(1.0)); // 1 · 2 · 3 / 6 [m³]
+//! assert_eq!(report.to_string(), "4 elements of 4 vertices, watertight");
 //! # Ok(())
 //! # }
 //! ```
@@ -27,6 +27,8 @@
 
 mod ball;
 mod error;
+#[doc(hidden)]
+pub mod internal;
 mod mesh;
 #[cfg(feature = "files")]
 mod polygon;
@@ -35,7 +37,6 @@ mod read;
 mod report;
 mod tree;
 
-pub use ball::{centre_weights, smallest_ball};
 pub use error::MeshError;
 pub use mesh::{Mesh, Outline, TriangleMesh};
 #[cfg(feature = "files")]
@@ -43,4 +44,3 @@ pub use polygon::MOST_CORNERS;
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
-pub use tree::{BallTree, FAN, Level};

@@ -110,6 +110,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     }
 
     /// The tree of balls around the elements.
+    #[doc(hidden)]
     #[must_use]
     pub fn tree(&self) -> &BallTree<D> {
         &self.tree

@@ -3,6 +3,8 @@
 
 //! The defects and the measures of a mesh.
 
+use std::fmt;
+
 use palpate_field::{Aabb, Point, Vector};
 
 use crate::mesh::{Mesh, weld};
@@ -16,6 +18,19 @@ const FLAT: f64 = 4.0 * f64::EPSILON;
 /// Elements meet in *rims*: triangles in edges, segments in end points. The indices of its
 /// vertices identify a rim: two vertices at one place with two indices join no elements until
 /// they are [welded](Mesh::welded).
+///
+/// ```
+/// use palpate_field::Vector;
+/// use palpate_mesh::{MeshError, Outline};
+///
+/// # fn main() -> Result<(), MeshError> {
+/// let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]].map(Vector).to_vec();
+/// let open = Outline::new(corners, vec![[0, 1], [1, 2]])?;
+/// let said = "2 elements of 3 vertices, not watertight, 2 rims at a boundary";
+/// assert_eq!(open.report().to_string(), said);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Report<const D: usize> {
@@ -51,6 +66,27 @@ impl<const D: usize> Report<D> {
     #[must_use]
     pub fn is_watertight(&self) -> bool {
         self.boundary == 0 && self.non_manifold == 0 && self.inconsistent == 0
+    }
+}
+
+impl<const D: usize> fmt::Display for Report<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} elements of {} vertices, ", self.elements, self.vertices)?;
+        f.write_str(if self.is_watertight() { "watertight" } else { "not watertight" })?;
+        for (count, what) in [
+            (self.unreferenced, "unreferenced vertices"),
+            (self.coincident, "coincident vertices"),
+            (self.degenerate, "degenerate elements"),
+            (self.duplicates, "duplicates"),
+            (self.boundary, "rims at a boundary"),
+            (self.non_manifold, "rims of more than two"),
+            (self.inconsistent, "rims inside out"),
+        ] {
+            if count > 0 {
+                write!(f, ", {count} {what}")?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -79,6 +79,16 @@ pub enum PlotError {
         /// Its parts to the right, up, and towards the viewer.
         gradient: [f64; 3],
     },
+    /// The ends of a scale of decades are no interval of positive numbers.
+    #[error(
+        "the ends of a scale of decades must be positive, the lower one first, got {low} and {high}"
+    )]
+    Scale {
+        /// The lower end, in the unit of the scale.
+        low: f64,
+        /// The upper end.
+        high: f64,
+    },
     /// The distance between isolines is not a positive number.
     #[error("the step between isolines must be positive, got {step} m")]
     Step {
@@ -126,6 +136,14 @@ pub enum PlotError {
         /// What the encoder said.
         reason: String,
     },
+}
+
+impl PlotError {
+    /// Refuses the value of a field at a point of the plane if it is not a length.
+    pub(crate) fn check_sample(at: [f64; 2], value: f64) -> Result<(), Self> {
+        let is_length = value.abs() <= LARGEST;
+        if is_length { Ok(()) } else { Err(Self::Sample { at, value }) }
+    }
 }
 
 /// `value`, or an error that names `what` it was for.

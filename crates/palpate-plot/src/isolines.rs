@@ -12,6 +12,7 @@ use crate::labels::Occupied;
 use crate::legend::{self, Entry, Key};
 use crate::levels::Levels;
 use crate::numbers::write;
+use crate::outline::Outline;
 use crate::overlay::{Arrows, Markers, Overlay, Polyline};
 use crate::overlay_picture::Overlays;
 use crate::palette::{self, Color, Side};
@@ -22,6 +23,7 @@ use crate::slope::{Pixels, Slope};
 use crate::surface::Surface;
 use crate::text::{Anchor, CAP_HEIGHT};
 use crate::trust::{Gauge, Measured, Promised, Trust};
+use crate::values::Values;
 use crate::view::View;
 use crate::wheel::{self, AxisArrow};
 
@@ -67,24 +69,27 @@ fn axis_stroke() -> Stroke {
 #[derive(Debug, Clone)]
 pub struct Isolines {
     slice: Slice,
-    view: View,
+    pub(crate) view: View,
     samples: Samples,
+    outline: Outline,
     levels: Levels,
-    sampling: Sampling,
-    ground: Ground,
+    pub(crate) sampling: Sampling,
+    pub(crate) ground: Ground,
     title: String,
     overlays: Vec<Overlay>,
 }
 
 /// The ground below the lines.
 #[derive(Debug, Clone)]
-enum Ground {
+pub(crate) enum Ground {
     /// Bands of distance, with isolines.
     Distance,
     /// The direction of the gradient.
     Gradient(Image),
     /// Promises, and how values compare with them.
     Promise(Box<Trust>),
+    /// Other numbers.
+    Values(Box<Values>),
 }
 
 impl Isolines {
@@ -109,12 +114,20 @@ impl Isolines {
             slice: slice.clone(),
             view: *view,
             levels: Levels::choose(low, high, view.width().min(view.height())),
+            outline: Outline::of_samples(&samples),
             samples,
             sampling,
             ground: Ground::Distance,
             title: String::new(),
             overlays: Vec::new(),
         })
+    }
+
+    /// With this surface, [followed](Outline::follow) in the same window, instead of the one that
+    /// the samples show.
+    #[must_use]
+    pub fn with_outline(self, outline: Outline) -> Self {
+        Self { outline, ..self }
     }
 
     /// With isolines at multiples of `step` \[m\] instead of a round step that gives about ten.
@@ -234,11 +247,13 @@ impl Isolines {
         Ok(Self { ground: Ground::Promise(Box::new(trust)), ..self })
     }
 
-    /// The extremes of what [`with_promise`](Self::with_promise) measured.
+    /// The extremes of what [`with_promise`](Self::with_promise) measured, or of the numbers of
+    /// [`with_values`](Self::with_values).
     #[must_use]
     pub fn measured(&self) -> Option<Measured> {
         match &self.ground {
             Ground::Promise(trust) => trust.measured,
+            Ground::Values(values) => values.measured,
             _ => None,
         }
     }
@@ -325,7 +340,8 @@ impl Isolines {
         let plot = self.plot(area, gutter, top);
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
-        let picture = Picture { samples: &self.samples, levels: &levels, frame };
+        let picture =
+            Picture { samples: &self.samples, outline: &self.outline, levels: &levels, frame };
         let overlays = Overlays::new(frame, &self.overlays);
         let lines = picture.lines();
         let mut occupied = Occupied::default();
@@ -348,7 +364,8 @@ impl Isolines {
     pub(crate) fn draw_tile(&self, drawing: &mut Drawing, plot: Rect) {
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
-        let picture = Picture { samples: &self.samples, levels: &levels, frame };
+        let picture =
+            Picture { samples: &self.samples, outline: &self.outline, levels: &levels, frame };
         let lines = picture.lines();
         self.draw_ground(drawing, &picture, &lines);
         let [x, y] = frame.pixel([0.0; 2]);
@@ -389,6 +406,10 @@ impl Isolines {
                 drawing.image(frame.plot, image.clone());
                 picture.draw_casing(drawing, lines);
             }
+            Ground::Values(values) => {
+                drawing.image(frame.plot, values.image.clone());
+                picture.draw_casing(drawing, lines);
+            }
             Ground::Promise(trust) => {
                 drawing.image(frame.plot, trust.image.clone());
                 trust.hatch(drawing, &frame.plot, |p| self.samples.value_near(frame.point(p)));
@@ -423,8 +444,8 @@ impl Isolines {
     }
 
     fn surface_entry(&self) -> Entry {
-        let (low, high) = self.samples.range();
-        if low <= 0.0 && high >= 0.0 || self.samples.has_thin_surface() {
+        let window = Rect { min: self.view.min(), max: self.view.max() };
+        if self.outline.bounds(&window).is_some() {
             Entry::new(Key::Line(surface_stroke()), "surface")
         } else {
             Entry::new(Key::None, "no surface in view")
@@ -435,6 +456,11 @@ impl Isolines {
         match &self.ground {
             Ground::Distance => self.distance_legend(),
             Ground::Gradient(_) => self.gradient_legend(),
+            Ground::Values(values) => {
+                let mut entries = values.entries();
+                entries.push(self.surface_entry());
+                entries
+            }
             Ground::Promise(trust) => {
                 let (low, high) = self.samples.range();
                 let mut entries = trust.entries([high > 0.0, low < 0.0]);

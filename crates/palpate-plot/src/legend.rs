@@ -6,6 +6,7 @@
 use crate::drawing::{Drawing, Path, Stroke, TextStyle};
 use crate::geometry::{Point, Rect, distance};
 use crate::palette::Color;
+use crate::scale::{self, Ramp};
 use crate::text::{Anchor, CAP_HEIGHT, shorten};
 use crate::trust::{self, Promised};
 use crate::wheel::{self, AxisArrow};
@@ -38,6 +39,8 @@ pub(crate) enum Key {
     Promised(Promised),
     /// The colours of a measurement, between two numbers.
     Scale(Promised, [f64; 2]),
+    /// The colours of other numbers.
+    Values(Ramp),
     /// Words only.
     None,
 }
@@ -53,6 +56,13 @@ impl Entry {
     pub(crate) fn new(key: Key, text: impl Into<String>) -> Self {
         Self { key, text: text.into() }
     }
+
+    /// Whether one of both entries is enough: they have the same words, and do not show two
+    /// scales.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let are_scales = matches!((&self.key, &other.key), (Key::Values(_), Key::Values(_)));
+        self.text == other.text && (!are_scales || self.key == other.key)
+    }
 }
 
 impl Key {
@@ -61,6 +71,7 @@ impl Key {
         match self {
             Self::Wheel(_) => wheel::SIZE,
             Self::Scale(..) => trust::SCALE[1],
+            Self::Values(_) => scale::SIZE[1],
             _ => ROW,
         }
     }
@@ -69,6 +80,7 @@ impl Key {
         match self {
             Self::Wheel(_) => wheel::SIZE,
             Self::Scale(..) => trust::SCALE[0],
+            Self::Values(_) => scale::SIZE[0],
             Self::Bands(_) | Self::Line(_) | Self::Swatch(_) | Self::Promised(_) => KEY,
             Self::Arrow(_, length) => length.max(12.0),
             Self::Point(..) => 12.0,
@@ -107,6 +119,7 @@ impl Key {
             Self::Scale(promised, ends) => {
                 trust::draw_scale(drawing, [x, y], *promised, *ends);
             }
+            Self::Values(ramp) => ramp.draw(drawing, [x, y]),
             Self::None => {}
         }
     }
@@ -169,6 +182,8 @@ fn rows(entries: &[Entry], width: f64) -> Vec<Vec<(&Entry, String)>> {
 /// The shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Symbol {
+    /// A disc of half the size.
+    Dot,
     Disc,
     Diamond,
     Square,
@@ -192,6 +207,7 @@ impl Symbol {
             ))
         };
         let path = match self {
+            Self::Dot => Path::circle(center, 0.5 * r),
             Self::Disc => Path::circle(center, r),
             Self::Diamond => {
                 ring(&[[0.0, -1.25 * r], [1.25 * r, 0.0], [0.0, 1.25 * r], [-1.25 * r, 0.0]])
@@ -202,7 +218,8 @@ impl Symbol {
             }
             Self::Triangle => ring(&[[0.0, -1.2 * r], [1.1 * r, 0.8 * r], [-1.1 * r, 0.8 * r]]),
         };
-        drawing.fill_with_rim(path, color, Stroke::new(Color::WHITE, 3.0));
+        let rim = if self == Self::Dot { 1.0 } else { 3.0 };
+        drawing.fill_with_rim(path, color, Stroke::new(Color::WHITE, rim));
     }
 }
 

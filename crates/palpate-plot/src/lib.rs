@@ -8,6 +8,8 @@
 //! time. A [`Figure`] stacks isolines, [views](Figure::with_views) of one scene and [`Chart`]s
 //! and writes them with [`to_svg`](Figure::to_svg) or [`to_png`](Figure::to_png).
 //!
+//! A [`Layer`] is a legend with points and arrows for a picture of pixels that was made elsewhere.
+//!
 //! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
 //! [`Slice::project`] takes points of space there.
 //!
@@ -40,25 +42,30 @@
 //! ```
 
 mod axis;
+mod chain;
 mod chart;
 mod contours;
 mod drawing;
 mod error;
 mod figure;
+mod follow;
 mod frame;
 mod geometry;
 mod isolines;
 mod labels;
+mod layer;
 mod legend;
 mod levels;
 mod nearest;
 mod numbers;
+mod outline;
 mod overlay;
 mod overlay_picture;
 mod palette;
 mod picture;
 mod png;
 mod sampling;
+mod scale;
 mod sheet;
 mod slice;
 mod slope;
@@ -66,6 +73,7 @@ mod surface;
 mod svg;
 mod text;
 mod trust;
+mod values;
 mod view;
 mod views;
 mod wheel;
@@ -73,10 +81,14 @@ mod wheel;
 pub use chart::{Chart, Quantity, Series};
 pub use error::PlotError;
 pub use figure::Figure;
+pub use follow::{BoundedField, Cell};
 pub use isolines::Isolines;
+pub use layer::Layer;
+pub use outline::Outline;
 pub use overlay::{Arrow, Arrows, Dash, Markers, Polyline};
 pub use palette::Color;
 pub use sampling::Sampling;
+pub use scale::Scale;
 pub use slice::Slice;
 pub use slope::Slope;
 pub use trust::{Gauge, Measured, Promised};

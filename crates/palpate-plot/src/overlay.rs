@@ -215,6 +215,7 @@ pub struct Markers {
     pub(crate) points: Vec<[f64; 2]>,
     pub(crate) labels: Vec<String>,
     pub(crate) color: Option<Color>,
+    pub(crate) is_small: bool,
 }
 
 impl Markers {
@@ -229,7 +230,14 @@ impl Markers {
     ) -> Result<Self, PlotError> {
         let (name, points) = (name.into(), Vec::from_iter(points));
         finite_points(&name, &points)?;
-        Ok(Self { name, points, labels: Vec::new(), color: None })
+        Ok(Self { name, points, labels: Vec::new(), color: None, is_small: false })
+    }
+
+    /// Dots of half the size, for many points along a line. They take no symbol from the
+    /// others.
+    #[must_use]
+    pub fn small(self) -> Self {
+        Self { is_small: true, ..self }
     }
 
     /// With a label at each point, in order; points beyond the last label have none.

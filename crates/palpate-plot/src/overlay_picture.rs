@@ -43,7 +43,7 @@ impl<'a> Overlays<'a> {
             entries: Vec::new(),
         };
         // Faint lines take no colour and no dash from the others.
-        let (mut index, mut bold) = (0, 0);
+        let (mut index, mut bold, mut symbols) = (0, 0, 0);
         for overlay in overlays {
             let next = Color::of_series(index);
             index += 1;
@@ -72,7 +72,12 @@ impl<'a> Overlays<'a> {
                     all.arrows.push((arrows, color));
                 }
                 Overlay::Markers(markers) => {
-                    let symbol = Symbol::of_series(all.markers.len());
+                    let symbol = if markers.is_small {
+                        Symbol::Dot
+                    } else {
+                        symbols += 1;
+                        Symbol::of_series(symbols - 1)
+                    };
                     let color = markers.color.unwrap_or(next);
                     all.entries.push(Entry::new(Key::Point(symbol, color), &*markers.name));
                     all.markers.push((markers, symbol, color));

@@ -10,6 +10,7 @@ use crate::geometry::{Point, Rect, clip_line, clip_ring, simplify};
 use crate::labels::{self, Occupied};
 use crate::levels::Levels;
 use crate::numbers::{round_down, write, write_length};
+use crate::outline::Outline;
 use crate::palette::{self, Color, Side};
 use crate::sampling::Samples;
 use crate::text::Anchor;
@@ -21,6 +22,9 @@ const SPECK: f64 = 2.5;
 /// Width of the line of the surface [px], and of the white rim with it.
 const SURFACE: f64 = 2.8;
 const CASING: f64 = 5.6;
+
+/// Half the length of a line that is a point [px].
+const DOT: f64 = 0.05;
 
 /// The line of the surface.
 pub(crate) fn surface_stroke() -> Stroke {
@@ -36,6 +40,7 @@ pub(crate) fn isoline_stroke(side: Side) -> Stroke {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Picture<'a> {
     pub(crate) samples: &'a Samples,
+    pub(crate) outline: &'a Outline,
     pub(crate) levels: &'a Levels,
     pub(crate) frame: Frame,
 }
@@ -44,8 +49,8 @@ pub(crate) struct Picture<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
     surface: Vec<Vec<Point>>,
-    /// Rings around a surface without interior.
-    thin: Vec<Vec<Point>>,
+    /// Rings around parts that belong to the surface as a whole.
+    solids: Vec<Vec<Point>>,
     /// Level [m] and lines, ascending.
     rest: Vec<(f64, Vec<Vec<Point>>)>,
 }
@@ -53,7 +58,7 @@ pub(crate) struct Lines {
 impl Lines {
     /// Marks the room that the surface covers as occupied.
     pub(crate) fn occupy(&self, occupied: &mut Occupied) {
-        let surface = self.surface.iter().chain(&self.thin);
+        let surface = self.surface.iter().chain(&self.solids);
         surface.for_each(|line| occupied.add_line(line.clone()));
     }
 }
@@ -68,34 +73,26 @@ impl Picture<'_> {
         };
         drawing.fill(Path::rect(&self.frame.plot), self.band(lowest));
         for &level in &self.levels.values {
-            let mut path = Path::default();
-            for ring in self.rings(self.samples, level) {
-                let ring = simplify(&clip_ring(&ring, &self.frame.plot), TOLERANCE);
-                if ring.len() > 2 {
-                    path.add_ring(&ring);
-                }
-            }
+            let rings = if level == 0.0 { self.outside() } else { self.rings(level) };
+            let path = self.region(&rings);
             drawing.fill_rings(path, self.band(level + 0.5 * step));
         }
     }
 
     /// Finds the isolines.
     pub(crate) fn lines(&self) -> Lines {
-        let mut lines = Lines { thin: self.thin_surface(), ..Lines::default() };
-        for &level in &self.levels.values {
-            let found = self.rings(self.samples, level);
-            let found = found
-                .iter()
-                .flat_map(|ring| clip_line(ring, &self.frame.plot))
-                .map(|line| simplify(&line, TOLERANCE))
-                .filter(|line| line.len() > 1);
-            if level == 0.0 {
-                lines.surface = found.collect();
-            } else {
-                lines.rest.push((level, found.collect()));
-            }
+        let lines = |rings: &[Vec<Point>]| -> Vec<Vec<Point>> {
+            let pieces = rings.iter().flat_map(|ring| clip_line(ring, &self.frame.plot));
+            let simple = pieces.map(|line| simplify(&line, TOLERANCE));
+            simple.filter(|line| line.len() > 1).collect()
+        };
+        let levels = self.levels.values.iter().filter(|level| **level != 0.0);
+        let Outline { lines: surface, solids, .. } = self.outline;
+        Lines {
+            surface: lines(&self.pixels(surface)).into_iter().map(visible).collect(),
+            solids: self.pixels(solids),
+            rest: levels.map(|&level| (level, lines(&self.rings(level)))).collect(),
         }
-        lines
     }
 
     /// Draws the isolines, the surface over the others.
@@ -104,9 +101,7 @@ impl Picture<'_> {
             drawing.stroke(path_of(lines), isoline_stroke(side_of(*level)));
         }
         drawing.stroke(path_of(&lines.surface), surface_stroke());
-        let mut thin = Path::default();
-        lines.thin.iter().for_each(|ring| thin.add_ring(ring));
-        drawing.fill_rings(thin, Color::INK);
+        drawing.fill_rings(self.region(&lines.solids), Color::INK);
     }
 
     /// Draws the labels of the isolines where there is room.
@@ -144,7 +139,7 @@ impl Picture<'_> {
     /// Draws a white rim under the surface, which sets it off from dark colours.
     pub(crate) fn draw_casing(&self, drawing: &mut Drawing, lines: &Lines) {
         drawing.stroke(path_of(&lines.surface), Stroke::new(Color::WHITE, CASING));
-        drawing.stroke(path_of(&lines.thin), Stroke::new(Color::WHITE, CASING - SURFACE));
+        drawing.stroke(self.region(&lines.solids), Stroke::new(Color::WHITE, CASING - SURFACE));
     }
 
     /// Draws the scale bar at the right of the row of the axis name whose baseline is `y`, or
@@ -164,14 +159,34 @@ impl Picture<'_> {
         extra
     }
 
-    /// Rings around the samples at or above `level` [m], in pixels.
-    fn rings(&self, samples: &Samples, level: f64) -> Vec<Vec<Point>> {
-        let mut rings = rings(samples, level);
-        rings.iter_mut().for_each(|ring| *ring = self.frame.pixels(ring));
-        if level != 0.0 {
-            rings.retain(|ring| extent(ring) > SPECK);
-        }
+    /// Rings around the samples at or above `level` [m], which is not the surface, in pixels.
+    fn rings(&self, level: f64) -> Vec<Vec<Point>> {
+        let mut rings = self.pixels(&rings(self.samples, level));
+        rings.retain(|ring| extent(ring) > SPECK);
         rings
+    }
+
+    /// Rings around the outside: around the inside, and around the plot.
+    fn outside(&self) -> Vec<Vec<Point>> {
+        let mut rings = self.pixels(&self.outline.rings);
+        rings.push(self.frame.plot.corners().to_vec());
+        rings
+    }
+
+    fn pixels(&self, lines: &[Vec<Point>]) -> Vec<Vec<Point>> {
+        lines.iter().map(|line| self.frame.pixels(line)).collect()
+    }
+
+    /// The part of the plot within `rings` [px].
+    fn region(&self, rings: &[Vec<Point>]) -> Path {
+        let mut path = Path::default();
+        for ring in rings {
+            let ring = simplify(&clip_ring(ring, &self.frame.plot), TOLERANCE);
+            if ring.len() > 2 {
+                path.add_ring(&ring);
+            }
+        }
+        path
     }
 
     /// Colour of the band that holds `value` [m].
@@ -189,26 +204,18 @@ impl Picture<'_> {
         let half = 0.5 * self.levels.step;
         self.band(level - half).mix(self.band(level + half), 0.5)
     }
-
-    /// Rings around the points within a cell of a surface without interior; empty for other
-    /// fields.
-    fn thin_surface(&self) -> Vec<Vec<Point>> {
-        if !self.samples.has_thin_surface() {
-            return Vec::new();
-        }
-        let mut negated = self.samples.clone();
-        negated.values.iter_mut().for_each(|value| *value = -*value);
-        let rings = self.rings(&negated, -negated.cell);
-        rings
-            .iter()
-            .map(|ring| simplify(&clip_ring(ring, &self.frame.plot), TOLERANCE))
-            .filter(|ring| ring.len() > 2)
-            .collect()
-    }
 }
 
 fn side_of(value: f64) -> Side {
     if value < 0.0 { Side::Inside } else { Side::Outside }
+}
+
+/// A line that is a point, as one with ends that differ: writers leave out lines without length.
+fn visible(line: Vec<Point>) -> Vec<Point> {
+    match line[..] {
+        [[x, y], end] if [x, y] == end => vec![[x - DOT, y], [x + DOT, y]],
+        _ => line,
+    }
 }
 
 fn path_of(lines: &[Vec<Point>]) -> Path {

@@ -16,7 +16,7 @@ use crate::palette::Color;
 /// Smallest width [px]: below it no label can be read.
 const MIN_WIDTH: u32 = 64;
 /// Largest width and height [px]: a gigabyte of pixels.
-const MAX_SIDE: u32 = 16_384;
+pub(crate) const MAX_SIDE: u32 = 16_384;
 
 /// The drawing as a PNG file of `width` pixels, the same bytes for the same drawing.
 ///
@@ -32,14 +32,34 @@ pub(crate) fn write(drawing: &Drawing, width: u32) -> Result<Vec<u8>, PlotError>
     }
     let mut pixels = Pixmap::new(width, height as u32).ok_or(size_error)?;
     pixels.fill(tiny_skia::Color::WHITE);
+    paint_drawing(&mut pixels, drawing, scale);
+    encode(&pixels)
+}
+
+/// The drawing over nothing, `scale` pixels for each of its own: red, green, blue and opacity of
+/// pixels of `width` by `height`. `None` if there are none.
+pub(crate) fn transparent(
+    drawing: &Drawing,
+    [width, height]: [u32; 2],
+    scale: f64,
+) -> Option<Vec<[u8; 4]>> {
+    let mut pixels = Pixmap::new(width, height)?;
+    paint_drawing(&mut pixels, drawing, scale);
+    let straight = pixels.pixels().iter().map(|pixel| {
+        let color = pixel.demultiply();
+        [color.red(), color.green(), color.blue(), color.alpha()]
+    });
+    Some(straight.collect())
+}
+
+fn paint_drawing(pixels: &mut Pixmap, drawing: &Drawing, scale: f64) {
     let transform = Transform::from_scale(scale as f32, scale as f32);
     for item in &drawing.items {
         match item {
-            Item::Mark(mark) => paint_mark(&mut pixels, mark, transform),
-            Item::Image(rect, image) => paint_image(&mut pixels, rect, image, transform),
+            Item::Mark(mark) => paint_mark(pixels, mark, transform),
+            Item::Image(rect, image) => paint_image(pixels, rect, image, transform),
         }
     }
-    encode(&pixels)
 }
 
 /// The image as a PNG file of its own size.

@@ -3,7 +3,7 @@
 
 //! Values of a field on a grid over the window.
 
-use crate::error::{LARGEST, PlotError};
+use crate::error::PlotError;
 use crate::geometry::Point;
 use crate::view::View;
 
@@ -98,9 +98,7 @@ impl Samples {
             }
             field(&points, out);
             for (&at, &value) in points.iter().zip(&*out) {
-                if value.is_nan() || value.abs() > LARGEST {
-                    return Err(PlotError::Sample { at, value });
-                }
+                PlotError::check_sample(at, value)?;
             }
         }
         Ok(Self { columns, rows, cell, origin, values })

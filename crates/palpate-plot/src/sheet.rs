@@ -54,7 +54,7 @@ impl Sheet {
 
 /// Adds what is not there yet; of two scales the one with the larger end stays.
 fn merge(entries: &mut Vec<Entry>, entry: Entry) {
-    match entries.iter_mut().find(|known| known.text == entry.text) {
+    match entries.iter_mut().find(|known| known.is_same(&entry)) {
         None => entries.push(entry),
         Some(known) => {
             if let (Key::Scale(_, [_, end]), Key::Scale(_, [_, other])) =

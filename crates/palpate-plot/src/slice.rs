@@ -197,7 +197,7 @@ impl Slice {
     /// ```
     #[must_use]
     pub fn project_gradient(&self, gradient: [f64; 3]) -> [f64; 3] {
-        [self.right, self.up, self.normal()].map(|axis| dot(gradient, axis) + 0.0) // no −0
+        self.directions().map(|axis| dot(gradient, axis) + 0.0) // no −0
     }
 
     /// Where the plane cuts a box \[m\]: the corners of the cut in plane coordinates,
@@ -261,6 +261,22 @@ impl Slice {
     pub fn normal(&self) -> [f64; 3] {
         let ([a, b, c], [d, e, f]) = (self.right, self.up);
         [b * f - c * e, c * d - a * f, a * e - b * d].map(|x| x + 0.0) // no −0
+    }
+
+    /// The unit vectors to the right, up, and towards the viewer.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_plot::Slice;
+    ///
+    /// let [right, up, towards] = Slice::xz(0.1)?.directions();
+    /// assert_eq!((right, up, towards), ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
+    /// # Ok::<(), palpate_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub fn directions(&self) -> [[f64; 3]; 3] {
+        [self.right, self.up, self.normal()]
     }
 
     /// Names of the picture's two axes with their unit, as in `["x [m]", "z [m]"]`.

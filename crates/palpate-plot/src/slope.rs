@@ -27,6 +27,20 @@ impl Slope {
         let [x, y, z] = self.gradient;
         x.hypot(y).hypot(z)
     }
+
+    /// Refuses a slope at the point `at` that is not a number, or beyond all numbers drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Sample`] or [`PlotError::Gradient`].
+    pub(crate) fn check(&self, at: Point) -> Result<(), PlotError> {
+        let Self { value, gradient } = *self;
+        PlotError::check_sample(at, value)?;
+        if gradient.iter().any(|x| x.is_nan() || x.abs() > LARGEST) {
+            return Err(PlotError::Gradient { at, gradient });
+        }
+        Ok(())
+    }
 }
 
 /// Pixels for each cell of the grid of isolines. Lines are interpolated between samples but
@@ -60,37 +74,50 @@ impl Pixels {
     /// for the first gradient without a finite length.
     pub(crate) fn paint(
         &self,
-        mut field: impl FnMut(&[[f64; 2]], &mut [Slope]),
+        field: impl FnMut(&[[f64; 2]], &mut [Slope]),
         mut color: impl FnMut(Point, &Slope) -> Color,
     ) -> Result<Image, PlotError> {
+        let mut pixels = Vec::with_capacity(self.number());
+        self.visit(field, |at, slope| {
+            slope.check(at)?;
+            pixels.push(color(at, slope));
+            Ok(())
+        })?;
+        Ok(Image { width: self.width(), pixels })
+    }
+
+    /// How many there are.
+    pub(crate) fn number(&self) -> usize {
+        self.count[0] * self.count[1]
+    }
+
+    /// Pixels in a row.
+    pub(crate) fn width(&self) -> usize {
+        self.count[0]
+    }
+
+    /// Evaluates `field` at the centres of the pixels, a row at a time, and shows each place with
+    /// what was found to `see`, from the top left corner, until that fails.
+    pub(crate) fn visit<T: Clone + Default>(
+        &self,
+        mut field: impl FnMut(&[[f64; 2]], &mut [T]),
+        mut see: impl FnMut(Point, &T) -> Result<(), PlotError>,
+    ) -> Result<(), PlotError> {
         let [width, height] = self.count;
         let mut points = vec![[0.0; 2]; width];
-        let mut slopes = vec![Slope::default(); width];
-        let mut pixels = Vec::with_capacity(width * height);
+        let mut found = vec![T::default(); width];
         for row in (0..height).rev() {
             for (column, p) in points.iter_mut().enumerate() {
                 let place = [column, row].map(|i| i as f64 + 0.5);
                 *p = [0, 1].map(|i| self.min[i] + place[i] * self.size[i]);
             }
-            field(&points, &mut slopes);
-            for (&at, slope) in points.iter().zip(&slopes) {
-                check(at, slope)?;
-                pixels.push(color(at, slope));
+            field(&points, &mut found);
+            for (&at, found) in points.iter().zip(&found) {
+                see(at, found)?;
             }
         }
-        Ok(Image { width, pixels })
+        Ok(())
     }
-}
-
-fn check(at: Point, slope: &Slope) -> Result<(), PlotError> {
-    let Slope { value, gradient } = *slope;
-    if value.is_nan() || value.abs() > LARGEST {
-        return Err(PlotError::Sample { at, value });
-    }
-    if gradient.iter().any(|x| x.is_nan() || x.abs() > LARGEST) {
-        return Err(PlotError::Gradient { at, gradient });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

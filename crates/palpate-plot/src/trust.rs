@@ -3,14 +3,14 @@
 
 //! Promises and how values compare with them, as colours.
 
-use crate::drawing::{Drawing, Image, Path, Stroke, TextStyle};
+use crate::drawing::{Drawing, Image, Path, Stroke};
 use crate::error::PlotError;
 use crate::geometry::{Point, Rect};
 use crate::legend::{Entry, Key};
 use crate::numbers::write;
 use crate::palette::Color;
+use crate::scale::draw_bar;
 use crate::slope::{Pixels, Slope};
-use crate::text::Anchor;
 
 /// The promise of a field's values f on one side of the surface, at the distance d from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,17 +34,32 @@ pub enum Gauge {
     Steepness,
 }
 
-/// The extremes of a [`Gauge`] over a picture, with their places in plane coordinates \[m\].
+/// The extremes of a [`Gauge`], or of other numbers, over a picture, with their places in plane
+/// coordinates \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// The smallest number, of the loosest value.
+    /// The smallest number; of a gauge, that of the loosest value.
     pub smallest: f64,
     /// The first place where it was found.
     pub smallest_at: [f64; 2],
-    /// The largest number, above one where values are too steep.
+    /// The largest number; of a gauge, above one where values are too steep.
     pub largest: f64,
     /// The first place where it was found.
     pub largest_at: [f64; 2],
+}
+
+impl Measured {
+    /// Extends the `extremes` known so far to `x` at a place.
+    pub(crate) fn include(extremes: &mut Option<Self>, at: Point, x: f64) {
+        let first = Self { smallest: x, smallest_at: at, largest: x, largest_at: at };
+        let known = extremes.get_or_insert(first);
+        if x < known.smallest {
+            (known.smallest, known.smallest_at) = (x, at);
+        }
+        if x > known.largest {
+            (known.largest, known.largest_at) = (x, at);
+        }
+    }
 }
 
 /// Colours of values that are too small and too large; the pair differs under colour
@@ -165,15 +180,7 @@ impl Trust {
         let image = pixels.paint(field, |at, slope| {
             let measured = measure(at, slope);
             if let Some(x) = measured {
-                let first =
-                    Measured { smallest: x, smallest_at: at, largest: x, largest_at: at };
-                let known = extremes.get_or_insert(first);
-                if x < known.smallest {
-                    (known.smallest, known.smallest_at) = (x, at);
-                }
-                if x > known.largest {
-                    (known.largest, known.largest_at) = (x, at);
-                }
+                Measured::include(&mut extremes, at, x);
             }
             promised[usize::from(slope.value < 0.0)].color(measured)
         })?;
@@ -226,24 +233,18 @@ pub(crate) const SCALE: [f64; 2] = [132.0, 40.0];
 /// [px].
 pub(crate) fn draw_scale(
     drawing: &mut Drawing,
-    [x, y]: Point,
+    at: Point,
     promised: Promised,
     [low, high]: [f64; 2],
 ) {
-    let style = TextStyle::TICK;
-    let (left, width) = (x + 8.0, SCALE[0] - 16.0);
-    let count = 2 * width as usize;
-    let at = |i: usize| low + (high - low) * (i as f64 + 0.5) / count as f64;
-    let pixels = (0..count).map(|i| promised.color(Some(at(i)))).collect();
-    let bar = Rect::new(left, y - 7.0, width, 12.0);
-    drawing.image(bar, Image { width: count, pixels });
-    drawing.stroke(Path::rect(&bar), Stroke::new(Color::MUTED, 0.75));
-    for tick in [0.0, 0.5, 1.0].map(|share| low + share * (high - low)) {
+    let measured = |share: f64| low + share * (high - low);
+    let ticks = [0.0, 0.5, 1.0].map(|share| {
+        let tick = measured(share);
         let label = write(tick, if high > 1.0 { 1.0 } else { 0.5 });
-        let label = if tick > 1.0 { format!("≥{label}") } else { label };
-        let x = left + width * (tick - low) / (high - low);
-        drawing.label(&label, [x, y + 18.0], Anchor::Middle, style);
-    }
+        (share, if tick > 1.0 { format!("≥{label}") } else { label })
+    });
+    let color = |share| promised.color(Some(measured(share)));
+    draw_bar(drawing, at, SCALE[0], color, &ticks);
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ impl Views {
                 top = bottom + BETWEEN;
             }
             for entry in legend {
-                if entries.iter().all(|known| known.text != entry.text) {
+                if entries.iter().all(|known| !known.is_same(&entry)) {
                     entries.push(entry);
                 }
             }

@@ -50,7 +50,7 @@ impl<T> Certified<T> {
 pub enum Stop {
     /// The bounds are no farther apart than the tolerance.
     Converged,
-    /// The sign of the value is proven, or that it exceeds the largest value asked for.
+    /// The sign of the value is proven, or the value is proven to exceed the margin.
     SignKnown,
     /// The budget of evaluations ended first: a larger one may help.
     BudgetSpent,

@@ -43,8 +43,9 @@ pub struct Contact<const D: usize> {
     pub gap: f64,
     /// Tells this contact from the others of the same answer. Where a
     /// [`Track`](crate::Track) or a [`World`](crate::World) follows the bodies, a contact
-    /// that lasts keeps its id from step to step; elsewhere the id is the contact's index
-    /// in the answer.
+    /// that lasts keeps its id from step to step. So it does at a tool of `palpate-haptics`,
+    /// where the id is `body << 32 | point`, of a body and a point of the tool's shell.
+    /// Elsewhere the id is the contact's index in the answer.
     pub id: u64,
 }
 

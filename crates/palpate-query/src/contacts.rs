@@ -70,9 +70,9 @@ impl<const D: usize> ElementContacts<D> {
 /// - **Others** are deepest in their patches, to the tolerance. Between any two contacts
 ///   lies a barrier: every path on the element from one to the other passes a point where
 ///   the field is larger than at both, by more than the tolerance. That is proven.
-/// - **Nothing is missed**, unless the search stopped [early](Stop::is_early): from every
-///   point within the gap a path on the element leads to a contact at least as deep, up to the
-///   tolerance, over cells that no bound proves to be higher than the point.
+/// - **Nothing is missed**, unless the search stopped [early](Stop::is_early): every point
+///   within the gap belongs to the basin of a contact that is at least as deep, up to the
+///   tolerance. Basins that no bound proves apart count as one.
 ///
 /// Not promised: two minima closer to each other than an eighth of a triangle's edge,
 /// or a sixty-fourth of a segment, may share a contact, at the deeper one. So may any two

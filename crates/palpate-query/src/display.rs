@@ -9,7 +9,7 @@ use crate::certified::{Certified, Stop};
 use crate::contacts::ElementContacts;
 use crate::manifold::Manifold;
 use crate::mesh::{MeshContacts, MeshHits};
-use crate::pair::{Escape, Nearest};
+use crate::pair::{Nearest, SeparatingTranslation};
 use crate::point::AtPoint;
 use crate::ray::RayHit;
 
@@ -48,7 +48,7 @@ impl<const D: usize> Display for RayHit<D> {
     }
 }
 
-impl<const D: usize> Display for Escape<D> {
+impl<const D: usize> Display for SeparatingTranslation<D> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let Self { direction, length, at_least, .. } = self;
         write!(f, "{length} m along {:?}, at least {at_least} m any way", direction.0)

@@ -3,7 +3,7 @@
 
 //! Segments and triangles.
 
-use palpate_field::{Point, Vector};
+use palpate_field::{BoundingBall, Point, Vector};
 
 use crate::error::QueryError;
 
@@ -24,8 +24,9 @@ impl<const N: usize, const D: usize> Element<N, D> {
     /// # Errors
     ///
     /// If a coordinate is not finite or beyond 1e15 m.
-    pub fn new(vertices: [Point<D>; N]) -> Result<Self, QueryError> {
+    pub fn new(vertices: [impl Into<Point<D>>; N]) -> Result<Self, QueryError> {
         const { assert!(N == 2 || N == 3, "segments and triangles") };
+        let vertices = vertices.map(Into::into);
         for vertex in vertices {
             QueryError::check_point("vertex", vertex)?;
         }
@@ -38,10 +39,44 @@ impl<const N: usize, const D: usize> Element<N, D> {
         &self.vertices
     }
 
+    /// The length of the longest edge [m].
+    #[must_use]
+    pub fn longest_edge(&self) -> f64 {
+        self.vertices.iter().map(|vertex| self.farthest(*vertex)).fold(0.0, f64::max)
+    }
+
+    /// The smallest ball around the element, its radius rounded up. A field of steepness 1 that
+    /// is greater at the centre than the radius is positive on the whole element.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_query::Element;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sliver = [Vector([0.0, 0.0]), Vector([1.0, 0.0]), Vector([0.5, 0.01])];
+    /// let element = Element::new(sliver)?;
+    /// assert_eq!(element.smallest_ball().centre, Vector([0.5, 0.0]));
+    /// let around = element.circumscribed_ball().ok_or("the corners lie on a line")?;
+    /// assert!(around.radius > 12.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn smallest_ball(&self) -> BoundingBall<D> {
+        palpate_mesh::internal::smallest_ball(&self.vertices)
+    }
+
+    /// The ball about the circumcentre of a triangle that its vertices lie on, its radius rounded
+    /// up; the smallest ball of a segment. `None` if the vertices of a triangle lie on a line.
+    #[must_use]
+    pub fn circumscribed_ball(&self) -> Option<BoundingBall<D>> {
+        palpate_mesh::internal::circumscribed_ball(&self.vertices)
+    }
+
     /// The barycentric weights of the centre of the smallest ball around the element.
     #[inline]
     pub(crate) fn centre_weights(&self) -> [f64; N] {
-        palpate_mesh::centre_weights(&self.vertices)
+        palpate_mesh::internal::centre_weights(&self.vertices)
     }
 
     /// A triangle without area as its longest edge with the second end doubled, so that its

@@ -161,6 +161,13 @@ pub fn touches<const N: usize, const D: usize>(
     Ok(search(shape, element, &Terms::new(goal, limits.budget), workspace))
 }
 
+/// Values of the field at points.
+#[derive(Clone, Copy)]
+struct ValuesAt<'a, const D: usize> {
+    points: &'a [Point<D>],
+    values: &'a [f64],
+}
+
 /// The terms of a search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
@@ -321,7 +328,7 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         };
         let values = self.look_around(&mut whole, centre);
         if self.goal.reached(whole.lower, self.upper).is_none() {
-            self.look_from_lowest(&mut whole, &values, (centre, gradient));
+            self.look_from_lowest(&mut whole, &values, centre, gradient);
         }
         Ok(whole)
     }
@@ -369,7 +376,8 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         &mut self,
         cell: &mut ElementCell<N, D>,
         vertices: &[f64; N],
-        (centre, gradient): (Point<D>, Vector<f64, D>),
+        centre: Point<D>,
+        gradient: Vector<f64, D>,
     ) {
         let lowest = self.best;
         let value = self.upper - self.sampler.steepness.slack;
@@ -433,7 +441,9 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
             let (centres, lifted) = points.split_at(SHORT / 2);
             let (values, lifted_values) = values.split_at(SHORT / 2);
             self.settle(parts, centres, values);
-            self.learn(parts, (centres, values), (lifted, lifted_values), 1.0);
+            let centres = ValuesAt { points: centres, values };
+            let lifted = ValuesAt { points: lifted, values: lifted_values };
+            self.learn(parts, centres, lifted, 1.0);
         } else {
             let values = self.sampler.values(&points);
             self.settle(parts, &points, &values);
@@ -481,8 +491,9 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
         }
         let lifted = self.sampler.values(&points);
         let lifted = points.chunks_exact(lanes).zip(lifted.chunks_exact(lanes));
-        for (lifted, share) in lifted.zip(shares) {
-            self.learn(parts, (centres, values), lifted, *share);
+        for ((points, lifted), share) in lifted.zip(shares) {
+            let centres = ValuesAt { points: centres, values };
+            self.learn(parts, centres, ValuesAt { points, values: lifted }, *share);
         }
     }
 
@@ -492,20 +503,21 @@ impl<'a, const N: usize, const D: usize> ElementSearch<'a, N, D> {
     fn learn(
         &mut self,
         parts: &mut [ElementCell<N, D>],
-        (centres, values): (&[Point<D>], &[f64]),
-        (points, lifted): (&[Point<D>], &[f64]),
+        centres: ValuesAt<'_, D>,
+        lifted: ValuesAt<'_, D>,
         share: f64,
     ) {
         let highest = self.radius * FIRST_HEIGHTS[FIRST_HEIGHTS.len() - 1];
         for (i, part) in parts.iter_mut().enumerate() {
             let radius = self.radius_of(part);
-            let lower = self.over(part, points[i], lifted[i]);
+            let (centre, value) = (centres.points[i], centres.values[i]);
+            let lower = self.over(part, lifted.points[i], lifted.values[i]);
             if lower >= part.lower {
-                let nearly_all = values[i] - 0.25 * self.sampler.steepness.lipschitz * radius;
+                let nearly_all = value - 0.25 * self.sampler.steepness.lipschitz * radius;
                 let grown = if lower > nearly_all { GROW } else { 1.0 };
                 part.height = (grown * share * part.height).min(highest);
                 part.lower = lower;
-            } else if lower <= self.sampler.steepness.bound(centres[i], values[i], radius) {
+            } else if lower <= self.sampler.steepness.bound(centre, value, radius) {
                 part.height *= SHRINK;
             }
         }

@@ -27,12 +27,12 @@
 //!
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
-//!   region in which they touch; [`escape`] bounds the minimum translation from above. [`Track`] follows
-//!   a pair that moves, [`World`] many bodies.
+//!   region in which they touch; [`separating_translation`] bounds the minimum translation from
+//!   above. [`Track`] follows a pair that moves, [`World`] many bodies.
 //! - [`any_point`] decides whether a shape has any point.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first
-//!   surface along a [`Ray`].
+//!   surface along a [`Ray`], by balls that are free of it ([`free_radius`]).
 //! - [`minimum`] and [`touches`] ask a field, in two or three dimensions, over an [`Element`]: a
 //!   segment or a triangle; [`contacts`] finds all places where the element touches.
 //! - [`mesh_hits`] and [`mesh_contacts`] ask a field over all elements of a mesh.
@@ -59,6 +59,8 @@ mod element_search;
 mod engine;
 mod error;
 mod goal;
+#[doc(hidden)]
+pub mod internal;
 mod larger;
 mod manifold;
 mod mesh;
@@ -88,13 +90,14 @@ pub use mesh::{
     mesh_hits,
 };
 pub use pair::{
-    DistanceBound, Escape, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
-    escape, minimax_step, overlap, proof, rates, separation,
+    DistanceBound, Nearest, PairWorkspace, PoseDerivative, Proof, ProofBox, Rates,
+    SeparatingTranslation, overlap, proof, rates, separating_translation, separation,
 };
 pub use placed::Placed;
 pub use point::{AtPoint, evaluate_point};
 pub use query::{ElementMemory, Query, Tolerance};
 pub use ray::{Ray, RayHit, cast_ray};
+pub use sampler::free_radius;
 pub use track::Track;
 #[cfg(feature = "world")]
 pub use world::{BodyId, Neighbours, Verdict, World, WorldSettings};

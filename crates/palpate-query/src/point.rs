@@ -41,7 +41,8 @@ impl<const D: usize> AtPoint<D> {
     pub fn of_slope(
         shape: &Shape<D>,
         point: Point<D>,
-        (distance, gradient): (f64, Vector<f64, D>),
+        distance: f64,
+        gradient: Vector<f64, D>,
     ) -> Self {
         let promise = shape.promise();
         let rounding = promise.rounding.within(point.norm());
@@ -84,10 +85,12 @@ impl<const D: usize> AtPoint<D> {
 /// If a coordinate is not finite or beyond 1e15 m.
 pub fn evaluate_point<const D: usize>(
     shape: &Shape<D>,
-    p: Point<D>,
+    p: impl Into<Point<D>>,
 ) -> Result<AtPoint<D>, QueryError> {
+    let p = p.into();
     QueryError::check_point("point", p)?;
-    Ok(AtPoint::of_slope(shape, p, shape.distance_gradient(p)))
+    let (distance, gradient) = shape.distance_gradient(p);
+    Ok(AtPoint::of_slope(shape, p, distance, gradient))
 }
 
 #[cfg(test)]

@@ -43,10 +43,11 @@ impl<const D: usize> Ray<D> {
     /// If a number is not finite or beyond 1e15, the direction is zero, or the length
     /// is negative.
     pub fn new(
-        origin: Point<D>,
-        direction: Vector<f64, D>,
+        origin: impl Into<Point<D>>,
+        direction: impl Into<Vector<f64, D>>,
         length: f64,
     ) -> Result<Self, QueryError> {
+        let (origin, direction) = (origin.into(), direction.into());
         for (what, numbers) in [("origin", origin), ("direction", direction)] {
             QueryError::check_point(what, numbers)?;
         }
@@ -156,7 +157,7 @@ impl<const D: usize> Advance<'_, D> {
             let mut ahead = free + step.max(0.0);
             if is_short || !pays {
                 is_short = true;
-                ahead = ahead.max(self.lifted(free, (value, unit(gradient)), limits));
+                ahead = ahead.max(self.lifted(free, value, unit(gradient), limits));
             }
             previous = value;
             if let Some(witness) = self.witness
@@ -190,7 +191,8 @@ impl<const D: usize> Advance<'_, D> {
     fn lifted(
         &mut self,
         free: f64,
-        (value, direction): (f64, Vector<f64, D>),
+        value: f64,
+        direction: Vector<f64, D>,
         limits: &Limits,
     ) -> f64 {
         let p = self.ray.at(free);

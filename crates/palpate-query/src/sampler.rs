@@ -137,16 +137,36 @@ impl<'a, const D: usize> Sampler<'a, D> {
         (values, directions)
     }
 
-    /// The radius of a ball about `p` in which the field is positive, from a positive
-    /// value there [m]; negative where rounding exceeds the value.
+    /// As [`free_radius`].
     #[inline]
     pub(crate) fn free_radius(&self, p: Point<D>, value: f64) -> f64 {
-        let (promise, reach) = (self.shape.promise(), p.norm());
-        let slack = promise.rounding.within(reach)
-            + promise.lipschitz * GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
-        let value = value - slack;
-        if value > 0.0 { promise.safe_radius(p, value) } else { value }
+        free_radius(self.shape, p, value)
     }
+}
+
+/// The radius of a ball about `p` in which the field of `shape` is positive, from a positive value
+/// there, rounding of the value and of points included; negative where rounding exceeds the
+/// value; all in metres.
+///
+/// ```
+/// use palpate_field::Shape;
+/// use palpate_query::free_radius;
+///
+/// # fn main() -> Result<(), palpate_field::ShapeError> {
+/// let ball = Shape::<3>::ball(1.0)?;
+/// let free = free_radius(&ball, [3.0, 0.0, 0.0].into(), 2.0);
+/// assert!(2.0 - 1e-12 < free && free < 2.0);
+/// # Ok(())
+/// # }
+/// ```
+#[inline]
+#[must_use]
+pub fn free_radius<const D: usize>(shape: &Shape<D>, p: Point<D>, value: f64) -> f64 {
+    let (promise, reach) = (shape.promise(), p.norm());
+    let slack = promise.rounding.within(reach)
+        + promise.lipschitz * GEOMETRY_ROUNDINGS * f64::EPSILON * reach;
+    let value = value - slack;
+    if value > 0.0 { promise.safe_radius(p, value) } else { value }
 }
 
 /// A gradient shorter than this gives no direction.

@@ -34,6 +34,7 @@ pub enum Acceptance {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum Rule {
     /// `K ≤ 2 (b − |B|) / T`, Colgate and Schenkel (1997).
     Passivity,
@@ -110,6 +111,7 @@ impl Rule {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Accepted {
     /// The stiffness and damping to render, in the world; angular for a rotational entry.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -22,8 +22,8 @@ pub struct PointState<const D: usize> {
 impl<const D: usize> PointState<D> {
     /// A point at rest at `position` [m].
     #[must_use]
-    pub fn at_rest(position: Point<D>) -> Self {
-        Self { position, velocity: Vector::ZERO }
+    pub fn at_rest(position: impl Into<Point<D>>) -> Self {
+        Self { position: position.into(), velocity: Vector::ZERO }
     }
 
     /// `true` if no number is NaN or infinite.

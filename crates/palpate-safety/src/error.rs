@@ -5,7 +5,8 @@
 
 /// A number that breaks the rule of its parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{parameter} must be {rule}, got {value} {unit}")]
+#[error("{parameter} must be {rule}, got {value}{}{unit}", if unit.is_empty() { "" } else { " " })]
+#[non_exhaustive]
 pub struct NumberError {
     /// The parameter's name, as in scene files.
     pub parameter: &'static str,
@@ -13,11 +14,29 @@ pub struct NumberError {
     pub rule: &'static str,
     /// What it was, in `unit`.
     pub value: f64,
-    /// The unit of the parameter: "N/m".
+    /// The unit of the parameter: "N/m"; empty for a plain number.
     pub unit: &'static str,
 }
 
 impl NumberError {
+    /// The error that `parameter` must be `rule`, but is `value` in this unit.
+    ///
+    /// ```
+    /// use palpate_safety::NumberError;
+    ///
+    /// let error = NumberError::new("teeth", "at least 3", 2.0, "");
+    /// assert_eq!(error.to_string(), "teeth must be at least 3, got 2");
+    /// ```
+    #[must_use]
+    pub const fn new(
+        parameter: &'static str,
+        rule: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) -> Self {
+        Self { parameter, rule, value, unit }
+    }
+
     /// Checks that `value` is positive and finite.
     ///
     /// # Errors

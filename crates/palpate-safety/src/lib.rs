@@ -18,11 +18,14 @@ mod chain;
 mod channel;
 mod continuous;
 mod device;
+mod display;
 mod effect;
 mod error;
 mod finite;
 mod force_limit;
 mod impedance;
+#[doc(hidden)]
+pub mod internal;
 mod limit;
 mod limits;
 mod passivity;
@@ -40,7 +43,6 @@ pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, Turni
 pub use effect::Effect;
 pub use error::{NumberError, SafetyError};
 pub use impedance::Impedance;
-pub use limit::{limited, shortening};
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use report::{ContinuousReport, SafetyReport, TurningReport, WatchdogReport};

@@ -13,7 +13,7 @@ use palpate_field::Vector;
 /// ```
 /// use palpate_field::Vector;
 ///
-/// let force = palpate_safety::limited(Vector([3.0, -4.0]), 2.5);
+/// let force = palpate_safety::internal::limited(Vector([3.0, -4.0]), 2.5);
 /// assert_eq!(force, Vector([1.5, -2.0]));
 /// ```
 ///

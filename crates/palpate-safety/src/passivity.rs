@@ -71,6 +71,7 @@ pub(crate) struct PortMotion<V> {
 /// Energies that the passivity observer measured, and the controller's interventions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct PassivityReport {
     /// Interventions, and the largest change of the force.
     #[cfg_attr(feature = "serde", serde(flatten))]

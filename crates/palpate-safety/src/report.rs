@@ -11,6 +11,7 @@ use crate::passivity::PassivityReport;
 /// Actions of every stage of a safety chain since it was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct SafetyReport {
     /// Ticks done.
     pub ticks: u64,
@@ -44,6 +45,7 @@ pub struct SafetyReport {
 /// Passivity covers force and torque together: see [`SafetyReport::passivity`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct TurningReport {
     /// The accepted angular stiffness and damping of the coupling.
     pub impedance: Accepted,
@@ -68,6 +70,7 @@ pub struct TurningReport {
 /// Actions of the limit on the continuous force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ContinuousReport {
     /// Actions of the stage.
     #[cfg_attr(feature = "serde", serde(flatten))]
@@ -79,6 +82,7 @@ pub struct ContinuousReport {
 /// Actions of the deadline watchdog.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct WatchdogReport {
     /// Actions of the stage.
     #[cfg_attr(feature = "serde", serde(flatten))]

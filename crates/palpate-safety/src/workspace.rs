@@ -69,12 +69,9 @@ impl<const D: usize> WorkspaceMap<D> {
         let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
         let wrong = world_from_device.translation.0.into_iter().find(|x| !x.is_finite());
         match wrong {
-            Some(value) => Err(SafetyError::Number(NumberError {
-                parameter: "translation",
-                rule: "finite",
-                value,
-                unit: "m",
-            })),
+            Some(value) => {
+                Err(SafetyError::Number(NumberError::new("translation", "finite", value, "m")))
+            }
             None => Ok(Self {
                 world_from_device,
                 device_from_world: world_from_device.inverse(),

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive, positive_if};
+use crate::error::SceneError;
 use crate::pose::{direction, position};
 use crate::problem::Problem;
 use crate::problems::Problems;
@@ -36,6 +37,7 @@ use crate::schema::VectorSchema;
     { "required": ["point"] }, { "required": ["line"] }, { "required": ["segment"] },
     { "required": ["plane"] }, { "required": ["curve"] }, { "required": ["well"] },
 ]))]
+#[non_exhaustive]
 pub struct WrittenGuide {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -196,10 +198,10 @@ impl WrittenGuide {
     fn check_target(&self, dimension: usize) -> Result<(), Problems> {
         let point = self.point.as_ref().map_or(Ok(()), |point| position(point, dimension));
         let line = self.line.as_ref().map_or(Ok(()), |line| {
-            check_straight((&line.through, "direction", &line.direction), dimension)
+            check_straight(&line.through, "direction", &line.direction, dimension)
         });
         let plane = self.plane.as_ref().map_or(Ok(()), |plane| {
-            check_straight((&plane.through, "normal", &plane.normal), dimension)
+            check_straight(&plane.through, "normal", &plane.normal, dimension)
         });
         let segment = self.segment.as_ref().map_or(Ok(()), |segment| segment.check(dimension));
         let curve = self.curve.as_ref().map_or(Ok(()), |curve| curve.check(dimension));
@@ -266,7 +268,9 @@ impl WrittenGuide {
 
 /// Checks a point and a direction, which has a name of its own.
 fn check_straight(
-    (through, key, along): (&[f64], &str, &[f64]),
+    through: &[f64],
+    key: &str,
+    along: &[f64],
     dimension: usize,
 ) -> Result<(), Problems> {
     Problems::all([
@@ -319,9 +323,8 @@ impl WrittenGuide {
     ///
     /// # Errors
     ///
-    /// As the constructor of its kind; [`HapticsError::GuideTargets`] without exactly one target,
-    /// [`HapticsError::Number`] if a vector has not `D` numbers. A scene that was built has
-    /// neither.
+    /// If there is not exactly one target, a vector has not `D` numbers, or the constructor of its
+    /// kind refuses a number. A scene that was built has none of these.
     ///
     /// ```
     /// use palpate_field::Vector;
@@ -340,7 +343,12 @@ impl WrittenGuide {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, HapticsError> {
+    pub fn guide<const D: usize>(&self) -> Result<Guide<D>, SceneError> {
+        self.built().map_err(|problem| problem.located(None).into())
+    }
+
+    /// The guide with these numbers.
+    pub(crate) fn built<const D: usize>(&self) -> Result<Guide<D>, Problem> {
         let options = GuideOptions::default()
             .with_stiffness(self.stiffness)
             .with_damping(self.damping)
@@ -378,10 +386,10 @@ impl WrittenGuide {
             .map(|well| Guide::well(vector("center", &well.center)?, well.reach, options));
         let mut guides = point.chain(line).chain(segment).chain(plane).chain(curve).chain(well);
         match (guides.next(), guides.count()) {
-            (Some(guide), 0) => guide,
+            (Some(guide), 0) => guide.map_err(|error| Problem::new(error.to_string())),
             (guide, more) => {
                 let count = usize::from(guide.is_some()) + more;
-                Err(HapticsError::GuideTargets { count })
+                Err(Problem::new(format!("a guide needs one target, got {count}")))
             }
         }
     }
@@ -392,12 +400,12 @@ fn vector<const D: usize>(
     numbers: &[f64],
 ) -> Result<Vector<f64, D>, HapticsError> {
     let components = numbers.try_into().map_err(|_| {
-        HapticsError::Number(NumberError {
+        HapticsError::Number(NumberError::new(
             parameter,
-            rule: "one number for each dimension",
-            value: numbers.len() as f64,
-            unit: "numbers",
-        })
+            "one number for each dimension",
+            numbers.len() as f64,
+            "numbers",
+        ))
     })?;
     Ok(Vector(components))
 }

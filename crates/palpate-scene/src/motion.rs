@@ -28,6 +28,7 @@ use crate::problems::Problems;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct Motion {
     /// A note for readers of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -53,6 +54,23 @@ pub struct Motion {
     /// What happens after its end; it stays there if left out.
     #[serde(default, skip_serializing_if = "crate::check::is_default")]
     pub repeat: Repeat,
+}
+
+impl Motion {
+    /// A motion of the body of this name from its own pose, which takes one second.
+    #[must_use]
+    pub fn new(body: impl Into<String>, to: WrittenPose) -> Self {
+        Self {
+            description: None,
+            body: body.into(),
+            from: None,
+            to,
+            start: 0.0,
+            duration: one_second(),
+            turns: 0,
+            repeat: Repeat::default(),
+        }
+    }
 }
 
 fn one_second() -> f64 {

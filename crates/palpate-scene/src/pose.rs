@@ -30,6 +30,7 @@ use crate::schema::{TurnSchema, VectorSchema};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PoseFile", into = "PoseFile")]
+#[non_exhaustive]
 pub struct WrittenPose {
     /// A note for readers of the file.
     pub description: Option<String>,
@@ -41,6 +42,7 @@ pub struct WrittenPose {
 
 /// A rotation, as a file gives it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WrittenRotation {
     /// In the plane: an angle from x towards y [°].
     Degrees(f64),

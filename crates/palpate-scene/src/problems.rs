@@ -96,7 +96,7 @@ impl Problems {
     }
 
     /// The same problems without those that a shape found.
-    pub(crate) fn as_written(mut self) -> Self {
+    pub(crate) fn of_the_text(mut self) -> Self {
         self.found.retain(|problem| !problem.is_of_shape());
         self
     }

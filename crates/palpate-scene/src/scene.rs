@@ -72,6 +72,7 @@ impl fmt::Display for Dimension {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct Scene {
     /// The version of the format: 1.
     palpate: Version,
@@ -106,6 +107,7 @@ pub struct Scene {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 #[schemars(rename = "Body")]
+#[non_exhaustive]
 pub struct WrittenBody {
     /// The name, unlike that of any other body.
     #[schemars(length(min = 1))]

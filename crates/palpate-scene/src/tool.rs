@@ -33,6 +33,7 @@ use crate::shape::WrittenShape;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Tool")]
+#[non_exhaustive]
 pub struct WrittenTool {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,6 +67,7 @@ pub struct WrittenTool {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Coupling")]
+#[non_exhaustive]
 pub struct WrittenCoupling {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -92,6 +94,7 @@ pub struct WrittenCoupling {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "an object")]
 #[schemars(rename = "Workspace")]
+#[non_exhaustive]
 pub struct WrittenWorkspace {
     /// A note for readers of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -156,11 +159,10 @@ impl WrittenTool {
         let options = default
             .with_stiffness(coupling.stiffness.unwrap_or(default.stiffness))
             .with_damping(coupling.damping.unwrap_or(default.damping))
-            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping))
-            .with_max_force(self.max_force.unwrap_or(default.max_force));
-        match coupling.angular_stiffness {
-            Some(stiffness) => options.with_angular_stiffness(stiffness),
-            None => options,
-        }
+            .with_angular_damping(coupling.angular_damping.unwrap_or(default.angular_damping));
+        let stiffness = coupling.angular_stiffness;
+        let options =
+            stiffness.map_or(options, |stiffness| options.with_angular_stiffness(stiffness));
+        self.max_force.map_or(options, |max_force| options.with_max_force(max_force))
     }
 }

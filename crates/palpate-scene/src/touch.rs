@@ -16,7 +16,7 @@ use crate::build::{BuiltScene, BuiltTool};
 /// and cost more; a face of 1 cm² of a tool as large as a hand has a few.
 const POINTS: usize = 500;
 
-/// How a servo renders a scene, beside what the scene says.
+/// Settings of a servo that scene files do not hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ServoSettings {
@@ -133,7 +133,15 @@ impl<const D: usize> BuiltScene<D> {
     ///
     /// As [`World::new`] and [`World::add`].
     pub fn world(&self) -> Result<World<D>, QueryError> {
-        self.world_with(WorldSettings::of_size(self.smallest_size().unwrap_or(1.0)))
+        self.world_with(self.world_settings())
+    }
+
+    /// The settings of [`world`](Self::world).
+    #[must_use]
+    pub fn world_settings(&self) -> WorldSettings {
+        // Without bounded bodies no pair has contacts, and a body without extent, a point, has no
+        // size to take a share of: the margins are then those of a body of 1 m.
+        WorldSettings::of_size(self.smallest_size().unwrap_or(1.0))
     }
 
     /// The bodies in a world with settings of one's own.
@@ -180,7 +188,7 @@ impl<const D: usize> BuiltScene<D> {
     ///                        "material": "wood" } ] }"#,
     /// )?;
     /// let AnyScene::Spatial(scene) = scene.build()? else { unreachable!("dimension is 3") };
-    /// let hand = Hand::resting([0.0, 0.06, 0.0].into())?;
+    /// let hand = Hand::resting([0.0, 0.06, 0.0])?;
     /// let device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
     /// let servo = scene.servo(&device)?;
     /// assert_eq!(servo.accepted().len(), 1);
@@ -236,7 +244,7 @@ impl<const D: usize> BuiltScene<D> {
         let mut options = ServoOptions::of_device(device).with_rate(rate);
         if let Some(tool) = &self.tool {
             options.probe = Probe::new(tool.radius)?;
-            options.max_force = tool.max_force.unwrap_or(options.max_force);
+            options.max_force = tool.options.max_force.unwrap_or(options.max_force);
         }
         Ok(options)
     }

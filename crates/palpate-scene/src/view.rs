@@ -30,6 +30,7 @@ use crate::problems::Problems;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "an object")]
+#[non_exhaustive]
 pub struct View {
     /// The name, unlike that of any other view.
     #[schemars(length(min = 1))]
@@ -59,6 +60,23 @@ pub struct View {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub spacing: Option<f64>,
+}
+
+impl View {
+    /// A view whose plane and window are chosen so that the scene fills the picture.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            description: None,
+            plane: None,
+            at: None,
+            center: None,
+            width: None,
+            height: None,
+            spacing: None,
+        }
+    }
 }
 
 /// A plane through space.

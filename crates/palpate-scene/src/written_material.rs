@@ -28,6 +28,7 @@ use crate::problem::Problem;
 /// # }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WrittenMaterial {
     /// The name of a preset.
     Preset(String),

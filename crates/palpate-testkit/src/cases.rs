@@ -16,8 +16,8 @@ const ENTROPY: usize = 1 << 16;
 /// The most complaints shown; complaints that differ only in numbers count as one.
 const SHOWN: usize = 12;
 
-/// Checks `property` for `count` seeds, from 0 or from the number in the variable
-/// `PALPATE_FIRST_SEED` of the environment on.
+/// Checks `property` for `count` seeds. Two variables of the environment ask for others:
+/// `PALPATE_FIRST_SEED` is the first seed, 0 if unset; `PALPATE_SEEDS` multiplies their number.
 ///
 /// A property draws its input from [`Unstructured`] and returns what is wrong
 /// with it. The same seed draws the same input on every machine.
@@ -30,7 +30,8 @@ pub fn check(
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
 ) {
     let mut failures = Vec::new();
-    let first = first_seed();
+    let first = number_in("PALPATE_FIRST_SEED").unwrap_or(0);
+    let count = count * number_in("PALPATE_SEEDS").unwrap_or(1);
     for seed in first..first + count {
         let bytes = entropy(seed);
         let guard = Seed(seed);
@@ -118,26 +119,24 @@ pub fn each(
     count: u64,
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<()>,
 ) {
-    let mut drawn = 0;
+    let (mut drawn, mut tried) = (0, 0);
     check(count, |u| {
+        tried += 1;
         property(u)?;
         drawn += 1;
         Ok(Ok(()))
     });
-    assert!(2 * drawn > count, "only {drawn} of {count} cases could be drawn");
+    assert!(2 * drawn > tried, "only {drawn} of {tried} cases could be drawn");
 }
 
-/// The seed to begin with: other seeds than the usual ones find what those do not.
+/// The whole number in a variable of the environment; `None` if it is not set.
 ///
 /// # Panics
 ///
-/// If the variable holds no number.
-fn first_seed() -> u64 {
-    std::env::var("PALPATE_FIRST_SEED").map_or(0, |first| {
-        first
-            .parse()
-            .unwrap_or_else(|_| panic!("PALPATE_FIRST_SEED must be a number, got {first}"))
-    })
+/// If the variable holds anything else.
+fn number_in(variable: &str) -> Option<u64> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable} must be a number, got {text}")))
 }
 
 /// The bytes of a seed, by SplitMix64 (Steele, Lea and Flood 2014).

@@ -119,7 +119,7 @@ impl Synthesiser {
         if sample_rate < 2.0 * highest_frequency {
             let (parameter, rule) = ("sample_rate", "at least twice the highest frequency");
             let (value, unit) = (sample_rate, "Hz");
-            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
         }
         let player = Player {
             hold: Oscillator::default(),

@@ -142,7 +142,9 @@ impl<const D: usize> ActuatorArray<D> {
         for value in places.iter().flat_map(|place| place.0) {
             if !value.is_finite() {
                 let (parameter, rule, unit) = ("place", "finite", "m");
-                return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+                return Err(HapticsError::Number(NumberError::new(
+                    parameter, rule, value, unit,
+                )));
             }
         }
         Ok(Self { places, reach: NumberError::check_positive("reach", reach, "m")? })

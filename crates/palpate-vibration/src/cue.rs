@@ -293,7 +293,7 @@ impl Mapping {
             NumberError::check_positive(parameter, value, unit)?;
         }
         let refuse = |parameter, rule, value| {
-            Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "Hz" }))
+            Err(HapticsError::Number(NumberError::new(parameter, rule, value, "Hz")))
         };
         if o.highest_frequency < o.lowest_frequency {
             let rule = "at least the lowest frequency";
@@ -373,7 +373,7 @@ fn at_most(
     if value <= most {
         return Ok(());
     }
-    Err(HapticsError::Number(NumberError { parameter, rule, value, unit: "" }))
+    Err(HapticsError::Number(NumberError::new(parameter, rule, value, "")))
 }
 
 #[cfg(test)]

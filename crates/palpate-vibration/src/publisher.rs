@@ -72,7 +72,7 @@ impl Publisher {
         if publish_rate > servo_rate {
             let (parameter, rule) = ("publish_rate", "at most the servo's rate");
             let (value, unit) = (publish_rate, "Hz");
-            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
         }
         let (held, commands) =
             (vec![Tone::default(); channels], vec![Command::default(); channels]);

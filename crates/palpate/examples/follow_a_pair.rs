@@ -15,7 +15,7 @@ fn main() -> Result<(), Error> {
     let mut workspace = PairWorkspace::new();
     for step in 0..6 {
         // It slides by 1 mm a step, half a millimetre deep.
-        let slid = Pose::translation([0.001 * f64::from(step), 0.0645, 0.0].into());
+        let slid = Pose::translation([0.001 * f64::from(step), 0.0645, 0.0]);
         let poses = [Pose::identity(), slid];
         let manifold = track.manifold(poses, &settings, &limits, &mut workspace)?;
         let ids: Vec<_> = manifold.contacts.iter().map(|contact| contact.id).collect();

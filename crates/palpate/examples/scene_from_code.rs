@@ -15,7 +15,7 @@ fn main() -> Result<(), Error> {
     let peg = Shape::capsule(0.0058, 0.08)?;
     let scene = Scene::new(Dimension::Three).with_bodies([
         SceneBody::new("plate", plate.clone()).made_of(Material::steel()),
-        SceneBody::new("peg", peg).at(Pose::translation([0.03, 0.05, 0.0].into())),
+        SceneBody::new("peg", peg).at(Pose::translation([0.03, 0.05, 0.0])),
     ])?;
     let text = scene.to_json();
     println!("{text}");

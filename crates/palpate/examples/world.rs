@@ -14,15 +14,14 @@ fn main() -> Result<(), Error> {
     for i in 0..99 {
         let place = [0.15 * f64::from(i % 10), 0.2, 0.15 * f64::from(i / 10)];
         let shape = shapes[i as usize % shapes.len()].clone();
-        bodies.push((world.add(shape, Pose::translation(place.into()))?, place));
+        bodies.push((world.add(shape, Pose::translation(place))?, place));
     }
     for step in 0..60 {
         // All fall at 0.5 m/s, in steps of 1/60 s, until their origins are 49 mm above the floor:
         // balls and cubes are then 1 mm deep in it.
         let height = (0.2 - 0.5 * f64::from(step) / 60.0).max(0.049);
-        let poses = bodies
-            .iter()
-            .map(|(body, [x, _, z])| (*body, Pose::translation([*x, height, *z].into())));
+        let poses =
+            bodies.iter().map(|(body, [x, _, z])| (*body, Pose::translation([*x, height, *z])));
         world.set_poses(&poses.collect::<Vec<_>>())?;
         let touching = world.step();
         if step % 15 == 14 {

@@ -3,7 +3,7 @@
 
 //! One error for programs that use several crates of palpate.
 
-use palpate_devices::{DeviceLost, UnknownDevice};
+use palpate_devices::{DeviceError, DeviceLost, UnknownDevice};
 use palpate_field::ShapeError;
 use palpate_haptics::{HapticsError, NumberError, SafetyError, UnknownMaterial};
 use palpate_mesh::MeshError;
@@ -55,6 +55,8 @@ pub enum Error {
     Query(#[from] QueryError),
     /// Something cannot be touched as asked.
     Haptics(#[from] HapticsError),
+    /// A hand path, a hand or a device cannot be made.
+    Device(#[from] DeviceError),
     /// Vertices and faces are no mesh.
     Mesh(#[from] MeshError),
     /// A mesh file cannot be read.
@@ -66,18 +68,27 @@ pub enum Error {
     /// A picture cannot be drawn.
     #[cfg(feature = "plot")]
     Plot(#[from] palpate_plot::PlotError),
+    /// A picture cannot be rendered.
+    #[cfg(feature = "render")]
+    Render(#[from] palpate_render::RenderError),
     /// There is no device of that name.
     UnknownDevice(#[from] UnknownDevice),
     /// There is no material of that name.
     UnknownMaterial(#[from] UnknownMaterial),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
+    /// A thread for a servo did not start.
+    #[cfg(feature = "std-loop")]
+    Start(palpate_loop::StartError),
     /// A run of a servo did not end as asked.
     #[cfg(feature = "std-loop")]
     Run(#[from] palpate_loop::RunError),
     /// There is no local search of that name.
     #[cfg(feature = "local")]
     UnknownMethod(#[from] palpate_local::UnknownMethod),
+    /// Numbers are no barycentric weights.
+    #[cfg(feature = "local")]
+    Weights(#[from] palpate_local::WeightsError),
     /// A file cannot be read or written.
     File(#[from] std::io::Error),
 }
@@ -92,6 +103,8 @@ pub enum ErrorKind {
     Query,
     /// Something cannot be touched as asked.
     Haptics,
+    /// A hand path, a hand or a device cannot be made.
+    Device,
     /// Vertices and faces are no mesh, or a mesh file cannot be read.
     Mesh,
     /// A scene cannot be read or built.
@@ -102,6 +115,8 @@ pub enum ErrorKind {
     UnknownName,
     /// A device no longer answers.
     DeviceLost,
+    /// A thread for a servo did not start.
+    Thread,
     /// The loop of a servo panicked, which is a defect.
     Panicked,
     /// A file cannot be read or written.
@@ -116,11 +131,13 @@ impl ErrorKind {
             Self::Shape => "shape",
             Self::Query => "query",
             Self::Haptics => "haptics",
+            Self::Device => "device",
             Self::Mesh => "mesh",
             Self::Scene => "scene",
             Self::Plot => "plot",
             Self::UnknownName => "unknown_name",
             Self::DeviceLost => "device_lost",
+            Self::Thread => "thread",
             Self::Panicked => "panicked",
             Self::File => "file",
         }
@@ -135,6 +152,7 @@ impl Error {
             Self::Shape(_) => ErrorKind::Shape,
             Self::Query(_) => ErrorKind::Query,
             Self::Haptics(_) => ErrorKind::Haptics,
+            Self::Device(_) => ErrorKind::Device,
             Self::Mesh(_) => ErrorKind::Mesh,
             #[cfg(feature = "mesh-files")]
             Self::MeshFile(_) => ErrorKind::Mesh,
@@ -145,14 +163,20 @@ impl Error {
             },
             #[cfg(feature = "plot")]
             Self::Plot(_) => ErrorKind::Plot,
+            #[cfg(feature = "render")]
+            Self::Render(_) => ErrorKind::Plot,
             Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
+            #[cfg(feature = "std-loop")]
+            Self::Start(_) => ErrorKind::Thread,
             #[cfg(feature = "std-loop")]
             Self::Run(palpate_loop::RunError::DeviceLost(_)) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
             Self::Run(_) => ErrorKind::Panicked,
             #[cfg(feature = "local")]
             Self::UnknownMethod(_) => ErrorKind::UnknownName,
+            #[cfg(feature = "local")]
+            Self::Weights(_) => ErrorKind::Query,
             Self::File(_) => ErrorKind::File,
         }
     }
@@ -165,9 +189,8 @@ impl Error {
                 ShapeError::Number { parameter, .. } | ShapeError::Count { parameter, .. },
             ) => Some(parameter),
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { parameter, .. })) => {
-                    Some(parameter)
-                }
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.parameter),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     limit, ..
                 })) => Some(limit),
@@ -187,7 +210,8 @@ impl Error {
                 Some(rule)
             }
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { rule, .. })) => Some(rule),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.rule),
                 _ => None,
             },
         }
@@ -200,7 +224,8 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.0),
             Some(ShapeError::Count { count, .. }) => Some(*count as f64),
             _ => match self {
-                Self::Haptics(HapticsError::Number(NumberError { value, .. })) => Some(*value),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.value),
                 Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
                     device,
                     ..
@@ -222,10 +247,11 @@ impl Error {
             Some(ShapeError::Number { value, .. }) => Some(value.1.symbol()),
             Some(ShapeError::Count { .. }) => Some(""),
             _ => match self {
-                Self::Haptics(
-                    HapticsError::Number(NumberError { unit, .. })
-                    | HapticsError::Safety(SafetyError::OtherDevice { unit, .. }),
-                ) => Some(unit),
+                Self::Haptics(HapticsError::Number(error))
+                | Self::Device(DeviceError::Number(error)) => Some(error.unit),
+                Self::Haptics(HapticsError::Safety(SafetyError::OtherDevice {
+                    unit, ..
+                })) => Some(unit),
                 Self::Query(
                     QueryError::Coordinate { .. }
                     | QueryError::Setting { .. }
@@ -282,6 +308,16 @@ impl Error {
 impl From<SafetyError> for Error {
     fn from(error: SafetyError) -> Self {
         Self::Haptics(error.into())
+    }
+}
+
+#[cfg(feature = "std-loop")]
+impl From<palpate_loop::StartError> for Error {
+    fn from(error: palpate_loop::StartError) -> Self {
+        match error {
+            palpate_loop::StartError::Haptics(error) => Self::Haptics(error),
+            error => Self::Start(error),
+        }
     }
 }
 

@@ -6,8 +6,8 @@
 //! This crate re-exports the crates of palpate: the [`field`]s and their
 //! promises, [`query`] for where things touch, [`local`] searches of the literature, [`mesh`]es,
 //! the [`haptics`] proxy and servo with its safety chain, the [`servo_loop`] that runs it
-//! (`palpate-loop`), [`devices`] to touch with, [`vibration`], [`scene`] files, [`plot`]s. The
-//! [`prelude`] has what most programs need.
+//! (`palpate-loop`), [`devices`] to touch with, [`vibration`], [`scene`] files, [`plot`]s
+//! and lit pictures ([`render`]). The [`prelude`] has what most programs need.
 //!
 //! # Examples
 //!
@@ -27,7 +27,7 @@
 //! let touch = query.manifold(&plate, &ball)?;
 //! assert_eq!(touch.contacts.len(), 1);
 //!
-//! let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
+//! let hand = Hand::resting([0.0, 0.05, 0.0])?;
 //! let mut device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
 //! let mut servo = Servo::for_device([Body::new(plate, Material::wood())?], &device)?;
 //! let report = servo.run(&mut device, Seconds(0.01))?.unless_failed()?; // in real time
@@ -39,7 +39,7 @@
 //! # Features
 //!
 //! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `parallel` shares batches and worlds
-//! among threads; `plot` draws; `scene` reads and writes scene files; `serde` implements serde's
+//! among threads; `plot` draws; `render` renders; `scene` reads and writes scene files; `serde` implements serde's
 //! traits for plain data; `std-loop` runs servos on the machine's clock and in threads; `vibration`
 //! makes commands for motors and audio. Off by default: `local` has local searches from the
 //! literature, without bounds; `mint` and `glam` convert vectors and poses.
@@ -59,6 +59,8 @@ pub use palpate_mesh as mesh;
 #[cfg(feature = "plot")]
 pub use palpate_plot as plot;
 pub use palpate_query as query;
+#[cfg(feature = "render")]
+pub use palpate_render as render;
 #[cfg(feature = "scene")]
 pub use palpate_scene as scene;
 #[cfg(feature = "vibration")]

@@ -14,7 +14,7 @@ fn plate() -> Result<Shape<3>, Error> {
 }
 
 fn device() -> Result<SimulatedDevice<3>, Error> {
-    let hand = Hand::resting([0.0, 0.05, 0.0].into())?;
+    let hand = Hand::resting([0.0, 0.05, 0.0])?;
     Ok(SimulatedDevice::new(profile_named("omega")?, vec![hand])?)
 }
 
@@ -70,7 +70,7 @@ fn parry_and_rapier() -> Outcome {
     use palpate::query::{ManifoldSettings, Placed, World};
     use palpate::query::{Ray, WorldSettings};
     let plate = Shape::cuboid([0.2, 0.02, 0.2])?;
-    let pose = Pose::translation([0.0, 0.0595, 0.0].into());
+    let pose = Pose::translation([0.0, 0.0595, 0.0]);
     let ball = Shape::sphere(0.05)?;
     let (a, b) = (Placed::new(&plate, Pose::identity()), Placed::new(&ball, pose));
     let _ = Placed::new(&plate, pose);
@@ -80,8 +80,7 @@ fn parry_and_rapier() -> Outcome {
     let _ = ManifoldSettings::of_size(0.1).with_margin(0.001);
     let contact = query.manifold(a, b)?.contacts[0];
     assert_eq!(contact.id, 0);
-    let (shape, ray) =
-        (ball.clone(), Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into(), 2.0)?);
+    let (shape, ray) = (ball.clone(), Ray::new([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 2.0)?);
     assert!(query.cast_ray(&shape, &ray)?.best.is_some());
     let mut world = World::new(WorldSettings::of_size(0.1))?;
     world.add(plate.clone(), Pose::identity())?;
@@ -96,7 +95,7 @@ fn box2d() -> Outcome {
     use palpate::query::{Limits, PairWorkspace, Tolerance, Track};
     let mut track =
         Track::new(Shape::rectangle([0.2, 0.1])?.offset(0.01)?, Shape::circle(0.1)?);
-    let poses = [Pose::identity(), Pose::translation([0.0, 0.155].into())];
+    let poses = [Pose::identity(), Pose::translation([0.0, 0.155])];
     let (limits, mut workspace) = (Limits::new(1e-4), PairWorkspace::new());
     let answer = track.separation(poses, &limits, &mut workspace)?;
     let [a, b] = track.shapes();

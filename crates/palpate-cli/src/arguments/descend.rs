@@ -13,13 +13,14 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99
   palpate descend scenes/memoir_star.json --triangle 1.35,1.1 1.8,0.45 1.0,0.99 \\
-    --method frank_wolfe --plot descent.png
+    --method naive --alpha 0.1 --mu 0.1 --start 0.2,0.2,0.6 --plot descent.png
   palpate descend scenes/s3.json --segment -1,0,0 1,0.2,0.1 --method golden_section --json
   palpate descend scenes/memoir_two_bodies.json --start -0.2,0.5 --start 0.15,0.4
 
-With --start the search is for a point inside the first two bodies of the scene. A local
-search finds an upper bound of the least value and proves nothing; the answer says by how
-much the search missed the proven minimum.";
+Without --triangle and --segment the search is for a point inside the first two bodies of the
+scene, from each --start. A local search finds an upper bound of the least value and proves
+nothing; the answer says by how much it missed the proven minimum, where it ended, what both
+searches cost, and whether the circles around the element exclude it.";
 
 /// The options of `palpate descend`.
 #[derive(Args, Debug)]
@@ -38,19 +39,30 @@ pub(crate) struct DescendOptions {
         allow_hyphen_values = true
     )]
     pub(crate) segment: Vec<String>,
-    /// Where a search between two bodies starts [m]; may be given more than once.
-    #[arg(
-        long,
-        value_name = "POINT",
-        conflicts_with_all = ["triangle", "segment"],
-        allow_hyphen_values = true
-    )]
+    /// Where the search starts. Over a triangle or a segment: the barycentric weights of its
+    /// corners, u,v,w or u,v, whose sum is 1; the method's own start if left out. Between bodies:
+    /// a point [m]; may be given more than once.
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     pub(crate) start: Vec<String>,
-    /// The search: projected_gradient, frank_wolfe or golden_section over an element,
-    /// alternating_projection or minimax_proximal between bodies; the first of these if left
-    /// out.
+    /// The search: projected_gradient, frank_wolfe, golden_section or naive (the memoir's, as
+    /// printed) over an element, alternating_projection or minimax_proximal between bodies; the
+    /// first of these if left out.
     #[arg(long)]
     pub(crate) method: Option<String>,
+    /// The factor α of the steps of --method naive, α·max(f, µ); 0.1 if left out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) alpha: Option<f64>,
+    /// The least value µ in the steps of --method naive [m]; a tenth of the longest edge if left
+    /// out.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) mu: Option<f64>,
+    /// The number of steps of --method naive; 64 if left out.
+    #[arg(long)]
+    pub(crate) iterations: Option<u32>,
+    /// How --method naive finds gradients: dichotomy or adaptive_dichotomy (in the plane),
+    /// differences, closest_vector, exact; dichotomy if left out, in space differences.
+    #[arg(long)]
+    pub(crate) gradient: Option<String>,
     /// How far apart the proven bounds may be [m]; a ten-thousandth of the longest edge of the
     /// element or of the scene's box if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = length_or_zero)]

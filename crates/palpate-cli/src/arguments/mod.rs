@@ -10,11 +10,13 @@ mod devices;
 mod eval;
 mod feel;
 mod gallery;
+mod gradients;
 mod jitter;
 mod mass;
 mod mesh;
 mod numbers;
 mod plot;
+mod render;
 mod shapes;
 
 use clap::{Parser, Subcommand};
@@ -26,10 +28,12 @@ pub(crate) use devices::DevicesOptions;
 pub(crate) use eval::EvalOptions;
 pub(crate) use feel::{DeviceChoice, FeelOptions};
 pub(crate) use gallery::{Format, GalleryOptions, Plane};
+pub(crate) use gradients::GradientsOptions;
 pub(crate) use jitter::JitterOptions;
 pub(crate) use mass::MassOptions;
 pub(crate) use mesh::MeshOptions;
-pub(crate) use plot::{Map, PlotOptions};
+pub(crate) use plot::{Map, PlotMap, PlotOptions};
+pub(crate) use render::{RenderOptions, ShadowChoice};
 pub(crate) use shapes::{Dimension, ShapesOptions};
 
 const EXAMPLES: &str = "\
@@ -39,6 +43,7 @@ Examples:
   palpate eval scenes/s3.json --at 0.1,0.5,-0.2
   palpate eval scenes/s3.json --points points.csv > distances.csv
   palpate plot scenes/memoir_star.json --output star.svg
+  palpate render scenes/cup.json
   palpate check scenes/cup.json --json
 
 Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input cannot be used,
@@ -67,9 +72,15 @@ pub(crate) enum Command {
     /// proven minimum.
     #[command(after_help = descend::EXAMPLES)]
     Descend(DescendOptions),
-    /// Draw a scene on a plane, as SVG or PNG: isolines, gradients or promises.
+    /// Compare ways to the gradient of a field with the exact one.
+    #[command(after_help = gradients::EXAMPLES)]
+    Gradients(GradientsOptions),
+    /// Draw a scene on a plane, as SVG or PNG: isolines, gradients, promises or errors.
     #[command(after_help = plot::EXAMPLES)]
     Plot(PlotOptions),
+    /// Draw a scene in space, lit, as PNG; no surface is missed.
+    #[command(after_help = render::EXAMPLES)]
+    Render(RenderOptions),
     /// Draw every primitive and operator as small pictures on a few sheets.
     #[command(after_help = gallery::EXAMPLES)]
     Gallery(GalleryOptions),

@@ -47,6 +47,12 @@ impl<const D: usize> Touched<D> {
         Some((deepest.point_a + deepest.point_b) * 0.5)
     }
 
+    /// The contacts of bodies that touch, or may touch.
+    pub(crate) fn touching(&self) -> impl Iterator<Item = &Contact<D>> {
+        let pairs = self.pairs.iter().filter(|pair| pair.verdict != Verdict::Apart);
+        pairs.flat_map(|pair| &pair.contacts)
+    }
+
     /// How many pairs touch, and how many boxes the drawn proofs have.
     pub(crate) fn counts(&self) -> (usize, usize) {
         let touching = self.pairs.iter().filter(|pair| pair.verdict == Verdict::Touching);

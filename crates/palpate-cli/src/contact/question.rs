@@ -6,8 +6,8 @@
 use std::collections::BTreeSet;
 
 use palpate::query::{
-    Certified, Contact, Limits, ManifoldSettings, Nearest, Neighbours, PairWorkspace, Placed,
-    Proof, QueryError, Stop, Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, QueryError,
+    Stop, Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
@@ -55,7 +55,7 @@ impl Asked<'_> {
 impl Question {
     /// Lengths that the command line leaves out are shares of the smallest body.
     pub(crate) fn of<const D: usize>(asked: &ContactQuestion, scene: &BuiltScene<D>) -> Self {
-        let usual = ManifoldSettings::of_size(scene.smallest_size().unwrap_or(1.0));
+        let usual = scene.world_settings().manifold;
         let margin = asked.margin.unwrap_or(usual.margin);
         let spacing = asked.spacing.unwrap_or(usual.spacing);
         let tolerance = asked.tolerance.unwrap_or(0.5 * margin);
@@ -86,28 +86,29 @@ impl Question {
         let mut pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
         if asked.is_every {
             interrupt.heed();
+            let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
+            let is_left = |bodies: &[usize; 2]| asked.has(*bodies) && !known.contains(bodies);
             let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
-            self.add_apart(scene, asked, lower, interrupt, &mut pairs)?;
+            pairs.extend(self.apart(scene, is_left, lower, interrupt)?);
         }
         Ok(pairs)
     }
 
-    /// Adds the pairs that are not there yet, each with its separation and a `lower` bound of it
-    /// that is known.
-    fn add_apart<const D: usize>(
+    /// The pairs that are left, each with its separation and a `lower` bound of it that is known;
+    /// fewer if interrupted.
+    fn apart<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        asked: &Asked<'_>,
+        is_left: impl Fn(&[usize; 2]) -> bool,
         lower: impl Fn([usize; 2]) -> Result<f64, QueryError>,
         interrupt: &Interrupt,
-        pairs: &mut Vec<Pair<D>>,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<Pair<D>>, Failure> {
         let mut workspace = PairWorkspace::new();
-        let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
+        let mut pairs = Vec::new();
         let all = (0..scene.bodies.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
-        for bodies in all.filter(|pair| asked.has(*pair) && !known.contains(pair)) {
+        for bodies in all.filter(is_left) {
             if interrupt.is_asked() {
-                return Ok(());
+                return Ok(pairs);
             }
             let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
             let mut found = separation(a, b, &self.settings.limits, &mut workspace)
@@ -125,7 +126,7 @@ impl Question {
                 region_stop: Stop::Converged,
             });
         }
-        Ok(())
+        Ok(pairs)
     }
 
     /// The separation of two bodies with its proof.

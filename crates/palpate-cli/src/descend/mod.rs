@@ -4,31 +4,30 @@
 //! `palpate descend`: a local search over an element or between two bodies, compared with the
 //! proven minimum.
 
+mod circles;
+mod element;
+mod ending;
+mod figure;
 mod pair;
+mod search;
 
-use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use palpate::field::{Aabb, Point, Shape, Vector};
-use palpate::local::{Descent, ElementMethod, UnknownMethod};
-use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice, View};
-use palpate::query::{Certified, Element, ElementWorkspace, Limits, minimum};
+use palpate::field::{Aabb, Vector};
+use palpate::local::{Descent, UnknownMethod};
+use palpate::query::Limits;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::DescendOptions;
-use crate::input::{self, joined, promise_in_words};
+use crate::input;
 use crate::outcome::{Failure, Outcome};
-use crate::output::{self, Files};
-use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
-use crate::plot::title;
+use crate::output::Files;
+use crate::picture::{Dimensions, Drawable, Picture};
 
 /// How far apart the bounds of the minimum may be, as a share of the longest edge.
 const TOLERANCE: f64 = 1e-4;
-
-/// Room around an element in a picture, as a share of its longer side.
-const MARGIN: f64 = 0.35;
 
 pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
     let mut files = Files::reading([options.scene.as_path()]);
@@ -50,12 +49,12 @@ where
 {
     if options.start.is_empty() && options.triangle.is_empty() && options.segment.is_empty() {
         Err(nothing_asked(scene, &options.scene))
-    } else if !options.start.is_empty() {
-        pair::between(options, scene, picture)
-    } else if options.triangle.is_empty() {
-        descend(options, scene, picture, &element::<2, D>(&options.segment)?)
+    } else if !options.triangle.is_empty() {
+        element::descend::<3, D>(options, scene, picture, &options.triangle)
+    } else if !options.segment.is_empty() {
+        element::descend::<2, D>(options, scene, picture, &options.segment)
     } else {
-        descend(options, scene, picture, &element::<3, D>(&options.triangle)?)
+        pair::between(options, scene, picture)
     }
 }
 
@@ -73,59 +72,17 @@ fn nothing_asked<const D: usize>(scene: &BuiltScene<D>, path: &Path) -> Failure 
     ))
 }
 
-fn element<const N: usize, const D: usize>(
-    points: &[String],
-) -> Result<Element<N, D>, Failure> {
-    let mut vertices = [Vector::ZERO; N];
-    for (vertex, text) in vertices.iter_mut().zip(points) {
-        *vertex = input::point(text)?;
-    }
-    Element::new(vertices).map_err(Failure::input)
-}
-
-/// The result of a local search over an element, and the proven minimum.
-struct Answer<const D: usize> {
-    method: ElementMethod,
-    found: Descent<D>,
-    certified: Certified<Point<D>>,
-}
-
-fn descend<const N: usize, const D: usize>(
-    options: &DescendOptions,
-    scene: &BuiltScene<D>,
-    picture: Option<&Picture>,
-    element: &Element<N, D>,
-) -> Result<Outcome, Failure>
+/// The requested method, or `first`. A method of the `Other` kind is named with what it needs.
+fn method<T, Other>(options: &DescendOptions, first: T, needs: &str) -> Result<T, Failure>
 where
-    Dimensions: Drawable<D>,
+    T: FromStr<Err = UnknownMethod>,
+    Other: FromStr,
 {
-    let edges = element.vertices().iter().zip(element.vertices().iter().skip(1));
-    let last = (element.vertices()[0] - element.vertices()[N - 1]).norm();
-    let longest = edges.fold(last, |longest, (a, b)| longest.max((*a - *b).norm()));
-    let limits = limits(options.tolerance, longest);
-    let method = method(options, ElementMethod::ProjectedGradient)?;
-    let answer = Answer {
-        method,
-        found: method.descend(&scene.whole, element),
-        certified: minimum(&scene.whole, element, &limits, &mut ElementWorkspace::new())
-            .map_err(Failure::input)?,
-    };
-    answer.print(options.json)?;
-    if let Some(picture) = picture {
-        let figure = figure(&scene.whole, element, &answer, &options.scene);
-        picture.save(&figure.map_err(Failure::input)?, picture::WIDTH)?;
+    let Some(name) = options.method.as_deref() else { return Ok(first) };
+    if name.parse::<Other>().is_ok() {
+        return Err(Failure::input(format!("--method {name} {needs}")));
     }
-    Ok(Outcome::Yes)
-}
-
-/// The requested method, or `first`.
-fn method<T: FromStr<Err = UnknownMethod>>(
-    options: &DescendOptions,
-    first: T,
-) -> Result<T, Failure> {
-    let name = options.method.as_deref();
-    name.map_or(Ok(first), str::parse)
-        .map_err(|error| Failure::input(format!("--method: {error}")))
+    name.parse().map_err(|error| Failure::input(format!("--method: {error}")))
 }
 
 /// The limits of the search with a proof, over something of this size [m].
@@ -152,95 +109,4 @@ fn written(length: f64) -> String {
     // Adding zero turns −0 into 0.
     let rounded = (length * ROUND).round() / ROUND + 0.0;
     format!("{rounded:.5} m").replace('-', "−")
-}
-
-impl<const D: usize> Answer<D> {
-    /// How much lower than the found value some point is at least [m]; zero if no lower point
-    /// is proven.
-    fn missed_by(&self) -> f64 {
-        (self.found.value - self.certified.upper).max(0.0)
-    }
-
-    fn print(&self, as_json: bool) -> Result<(), Failure> {
-        let Self { method, found, certified } = self;
-        let mut out = output::answer();
-        if as_json {
-            let mut answer = described(found);
-            answer["method"] = method.name().into();
-            answer["missed_by_m"] = self.missed_by().into();
-            answer["certified"] = json!({
-                "best_point_m": certified.best.0.to_vec(),
-                "lower_m": certified.lower,
-                "upper_m": certified.upper,
-                "evaluations": certified.evaluations,
-            });
-            out.json(&answer)?;
-            return Ok(());
-        }
-        writeln!(out, "method       {method}")?;
-        writeln!(out, "best point   {} m", joined(&found.best.0))?;
-        writeln!(out, "value        {} m, an upper bound", found.value)?;
-        writeln!(out, "steps        {} ({} evaluations)", found.steps, found.evaluations)?;
-        let bounds = joined(&[certified.lower, certified.upper]);
-        let evaluations = certified.evaluations;
-        writeln!(out, "proven       [{bounds}] m ({evaluations} evaluations)")?;
-        writeln!(out, "lowest at    {} m", joined(&certified.best.0))?;
-        writeln!(out, "missed by    {} m", self.missed_by())?;
-        Ok(())
-    }
-}
-
-/// The path over the isolines on the plane of the element.
-fn figure<const N: usize, const D: usize>(
-    shape: &Shape<D>,
-    element: &Element<N, D>,
-    answer: &Answer<D>,
-    scene: &Path,
-) -> Result<Figure, PlotError>
-where
-    Dimensions: Drawable<D>,
-{
-    let plane = plane(element)?;
-    let on_plane = |p: &Point<D>| plane.project(in_space(*p));
-    let corners = element.vertices().map(|vertex| on_plane(&vertex));
-    let (mut low, mut high) = (corners[0], corners[0]);
-    for corner in &corners {
-        for k in 0..2 {
-            low[k] = low[k].min(corner[k]);
-            high[k] = high[k].max(corner[k]);
-        }
-    }
-    let view = View::from_bounds(low, high, MARGIN)?;
-    let isolines = picture::isolines(shape, &plane, &view, Sampling::default())?;
-    let outline = corners.into_iter().chain([corners[0]]);
-    let what = if N == 2 { "segment" } else { "triangle" };
-    let Answer { method, found, certified } = answer;
-    let isolines = isolines
-        .with_polyline(Polyline::new(what, outline)?.faint())
-        .with_polyline(Polyline::new(method.name(), found.path.iter().map(on_plane))?)
-        .with_markers(Markers::new("step", found.path.iter().skip(1).map(on_plane))?)
-        .with_markers(Markers::new("start", found.path.first().map(on_plane))?)
-        .with_markers(Markers::new("best found", [on_plane(&found.best)])?)
-        .with_markers(Markers::new("proven minimum", [on_plane(&certified.best)])?);
-    let [value, lower, upper] = [found.value, certified.lower, certified.upper].map(written);
-    let promise = promise_in_words(shape.promise());
-    let caption = format!("{promise}. Found: {value}; proven: {lower} to {upper}.");
-    Ok(Figure::new(title(scene)).with_caption(caption).with_isolines(isolines))
-}
-
-/// The plane of the element, with its first edge to the right. If the element lies on a line,
-/// one of the planes through the line.
-fn plane<const N: usize, const D: usize>(element: &Element<N, D>) -> Result<Slice, PlotError> {
-    if D < 3 {
-        return Ok(Slice::planar());
-    }
-    let vertices = element.vertices().map(in_space);
-    let [origin, .., last] = vertices.as_slice() else { return Slice::xy(0.0) };
-    let way = |to: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| to[k] - origin[k]) };
-    let [first, second] = [way(&vertices[1]), way(last)];
-    // On a line, up is y, or z if the line is along y; an edge of no length is passed over.
-    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let ways = [(first, second), (first, y), (first, z), (second, y), (second, z)];
-    let slices = ways.map(|(right, up)| Slice::free(*origin, right, up));
-    slices.into_iter().find_map(Result::ok).map_or_else(|| Slice::free(*origin, x, y), Ok)
 }

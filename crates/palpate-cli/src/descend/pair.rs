@@ -7,15 +7,16 @@ use std::io::Write;
 use std::path::Path;
 
 use palpate::field::{Aabb, Point};
-use palpate::local::{Descent, PairMethod};
+use palpate::local::{Descent, ElementMethod, PairMethod};
 use palpate::plot::{Figure, Markers, PlotError, Polyline, Sampling, Slice};
 use palpate::query::{Certified, Nearest, PairWorkspace, separation};
 use palpate::scene::BuiltScene;
 use serde_json::json;
 
+use super::search::refuse_naive;
 use super::{described, limits, method, written};
 use crate::arguments::DescendOptions;
-use crate::input::{self, joined};
+use crate::input::{self, joined, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
@@ -45,10 +46,11 @@ where
         return Err(Failure::input(problem));
     };
     let bounds = input::bounds(scene)?;
-    let half = bounds.half_extents().0;
-    let limits =
-        limits(options.tolerance, half.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x)));
-    let method = method(options, PairMethod::AlternatingProjection)?;
+    let limits = limits(options.tolerance, longest_edge(&bounds));
+    refuse_naive(options)?;
+    let needs = "searches over an element: give --triangle or --segment";
+    let first = PairMethod::AlternatingProjection;
+    let method = method::<_, ElementMethod>(options, first, needs)?;
     let mut found = Vec::new();
     for start in &options.start {
         let start = input::point(start)?;

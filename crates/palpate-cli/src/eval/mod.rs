@@ -4,11 +4,12 @@
 //! `palpate eval`: evaluates a scene at points.
 
 mod answer;
+mod ball;
 mod stream;
 
 use std::io::Write;
 
-use palpate::query;
+use palpate::query::{self, BallWorkspace};
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::EvalOptions;
@@ -16,6 +17,7 @@ use crate::input::{self, promise_in_words};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
+use ball::Balls;
 
 pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
@@ -42,8 +44,10 @@ fn evaluate<const D: usize>(
     destination: &Destination,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
+    let balls = options.radius.map(|radius| Balls::of(scene, radius)).transpose()?;
     if let Some(points) = &options.points {
-        return stream::run(&scene.whole, points, options, destination, interrupt);
+        let job = stream::Job { shape: &scene.whole, points, balls };
+        return job.run(options, destination, interrupt);
     }
     let Some(at) = &options.at else {
         let example = input::example_point(scene);
@@ -53,12 +57,16 @@ fn evaluate<const D: usize>(
     };
     let point = input::point::<D>(at)?;
     let answer = query::evaluate_point(&scene.whole, point).map_err(Failure::input)?;
+    let ball = balls.map(|balls| balls.ask(&answer, &mut BallWorkspace::new())).transpose()?;
     let mut out = output::answer();
     let promise = promise_in_words(scene.whole.promise());
     if options.json {
         let mut object = answer::to_json(&answer);
         object["promise"] = promise.into();
         object["lipschitz"] = scene.whole.promise().lipschitz.into();
+        if let Some(ball) = &ball {
+            object["ball"] = ball.to_json();
+        }
         out.json(&object)?;
     } else {
         writeln!(out, "distance       {} m", answer.distance)?;
@@ -70,6 +78,12 @@ fn evaluate<const D: usize>(
         writeln!(out, "inside         {}", if answer.is_inside { "yes" } else { "no" })?;
         writeln!(out, "safe radius    {} m", answer.safe_radius)?;
         writeln!(out, "promise        {promise}")?;
+        if let Some(ball) = &ball {
+            ball.print(&mut out)?;
+        }
     }
-    Ok(Outcome::Yes)
+    Ok(match ball.map(|ball| ball.meets()) {
+        None | Some(Some(true)) => Outcome::Yes,
+        Some(_) => Outcome::No,
+    })
 }

@@ -4,61 +4,68 @@
 //! Many points from a file, in bounded memory and on all cores.
 
 use std::io::Write;
-use std::num::NonZero;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{BLOCK, Block, Gradients, Point, Shape, Vector};
-use palpate::query::AtPoint;
+use palpate::query::{AtPoint, BallWorkspace};
 use rayon::prelude::*;
 
 use super::answer;
+use super::ball::{Ball, Balls};
 use crate::arguments::EvalOptions;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination};
 use crate::table::{Table, coordinates};
+use crate::threads;
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
 /// enough to stay in their caches.
 const BATCH: usize = 64 * 1024;
 
-pub(crate) fn run<const D: usize>(
-    shape: &Shape<D>,
-    points: &Path,
-    options: &EvalOptions,
-    destination: &Destination,
-    interrupt: &Interrupt,
-) -> Result<Outcome, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(options.threads)).build();
-    let pool = pool.map_err(Failure::input)?;
-    let stream = Stream { shape, points, as_json: options.json, pool, interrupt };
-    let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
-    let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
-    if outcome == Outcome::Interrupted {
-        let place = destination.part().map_or_else(String::new, |part| {
-            format!("; their answers are in {}", part.display())
-        });
-        output::remark(format_args!("interrupted after {done} points{place}"));
-    }
-    Ok(outcome)
+/// Points read before balls around them are asked about: a search may be ten thousand times as
+/// long as an evaluation, and an interrupted run ends after a batch.
+const BATCH_OF_BALLS: usize = 1024;
+
+/// What is asked about the points of a file.
+pub(super) struct Job<'a, const D: usize> {
+    pub(super) shape: &'a Shape<D>,
+    /// The file.
+    pub(super) points: &'a Path,
+    /// The balls around the points, if they are asked about too.
+    pub(super) balls: Option<Balls<'a, D>>,
 }
 
-/// The requested number of threads, but no more than the machine runs at once: further ones
-/// would wait, each with a batch in memory.
-fn threads(asked: Option<usize>) -> usize {
-    let most = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let asked = asked.unwrap_or(most);
-    if asked > most {
-        output::remark(format_args!("--threads {asked}: this machine runs {most} at once"));
+impl<const D: usize> Job<'_, D> {
+    pub(super) fn run(
+        self,
+        options: &EvalOptions,
+        destination: &Destination,
+        interrupt: &Interrupt,
+    ) -> Result<Outcome, Failure> {
+        let pool = threads::pool(options.threads)?;
+        let stream = Stream { job: self, as_json: options.json, pool, interrupt };
+        let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
+        let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
+        if outcome == Outcome::Interrupted {
+            let place = destination.part().map_or_else(String::new, |part| {
+                format!("; their answers are in {}", part.display())
+            });
+            output::remark(format_args!("interrupted after {done} points{place}"));
+        }
+        Ok(outcome)
     }
-    asked.min(most)
+
+    /// How many points are read at once.
+    fn batch(&self) -> usize {
+        if self.balls.is_some() { BATCH_OF_BALLS } else { BATCH }
+    }
 }
 
 /// A file of points, and how they are evaluated.
 struct Stream<'a, const D: usize> {
-    shape: &'a Shape<D>,
-    points: &'a Path,
+    job: Job<'a, D>,
     as_json: bool,
     pool: rayon::ThreadPool,
     interrupt: &'a Interrupt,
@@ -68,15 +75,19 @@ impl<const D: usize> Stream<'_, D> {
     /// Writes the answers, batch by batch, and returns for how many points. An interrupted run
     /// ends after a whole row.
     fn evaluate(&self, out: &mut dyn Write) -> Result<(Outcome, usize), Failure> {
-        let mut table = Table::open(self.points)?;
+        let mut table = Table::open(self.job.points)?;
         let columns = coordinates::<D>(&table, &format!("a point in {D}D"), &[])?;
-        let size = std::fs::metadata(self.points).map_or(0, |metadata| metadata.len());
+        let size = std::fs::metadata(self.job.points).map_or(0, |metadata| metadata.len());
         let bar = bar(size);
         self.interrupt.heed();
         if !self.as_json {
-            writeln!(out, "{}", answer::header::<D>().join(","))?;
+            let mut header = answer::header::<D>();
+            if self.job.balls.is_some() {
+                header.extend(Ball::<D>::header());
+            }
+            writeln!(out, "{}", header.join(","))?;
         }
-        let mut batch: Vec<Point<D>> = Vec::with_capacity(BATCH);
+        let mut batch: Vec<Point<D>> = Vec::with_capacity(self.job.batch());
         let mut done = 0;
         loop {
             // Flushed, so that a reader of a pipe sees every finished batch.
@@ -97,9 +108,13 @@ impl<const D: usize> Stream<'_, D> {
                 return Ok((Outcome::Yes, done));
             }
             let texts: Vec<String> = self.pool.install(|| {
-                let answers = |points| answers(self.shape, points, self.as_json);
-                batch.par_chunks(BLOCK).map(answers).collect()
-            });
+                let workspace = || self.job.balls.map(|_| BallWorkspace::new());
+                let blocks =
+                    batch.par_chunks(BLOCK).map_init(workspace, |workspace, points| {
+                        self.job.answers(points, self.as_json, workspace.as_mut())
+                    });
+                blocks.collect::<Result<_, _>>()
+            })?;
             for text in texts {
                 out.write_all(text.as_bytes())?;
             }
@@ -117,7 +132,7 @@ impl<const D: usize> Stream<'_, D> {
         batch: &mut Vec<Point<D>>,
     ) -> Result<(), Failure> {
         batch.clear();
-        while batch.len() < BATCH && !self.interrupt.is_asked() && table.advance()? {
+        while batch.len() < self.job.batch() && !self.interrupt.is_asked() && table.advance()? {
             let mut point = Vector::ZERO;
             for (axis, column) in columns.iter().enumerate() {
                 point[axis] = table.number(*column).unwrap_or_default();
@@ -136,25 +151,46 @@ fn bar(size: u64) -> ProgressBar {
     )
 }
 
-/// The lines for up to a block of points. A point's line depends only on the point, so any
-/// number of threads writes the same bytes.
-fn answers<const D: usize>(shape: &Shape<D>, points: &[Point<D>], as_json: bool) -> String {
-    let mut block = Block::<f64, D, BLOCK>::zero();
-    let mut found = Gradients::<f64, D, BLOCK>::zero();
-    for (i, point) in points.iter().enumerate() {
-        block.set(i, *point);
-    }
-    shape.block_gradients(&block, points.len(), &mut found);
-    let mut text = String::new();
-    for (i, point) in points.iter().enumerate() {
-        let slope = (found.distance.get(i), found.gradient.get(i));
-        let answer = AtPoint::of_slope(shape, *point, slope);
-        if as_json {
-            text.push_str(&answer::to_json(&answer).to_string());
-        } else {
-            text.push_str(&answer::row(&answer).join(","));
+impl<const D: usize> Job<'_, D> {
+    /// The lines for up to a block of points. A point's line depends only on the point, so any
+    /// number of threads writes the same bytes.
+    fn answers(
+        &self,
+        points: &[Point<D>],
+        as_json: bool,
+        mut workspace: Option<&mut BallWorkspace<D>>,
+    ) -> Result<String, Failure> {
+        let mut block = Block::<f64, D, BLOCK>::zero();
+        let mut found = Gradients::<f64, D, BLOCK>::zero();
+        for (i, point) in points.iter().enumerate() {
+            block.set(i, *point);
         }
-        text.push('\n');
+        self.shape.block_gradients(&block, points.len(), &mut found);
+        let mut text = String::new();
+        for (i, point) in points.iter().enumerate() {
+            let (distance, gradient) = (found.distance.get(i), found.gradient.get(i));
+            let answer = AtPoint::of_slope(self.shape, *point, distance, gradient);
+            let ball = match (&self.balls, workspace.as_deref_mut()) {
+                (Some(balls), Some(workspace)) => Some(balls.ask(&answer, workspace)?),
+                _ => None,
+            };
+            text.push_str(&line(&answer, ball.as_ref(), as_json));
+            text.push('\n');
+        }
+        Ok(text)
     }
-    text
+}
+
+/// The answer for a point, and for the ball around it if that is asked about.
+fn line<const D: usize>(answer: &AtPoint<D>, ball: Option<&Ball<D>>, as_json: bool) -> String {
+    if as_json {
+        let mut object = answer::to_json(answer);
+        if let Some(ball) = ball {
+            object["ball"] = ball.to_json();
+        }
+        return object.to_string();
+    }
+    let mut row = answer::row(answer);
+    row.extend(ball.map(Ball::row).unwrap_or_default());
+    row.join(",")
 }

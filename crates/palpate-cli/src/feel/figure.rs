@@ -13,6 +13,7 @@ use palpate::plot::{
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, TraceRow};
 
+use super::moved;
 use super::nearness::{Pieces, Seen, Side, side, taken_apart};
 use super::slices::{FeltSlice, felt_slices};
 use crate::input::{self, promise_in_words};
@@ -57,7 +58,9 @@ where
     // The unit box stands for a scene without bounds.
     let bounds = input::bounds(scene).unwrap_or_else(|_| Aabb::centred(Vector::constant(0.5)));
     let rows = recorder.rows();
-    let bounds = with_tools(bounds, rows);
+    let end = rows.last().map_or(0.0, |row| row.time_s);
+    let moved = moved::bounds(scene, end);
+    let bounds = with_tools(moved.map_or(bounds, |moved| bounds.union(&moved)), rows);
     let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last + 1);
     let of_point = |point| rows.iter().filter(|row| row.point == point).collect::<Vec<_>>();
     let together = count == 1 || count > MOST_CONTACTS;
@@ -75,6 +78,7 @@ where
         let isolines =
             picture::isolines(&scene.whole, &slice.plane, &view, Sampling::default())?;
         let isolines = isolines.with_title(&slice.heading);
+        let isolines = moved::drawn_over(isolines, scene, &slice.plane, &view, end)?;
         let spacing = ARROW_SPACING * (view.width() * view.height()).sqrt();
         views.push(overlaid(isolines, slice, &contacts, spacing)?);
     }

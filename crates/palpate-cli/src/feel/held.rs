@@ -4,8 +4,8 @@
 //! The device that the hand holds, and its workspace.
 
 use palpate::devices::HandPath;
-use palpate::devices::{Device, Glove, Hand, RecordedDevice, SimulatedDevice};
-use palpate::haptics::{HapticsError, WorkspaceMap};
+use palpate::devices::{Device, DeviceError, Glove, Hand, RecordedDevice, SimulatedDevice};
+use palpate::haptics::WorkspaceMap;
 use palpate::scene::BuiltScene;
 
 use super::tool::Held;
@@ -32,16 +32,17 @@ pub(super) fn map<const D: usize>(
 /// hand over time, for a device with rotation.
 pub(super) fn device<const D: usize>(
     choice: &DeviceChoice,
-    (paths, turns): (Vec<HandPath<D>>, Option<HandPath<3>>),
+    paths: &[HandPath<D>],
+    turns: Option<&HandPath<3>>,
     map: &WorkspaceMap<D>,
-) -> Result<Box<dyn Device<D> + Send>, HapticsError> {
+) -> Result<Box<dyn Device<D> + Send>, DeviceError> {
     let paths = paths.iter().map(|path| path.mapped(|point| map.point_to_device(point)));
     let paths = paths.collect::<Result<Vec<_>, _>>()?;
     Ok(match choice {
         DeviceChoice::Recorded => Box::new(RecordedDevice::new(paths)?),
         DeviceChoice::Glove => Box::new(Glove::new(paths)?),
         DeviceChoice::Simulated(profile) => {
-            let hand = |path| match &turns {
+            let hand = |path| match turns {
                 Some(turns) => Hand::new(path).with_turns(turns.clone()),
                 None => Hand::new(path),
             };

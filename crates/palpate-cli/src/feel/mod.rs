@@ -5,6 +5,7 @@
 
 mod figure;
 mod held;
+mod moved;
 mod nearness;
 mod outputs;
 mod report;
@@ -17,8 +18,8 @@ use std::time::Duration;
 
 use palpate::devices::profile_named;
 use palpate::devices::{HandPath, Interpolation, Tour};
-use palpate::field::Vector;
-use palpate::haptics::{Acceptance, Probe, Progress, ToolOptions};
+use palpate::field::{Pose, Vector};
+use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
@@ -83,7 +84,7 @@ where
         }
     };
     check_forces(&choice, options)?;
-    let scene = &asked(scene, options);
+    let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     // Checked before a path of that length is made.
     ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let tool = tool::of_scene(scene, options)?;
@@ -101,7 +102,8 @@ where
         _ => None,
     };
     let map = held::map(scene, tool.as_ref(), &choice)?;
-    let mut device = held::device(&choice, (paths, turns), &map).map_err(Failure::input)?;
+    let device = held::device(&choice, &paths, turns.as_ref(), &map);
+    let mut device = device.map_err(Failure::input)?;
     let acceptance = if options.strict { Acceptance::Strict } else { Acceptance::Scaled };
     let settings = ServoSettings::default().with_rate(options.rate).with_acceptance(acceptance);
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
@@ -127,6 +129,12 @@ where
         .with_interrupt(interrupt.flag());
     if keeps_rows {
         run_options = run_options.with_recorder(&mut recorder);
+    }
+    let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<D>)| {
+        scene.moving().for_each(|body| set_pose(body, scene.pose_at(body, time)));
+    };
+    if !scene.motions.is_empty() {
+        run_options = run_options.with_motion(&mut motion);
     }
     if shows_line {
         run_options = run_options.with_watch(LIVE_EVERY, &mut show);
@@ -159,7 +167,7 @@ where
         _ if !outcome.is_released => Outcome::No,
         Ending::Finished => Outcome::Yes,
         Ending::Interrupted => Outcome::Interrupted,
-        Ending::DeviceLost { .. } | Ending::Panicked { .. } => Outcome::No,
+        _ => Outcome::No,
     })
 }
 
@@ -213,16 +221,10 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         material.damping = options.damping.unwrap_or(material.damping);
     }
     if options.radius.is_some() || options.max_force.is_some() {
-        let tool = scene.tool.get_or_insert_with(|| BuiltTool {
-            radius: Probe::default().radius(),
-            points: Vec::new(),
-            shape: None,
-            options: ToolOptions::default(),
-            max_force: None,
-        });
+        let radius = Probe::default().radius();
+        let tool = scene.tool.get_or_insert_with(|| BuiltTool::of_radius(radius));
         tool.radius = options.radius.unwrap_or(tool.radius);
-        tool.max_force = options.max_force.or(tool.max_force);
-        tool.options.max_force = options.max_force.unwrap_or(tool.options.max_force);
+        tool.options.max_force = options.max_force.or(tool.options.max_force);
     }
     scene
 }

@@ -53,7 +53,8 @@ impl Outputs {
     where
         Dimensions: Drawable<D>,
     {
-        let trace = self.trace.iter().map(|to| to.write(|out| trace::write(recorder, out)));
+        let trace =
+            self.trace.iter().map(|to| to.write(|out| trace::write(scene, recorder, out)));
         let wav = self.wav.iter().map(|to| vibration::write(scene, recorder, rate, to));
         let plot = self.plot.iter().map(|to| figure::draw(scene, recorder, title, to));
         Failure::any(trace.chain(wav).chain(plot))

@@ -76,7 +76,15 @@ impl<const D: usize> Felt<'_, D> {
         } else {
             json["bodies"] = self.bodies_json()?;
         }
+        if !self.scene.motions.is_empty() {
+            json["moving"] = self.moving().collect();
+        }
         Ok(json)
+    }
+
+    /// The names of the bodies that have motions.
+    fn moving(&self) -> impl Iterator<Item = &str> {
+        self.scene.moving().map(|body| self.scene.bodies[body].name.as_str())
     }
 
     /// The accepted stiffness and damping of each body.
@@ -119,6 +127,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
     writeln!(out, "  device         {}", device.name)?;
+    if !felt.scene.motions.is_empty() {
+        let moving: Vec<_> = felt.moving().map(|name| shown(name).to_string()).collect();
+        writeln!(out, "  moving         {}", moving.join(", "))?;
+    }
     match (&report.tool, accepted.split_first()) {
         (Some(_), Some((coupling, turning))) => {
             write_accepted(
@@ -140,10 +152,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         Ending::Interrupted => {
             writeln!(out, "  interrupted: this report covers the run until then")?
         }
-        Ending::DeviceLost { reason } => writeln!(out, "  the device was lost: {reason}")?,
-        Ending::Panicked { message } => {
-            writeln!(out, "  the servo panicked, zero forces were written: {message}")?;
-        }
+        ending => writeln!(out, "  {}", shown(&ending.to_string()))?,
     }
     if !report.is_released {
         writeln!(out, "  the device did not take the zero forces at the end")?;

@@ -136,23 +136,10 @@ mod tests {
     }
 
     fn contact(proxy: [f64; 3], normal: [f64; 3]) -> TraceRow<3> {
-        TraceRow {
-            time_s: 0.0,
-            point: 0,
-            device: Vector(proxy),
-            proxy: Vector(proxy),
-            wanted: Vector(normal),
-            force: Vector(normal),
-            normal: Vector(normal),
-            contact: true,
-            body: 0,
-            is_slipping: false,
-            energy: palpate::haptics::Energy::default(),
-            tool: None,
-            evaluations: 1,
-            cost_ns: 0,
-            lateness_ns: 0,
-        }
+        let mut row = TraceRow::free(0.0, 0, Vector(proxy));
+        (row.wanted, row.force, row.normal) = (Vector(normal), Vector(normal), Vector(normal));
+        row.contact = true;
+        row
     }
 
     fn headings(rows: &[TraceRow<3>]) -> Vec<String> {
@@ -164,7 +151,8 @@ mod tests {
     fn nothing_felt_is_sliced_in_the_middle() {
         let middle = ["From the front: slice at z = 0 m", "From above: slice at y = 0.15 m"];
         assert_eq!(headings(&[]), middle);
-        let free = TraceRow { contact: false, ..contact([0.1, 0.2, 0.04], [0.0, 1.0, 0.0]) };
+        let mut free = contact([0.1, 0.2, 0.04], [0.0, 1.0, 0.0]);
+        free.contact = false;
         assert_eq!(headings(&[free]), middle);
     }
 

@@ -5,6 +5,7 @@
 
 use std::io::Cursor;
 
+use palpate::field::Point;
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, TraceRow};
 use palpate::vibration::{
@@ -50,7 +51,21 @@ pub(super) fn write<const D: usize>(
     destination.write(|out| Ok(out.write_all(wav.get_ref())?))
 }
 
-/// The cue of a contact point in a tick.
+/// Where a body takes a point between two times [s].
+fn carried<const D: usize>(
+    scene: &BuiltScene<D>,
+    body: usize,
+    times: [f64; 2],
+    point: Point<D>,
+) -> Point<D> {
+    let [before, after] = times.map(|time| scene.pose_at(body, time));
+    if before == after {
+        return point;
+    }
+    after.transform_point(before.inverse().transform_point(point))
+}
+
+/// The cue of a contact point in a tick, which is felt relative to the body.
 fn cue<const D: usize>(
     scene: &BuiltScene<D>,
     row: &TraceRow<D>,
@@ -60,7 +75,10 @@ fn cue<const D: usize>(
     let Some(body) = scene.bodies.get(row.body as usize).filter(|_| row.contact) else {
         return Cue::default();
     };
-    let velocity = last.map_or(row.device * 0.0, |last| (row.device - last.device) * rate);
+    let velocity = last.map_or(row.device * 0.0, |last| {
+        let carried = carried(scene, row.body as usize, [last.time_s, row.time_s], last.device);
+        (row.device - carried) * rate
+    });
     let outward = velocity.dot(row.normal);
     Cue {
         depth: (row.proxy - row.device).norm(),

@@ -151,16 +151,12 @@ mod tests {
 
     fn loop_of(waiting: Waiting, is_raised: bool, us: [u64; 3]) -> Measured {
         let [p99_ns, p999_ns, max_ns] = us.map(|us| 1000 * us);
-        let times = Distribution {
-            count: 5000,
-            mean_ns: 0.0,
-            p50_ns: 0,
-            p99_ns,
-            p999_ns,
-            max_ns,
-            buckets: Vec::new(),
-        };
-        let lateness = Lateness { times: Some(times), missed: u64::from(max_ns > 1_000_000) };
+        let mut times = Distribution::default();
+        times.count = 5000;
+        (times.p99_ns, times.p999_ns, times.max_ns) = (p99_ns, p999_ns, max_ns);
+        let mut lateness = Lateness::default();
+        lateness.times = Some(times);
+        lateness.missed = u64::from(max_ns > 1_000_000);
         Measured { waiting, is_raised, lateness }
     }
 

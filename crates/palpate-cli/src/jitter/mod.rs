@@ -90,7 +90,7 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
     let mut measured = Vec::new();
     for is_raised in priorities {
         for waiting in Waiting::ALL {
-            let lateness = measure(waiting, *is_raised, (rate, share));
+            let lateness = measure(waiting, *is_raised, rate, share);
             let lateness = lateness.map_err(Failure::input)?;
             measured.push(Measured { waiting, is_raised: *is_raised, lateness });
         }
@@ -116,7 +116,8 @@ pub(crate) fn run(options: &JitterOptions) -> Result<Outcome, Failure> {
 fn measure(
     waiting: Waiting,
     is_raised: bool,
-    (rate, duration): (f64, f64),
+    rate: f64,
+    duration: f64,
 ) -> Result<Lateness, HapticsError> {
     in_thread(|| {
         let priority = if is_raised { raise_priority() } else { Priority::Normal };
@@ -154,7 +155,7 @@ fn write_text(
 ) -> std::fmt::Result {
     writeln!(out, "how late a loop of {rate} Hz wakes on this machine")?;
     for loop_measured in measured {
-        let Lateness { times, missed } = &loop_measured.lateness;
+        let Lateness { times, missed, .. } = &loop_measured.lateness;
         writeln!(out, "{}", loop_measured.title())?;
         let Some(times) = times else {
             writeln!(out, "  no tick: raise --duration")?;

@@ -38,6 +38,26 @@ pub(crate) fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// Runs a command that must fail with status 2, and checks what it says, to the letter.
+pub(crate) fn assert_refused(arguments: &[&str], said: &str) {
+    let output = palpate(arguments);
+    assert_eq!(errors(&output), format!("palpate: {said}\n"), "{arguments:?}");
+    assert_eq!((status(&output), text(&output).as_str()), (2, ""), "{arguments:?}");
+}
+
+/// A number of an answer.
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// A disc of this radius [m] about the origin, as a scene.
+pub(crate) fn disc(radius: f64) -> String {
+    format!(
+        r#"{{ "palpate": 1, "dimension": 2,
+          "bodies": [ {{ "name": "disc", "shape": {{ "ball": {{ "radius": {radius} }} }} }} ] }}"#
+    )
+}
+
 /// A folder of its own for a test's files.
 pub(crate) struct Folder(tempfile::TempDir);
 

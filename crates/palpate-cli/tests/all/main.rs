@@ -4,10 +4,16 @@
 //! The program as its users run it. One test program, so that it is linked once.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
+mod balls;
 mod common;
 mod contact;
+mod descents;
+mod error_maps;
+mod gradients;
 mod interrupted;
+mod memoir;
 mod messages;
+mod motions;
 mod outputs;
 mod pictures;
 mod program;

@@ -20,11 +20,13 @@ fn no_command_overwrites_its_input() {
     let points = folder.write("points.csv", POINTS);
     let hand = folder.write("hand.csv", "time_s,x_m,y_m,z_m\n0,0,1,0\n1,0,0.6,0\n");
     let other_name = format!("{}/./scene.svg", folder.name(""));
-    let commands: [&[&str]; 8] = [
+    let commands: [&[&str]; 10] = [
         &["eval", &scene, "--points", &points, "--output", &scene],
         &["eval", &scene, "--points", &points, "--output", &points],
         &["plot", &scene, "--output", &other_name],
         &["descend", &scene, "--segment", "-1,0,0", "1,0,0", "--plot", &scene],
+        &["gradients", &scene, "--at", "1,0,0", "--plot", &scene],
+        &["plot", "scenes/s1.json", "--map", "error", "--against", &scene, "--output", &scene],
         &["feel", &scene, "--fast", "--plot", &scene],
         &["feel", &scene, "--fast", "--path", &hand, "--trace", &hand],
         &["feel", &scene, "--fast", "--wav", &scene],

@@ -397,21 +397,3 @@ fn descend_between_bodies_finds_what_is_near_its_start() {
     assert_eq!(status(&one), 2);
     assert!(errors(&one).contains("two bodies or more, this has 1"));
 }
-
-/// As they stand in the guide, but for where pictures go.
-#[test]
-fn descents_of_the_guide_run() {
-    let folder = Folder::new();
-    let guide = include_str!("../../../../docs/guide/memoir.md");
-    let commands = guide.lines().filter_map(|line| line.strip_prefix("palpate descend "));
-    let mut count = 0;
-    for command in commands {
-        let (arguments, picture) = command.split_once(" --plot ").unwrap();
-        let arguments: Vec<_> = arguments.split(' ').collect();
-        let plot = folder.name(picture);
-        let output = palpate(&[&["descend"], &arguments[..], &["--plot", &plot]].concat());
-        assert_eq!(status(&output), 0, "{command}: {}", errors(&output));
-        count += 1;
-    }
-    assert!(count > 0, "the guide has no descents");
-}

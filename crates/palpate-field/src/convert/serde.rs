@@ -79,37 +79,3 @@ impl<'de, const N: usize> Deserialize<'de> for Rotation<N> {
         Self::from_rows(rows.map(|row| row.0)).map_err(D::Error::custom)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pose::Pose;
-    use crate::promise::Promise;
-    use crate::shape::Shape;
-
-    #[test]
-    fn poses_and_promises_are_read_back_to_the_bit() -> Result<(), Box<dyn std::error::Error>> {
-        let turn = Rotation::from_axis_angle(Vector([1.0, 2.0, -0.5]), 0.8)?;
-        let pose = Pose::new(turn * turn, Vector([0.1, 0.2, 0.3]));
-        let text = serde_json::to_string(&pose)?;
-        assert_eq!(serde_json::from_str::<Pose<3>>(&text)?, pose);
-        let promise = *Shape::torus(0.5, 0.1)?.placed(&pose)?.promise();
-        let text = serde_json::to_string(&promise)?;
-        assert_eq!(serde_json::from_str::<Promise<3>>(&text)?, promise);
-        Ok(())
-    }
-
-    #[test]
-    fn a_vector_is_a_list_of_its_components() -> Result<(), serde_json::Error> {
-        assert_eq!(serde_json::to_string(&Vector([0.5, -2.0]))?, "[0.5,-2.0]");
-        assert!(serde_json::from_str::<Vector<f64, 2>>("[1.0]").is_err());
-        assert!(serde_json::from_str::<Vector<f64, 2>>("[1.0,2.0,3.0]").is_err());
-        Ok(())
-    }
-
-    #[test]
-    fn what_is_no_rotation_is_not_read() {
-        assert!(serde_json::from_str::<Rotation<2>>("[[1.0,0.0],[0.0,1.0]]").is_ok());
-        assert!(serde_json::from_str::<Rotation<2>>("[[2.0,0.0],[0.0,2.0]]").is_err());
-    }
-}

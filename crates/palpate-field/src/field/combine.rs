@@ -62,11 +62,9 @@ impl<O: Combine + Clone, const D: usize> Combined<O, D> {
 #[inline(always)]
 fn differentiate<T: Float, O: Combine, const D: usize>(
     operation: &O,
-    (a, a_gradient): (T, Vector<T, D>),
-    (b, b_gradient): (T, Vector<T, D>),
+    a: Dual<T, D>,
+    b: Dual<T, D>,
 ) -> (T, Vector<T, D>) {
-    let a = Dual { value: a, gradient: a_gradient.0 };
-    let b = Dual { value: b, gradient: b_gradient.0 };
     let result = operation.combine(a, b);
     (result.value, Vector(result.gradient))
 }
@@ -87,7 +85,8 @@ impl<T: Float, O: Combine, const D: usize>
 {
     #[inline(always)]
     fn lane(&self, a: (T, Vector<T, D>), b: (T, Vector<T, D>)) -> (T, Vector<T, D>) {
-        differentiate(self.0, a, b)
+        let dual = |(value, gradient): (T, Vector<T, D>)| Dual { value, gradient: gradient.0 };
+        differentiate(self.0, dual(a), dual(b))
     }
 }
 
@@ -108,8 +107,11 @@ where
         let mut other = Vector([T::constant(0.0); D]);
         for child in &self.children[1..] {
             let value = child.distance_gradient(x, y, z, &mut other);
-            (distance, *gradient) =
-                differentiate(&self.operation, (distance, *gradient), (value, other));
+            (distance, *gradient) = differentiate(
+                &self.operation,
+                Dual { value: distance, gradient: gradient.0 },
+                Dual { value, gradient: other.0 },
+            );
         }
         distance
     }

@@ -137,8 +137,8 @@ pub trait Field<const D: usize>:
     /// How many transforms more an evaluation has if a motion is pushed into the field
     /// instead of wrapped around it.
     ///
-    /// A motion around a field is one transform more too, and one that everything below
-    /// waits for: operators take a motion where it adds at most that.
+    /// A wrapper costs one transform on the critical path, so an operator takes the motion if that
+    /// adds at most one.
     fn unplaced(&self) -> usize {
         1
     }

@@ -6,7 +6,7 @@
 mod primitive;
 
 mod ball;
-mod between;
+pub(crate) mod between;
 mod capsule;
 mod cuboid;
 mod ellipsoid;
@@ -152,6 +152,14 @@ fn gradient_apart<K: Kernel<D>, const D: usize>(
 /// differ by `t·NEARLY²/2`, which is less than a rounding.
 const NEARLY: f64 = 1e-8;
 
+/// How far out a normal is evaluated [m].
+struct Steps {
+    /// The rounding of a point.
+    unit: f64,
+    /// The farthest step.
+    far: f64,
+}
+
 /// A normal of a convex exact kernel next to `centre`, and by how much its plane through
 /// the `centre` may be too high [m].
 ///
@@ -171,9 +179,9 @@ const NEARLY: f64 = 1e-8;
 fn sure_normal<K: Kernel<D>, const D: usize>(
     kernel: &K,
     centre: Point<D>,
-    (distance, direction): (f64, Vector<f64, D>),
-    unit: f64,
-    far: f64,
+    distance: f64,
+    direction: Vector<f64, D>,
+    Steps { unit, far }: Steps,
 ) -> (Vector<f64, D>, f64) {
     // The normal a step out, and how far its plane is below the distance at the centre.
     let out = |step: f64, direction: Vector<f64, D>| {
@@ -213,7 +221,7 @@ pub(crate) fn tangent_model<K: Kernel<D>, const D: usize, const N: usize>(
         let far = 4.0 * (size + centre.norm() + radius);
         let unit = rounding.max(f64::EPSILON * far);
         let lost;
-        (normal, lost) = sure_normal(kernel, centre, (distance, normal), unit, far);
+        (normal, lost) = sure_normal(kernel, centre, distance, normal, Steps { unit, far });
         // The normal is evaluated at least four sizes out. There the `operations` of the
         // nearest point turn it by a quarter of their roundings, and its own by two more; the
         // plane moves accordingly at the ends of the cell.

@@ -19,7 +19,8 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
     /// # Panics
     ///
     /// If not so many lanes are written.
-    pub(crate) fn ball_around(&self, count: usize) -> BoundingBall<D> {
+    #[doc(hidden)]
+    pub fn ball_around(&self, count: usize) -> BoundingBall<D> {
         let mut low = [[f64::INFINITY; AT_ONCE]; D];
         let mut high = [[f64::NEG_INFINITY; AT_ONCE]; D];
         self.for_each_point(count, |j, p| {
@@ -63,51 +64,6 @@ impl<S: Lane, const D: usize, const W: usize> Block<S, D, W> {
             for j in 0..AT_ONCE {
                 look(j, point(first + j));
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::machine::SHORT;
-    use crate::scalar::Model;
-
-    /// Points along a spiral, of which no two are alike.
-    fn spiral(i: usize) -> Vector<f64, 2> {
-        let t = i as f64;
-        Vector([(0.5 + t) * t.cos(), (0.5 + t) * t.sin()])
-    }
-
-    #[test]
-    fn the_ball_touches_the_farthest_of_any_number_of_points() {
-        for count in 1..=SHORT {
-            let mut points = Block::<f64, 2, SHORT>::zero();
-            points.fill(count, spiral);
-            let ball = points.ball_around(count);
-            let distances = (0..count).map(|i| (spiral(i) - ball.centre).norm());
-            let farthest = distances.fold(0.0_f64, f64::max);
-            assert!(ball.radius >= farthest, "{count}: {ball:?} {farthest}");
-            assert!(ball.radius <= farthest * (1.0 + 1e-14), "{count}: {ball:?} {farthest}");
-        }
-    }
-
-    #[test]
-    fn points_past_the_count_do_not_matter() {
-        let mut points = Block::<f64, 2, SHORT>::zero();
-        points.set(0, Vector([3.0, 4.0]));
-        let ball = points.ball_around(1);
-        assert_eq!((ball.centre, ball.radius), (Vector([3.0, 4.0]), 0.0));
-    }
-
-    #[test]
-    fn cells_lie_in_it_whole() {
-        let mut cells = Block::<Model, 2, SHORT>::zero();
-        cells.fill(5, |i| Vector(Model::cell(spiral(i).0, [0.5, 0.25])));
-        let ball = cells.ball_around(5);
-        for i in 0..5 {
-            let corner = (spiral(i) - ball.centre).abs() + Vector([0.5, 0.25]);
-            assert!(corner.norm() <= ball.radius, "{i}: {ball:?}");
         }
     }
 }

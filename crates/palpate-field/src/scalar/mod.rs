@@ -15,11 +15,11 @@
 
 mod blend;
 mod dual;
-mod exponential;
+pub(crate) mod exponential;
 mod expression;
 mod float;
 mod model;
-mod power;
+pub(crate) mod power;
 mod recorded;
 mod trigonometry;
 

@@ -120,20 +120,3 @@ operator!(BitXor, bitxor, "What is in one alone", "symmetric_difference", |a, b|
     Self::symmetric_difference([a, b])
 });
 operator!(Sub, sub, "The first without the other", "difference", |a, b| a.difference([b]));
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn operators_of_rust_build_the_nodes_of_methods() -> Result<(), ShapeError> {
-        let (a, b) = (Shape::circle(0.5)?, Shape::rectangle([0.9, 0.7])?);
-        let pair = || [a.clone(), b.clone()];
-        assert_eq!(Shape::square(0.5)?, Shape::rectangle([0.5, 0.5])?);
-        assert_eq!(&a | &b, Shape::union(pair())?);
-        assert_eq!(a.clone() & &b, Shape::intersection(pair())?);
-        assert_eq!(&a ^ b.clone(), Shape::symmetric_difference(pair())?);
-        assert_eq!(a.clone() - b.clone(), a.difference([b])?);
-        Ok(())
-    }
-}

@@ -28,7 +28,7 @@ impl<const D: usize> Shape<D> {
     ///
     /// As [`placed`](Self::placed).
     pub fn translated(self, offset: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
-        self.placed(&Pose::translation(offset.into()))
+        self.placed(&Pose::translation(offset))
     }
 
     /// The shape turned about the origin.
@@ -59,19 +59,5 @@ impl<const D: usize> Shape<D> {
     /// If a factor is not positive, or shapes are nested too deeply.
     pub fn stretched(self, factors: impl Into<Vector<f64, D>>) -> Result<Self, ShapeError> {
         Self::from_node(Node::Stretched { factors: factors.into().0, of: self })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Ball;
-
-    #[test]
-    fn moves_of_a_leaf_become_one_node() -> Result<(), ShapeError> {
-        let ball = Shape::<2>::from_kernel(Ball::new(1.0)?);
-        let moved = ball.translated(Vector([1.0, 0.0]))?.rotated(Rotation::from_angle(1.0)?)?;
-        assert_eq!(moved.depth(), 1);
-        Ok(())
     }
 }

@@ -167,12 +167,7 @@ impl<const D: usize> Curve<D> {
 }
 
 fn too_many(count: usize, rule: &'static str) -> HapticsError {
-    HapticsError::Number(NumberError {
-        parameter: "points",
-        rule,
-        value: count as f64,
-        unit: "points",
-    })
+    HapticsError::Number(NumberError::new("points", rule, count as f64, "points"))
 }
 
 /// A ball around segments that follow one another.
@@ -185,4 +180,48 @@ fn ball_around<const D: usize>(segments: &[Segment<D>]) -> (Point<D>, f64) {
     let radius = ends().map(|end| (end - centre).norm()).fold(0.0, f64::max);
     // Enlarged, so that rounding cannot put a segment outside its ball.
     (centre, radius * (1.0 + 1e-12) + 1e-12 * centre.norm())
+}
+
+#[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
+mod tests {
+    use super::*;
+    use palpate_testkit::cases::each as cases;
+
+    #[test]
+    fn the_closest_point_of_a_long_curve_is_that_of_all_its_segments() {
+        let mut points = Vec::new();
+        for i in 0..1025 {
+            let angle = f64::from(i) * 0.05;
+            points.push(Vector([0.1 * angle.cos(), 1e-4 * f64::from(i), 0.1 * angle.sin()]));
+        }
+        let curve = Curve::polyline(&points).unwrap();
+        cases(300, |u| {
+            let mut coordinate = || u.int_in_range(-1000..=1000).map(|i| 1.5e-4 * f64::from(i));
+            let position = Vector([coordinate()?, coordinate()?, coordinate()?]);
+            let found = (curve.closest(position).point - position).norm();
+            let nearest = points.windows(2).map(|pair| {
+                let way = pair[1] - pair[0];
+                let part = (position - pair[0]).dot(way) / way.dot(way);
+                (pair[0] + way * part.clamp(0.0, 1.0) - position).norm()
+            });
+            assert!((found - nearest.fold(f64::INFINITY, f64::min)).abs() < 1e-14);
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn a_smooth_curve_passes_its_points_and_says_how_far_off_it_is() {
+        let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, -1.0]].map(Vector);
+        let curve = Curve::smooth(&points).unwrap();
+        for point in points {
+            assert!((curve.closest(point).point - point).norm() < 1e-15);
+        }
+        // The middle of the second span, by hand: the mean of its ends plus an eighth of the
+        // difference of its tangents, (3, 2)/2 and (3, −3)/2.
+        let middle = Vector([2.0, 2.0 + 0.3125]);
+        assert!((curve.closest(middle).point - middle).norm() < 1e-14);
+        assert!(curve.deviation() > 0.0 && curve.deviation() < 0.01);
+        assert_eq!(Curve::polyline(&points).unwrap().deviation(), 0.0);
+    }
 }

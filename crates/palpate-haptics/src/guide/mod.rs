@@ -103,12 +103,7 @@ impl GuideOptions {
             return Ok(self);
         }
         let (parameter, rule) = ("release_distance", "at least the snap distance");
-        Err(HapticsError::Number(NumberError {
-            parameter,
-            rule,
-            value: self.release(),
-            unit: "m",
-        }))
+        Err(HapticsError::Number(NumberError::new(parameter, rule, self.release(), "m")))
     }
 
     fn release(&self) -> f64 {
@@ -125,7 +120,7 @@ fn finite<const D: usize>(
         None => Ok(point),
         Some(value) => {
             let (rule, unit) = ("finite", "m");
-            Err(HapticsError::Number(NumberError { parameter, rule, value: *value, unit }))
+            Err(HapticsError::Number(NumberError::new(parameter, rule, *value, unit)))
         }
     }
 }
@@ -135,12 +130,12 @@ fn unit<const D: usize>(
     parameter: &'static str,
     direction: Vector<f64, D>,
 ) -> Result<Vector<f64, D>, HapticsError> {
-    direction.normalized().ok_or(HapticsError::Number(NumberError {
+    direction.normalized().ok_or(HapticsError::Number(NumberError::new(
         parameter,
-        rule: "a finite direction",
-        value: direction.norm(),
-        unit: "long",
-    }))
+        "a finite direction",
+        direction.norm(),
+        "",
+    )))
 }
 
 /// A force on the hand in free space: towards a point, line, plane or curve, into a well, or
@@ -203,8 +198,11 @@ impl<const D: usize> Guide<D> {
     ///
     /// [`HapticsError::Number`] if an option is outside its range or a coordinate is not
     /// finite.
-    pub fn to_point(point: Point<D>, options: GuideOptions) -> Result<Self, HapticsError> {
-        Self::of(Kind::Target(Target::Point(finite("point", point)?)), options)
+    pub fn to_point(
+        point: impl Into<Point<D>>,
+        options: GuideOptions,
+    ) -> Result<Self, HapticsError> {
+        Self::of(Kind::Target(Target::Point(finite("point", point.into())?)), options)
     }
 
     /// A guide towards the line through the point `through` [m] along `direction`, a vector of
@@ -214,12 +212,12 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `direction` is zero.
     pub fn along_line(
-        through: Point<D>,
-        direction: Vector<f64, D>,
+        through: impl Into<Point<D>>,
+        direction: impl Into<Vector<f64, D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        let through = finite("through", through)?;
-        let direction = unit("direction", direction)?;
+        let through = finite("through", through.into())?;
+        let direction = unit("direction", direction.into())?;
         Self::of(Kind::Target(Target::Line { through, direction }), options)
     }
 
@@ -229,11 +227,11 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if the ends coincide.
     pub fn along_segment(
-        from: Point<D>,
-        to: Point<D>,
+        from: impl Into<Point<D>>,
+        to: impl Into<Point<D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        Self::along_curve(Curve::polyline(&[from, to])?, options)
+        Self::along_curve(Curve::polyline(&[from.into(), to.into()])?, options)
     }
 
     /// A guide towards the plane (in 2D the line) through `through` [m] with the `normal`, a
@@ -243,11 +241,12 @@ impl<const D: usize> Guide<D> {
     ///
     /// As [`to_point`](Self::to_point), and if `normal` is zero.
     pub fn on_plane(
-        through: Point<D>,
-        normal: Vector<f64, D>,
+        through: impl Into<Point<D>>,
+        normal: impl Into<Vector<f64, D>>,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
-        let (through, normal) = (finite("through", through)?, unit("normal", normal)?);
+        let through = finite("through", through.into())?;
+        let normal = unit("normal", normal.into())?;
         Self::of(Kind::Target(Target::Plane { through, normal }), options)
     }
 
@@ -288,12 +287,12 @@ impl<const D: usize> Guide<D> {
     /// # }
     /// ```
     pub fn well(
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         reach: f64,
         options: GuideOptions,
     ) -> Result<Self, HapticsError> {
         let options = options.checked()?;
-        Self::of(Kind::Well(well::Well::new(centre, reach, &options)?), options)
+        Self::of(Kind::Well(well::Well::new(centre.into(), reach, &options)?), options)
     }
 
     /// A guide down the field of a shape within a band of distances: see [`Slope`].
@@ -365,7 +364,3 @@ impl<const D: usize> Guide<D> {
         }
     }
 }
-
-#[cfg(test)]
-#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
-mod tests;

@@ -60,12 +60,7 @@ impl<const D: usize> Slope<D> {
     pub fn new(shape: Shape<D>, gain: f64, band: [f64; 2]) -> Result<Self, HapticsError> {
         if !gain.is_finite() {
             let (parameter, rule, unit) = ("gain", "finite", "N");
-            return Err(HapticsError::Number(NumberError {
-                parameter,
-                rule,
-                value: gain,
-                unit,
-            }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, gain, unit)));
         }
         let [near, far] = band;
         let width = NumberError::check_positive("band", far - near, "m wide")?;
@@ -84,7 +79,7 @@ impl<const D: usize> Slope<D> {
             return Ok(Self { edge, ..self });
         }
         let (parameter, rule) = ("edge", "at most half of the band");
-        Err(HapticsError::Number(NumberError { parameter, rule, value: edge, unit: "m" }))
+        Err(HapticsError::Number(NumberError::new(parameter, rule, edge, "m")))
     }
 
     /// Force and damper along the gradient; `None` outside the band.

@@ -35,7 +35,7 @@ impl<const D: usize> Well<D> {
             return Ok(Self { centre: finite("centre", centre)?, inner, reach, max_force });
         }
         let (parameter, rule) = ("reach", "more than max_force / stiffness");
-        Err(HapticsError::Number(NumberError { parameter, rule, value: reach, unit: "m" }))
+        Err(HapticsError::Number(NumberError::new(parameter, rule, reach, "m")))
     }
 
     /// The pull at `position` [N], and the part of the damper that acts there; `None` beyond

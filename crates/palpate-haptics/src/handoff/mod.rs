@@ -22,7 +22,7 @@ use exchange::{Medium, Native, edit_channel, latest};
 
 use crate::accepted_bodies::AcceptedBodies;
 use crate::live::{Progress, Snapshot};
-use crate::servo::AnyServo;
+use crate::servo::{AnyServo, Key};
 
 /// Capacities of a hand-off, allocated when it is made; the servo allocates nothing later.
 ///
@@ -63,7 +63,8 @@ impl HandoffOptions {
 }
 
 /// The two ends of a hand-off: the first for an ordinary thread, the second for the thread of
-/// `servo`. The capacity for bodies is at least the number of bodies that the servo has.
+/// `servo`, a [`Servo`](crate::Servo) or an [`UnprotectedServo`](crate::UnprotectedServo). The
+/// capacity for bodies is at least the number of bodies that the servo has.
 ///
 /// The `ServoThread` of `palpate-loop` makes its own hand-off. A custom loop, for example the
 /// callback of a device driver, first [checks the device](crate::Servo::check_device);
@@ -88,7 +89,9 @@ impl HandoffOptions {
 /// // In a tick:
 /// end.receive(&mut servo);
 /// servo.step(&[PointState::at_rest(Vector([0.0, 0.25]))]);
-/// end.publish(&servo, &Progress { ticks: 1, ..Progress::default() });
+/// let mut progress = Progress::default();
+/// progress.ticks = 1;
+/// end.publish(&servo, &progress);
 ///
 /// let snapshot = control.latest().ok_or("there was a tick")?;
 /// assert!(!snapshot.touches[0].contact); // the ball went down by 1 m
@@ -100,8 +103,8 @@ pub fn handoff<const D: usize>(
     servo: &impl AnyServo<D>,
     options: HandoffOptions,
 ) -> (Control<D>, ServoEnd<D>) {
-    let protection = servo.any_protection().cloned();
-    let servo = servo.renderer();
+    let protection = servo.any_protection(Key(())).cloned();
+    let servo = servo.renderer(Key(()));
     let bodies = servo.bodies().bodies().len();
     let most_bodies = options.bodies.max(bodies);
     let (sender, receiver) = edit_channel();

@@ -12,7 +12,7 @@ use super::exchange::{Flag, Receiver, Writer};
 use super::{Edits, Flags};
 use crate::event::Event;
 use crate::live::{Progress, Snapshot};
-use crate::servo::AnyServo;
+use crate::servo::{AnyServo, Key};
 
 /// The servo's end of a hand-off: receives edits and publishes the state of the servo. Made by
 /// [`handoff`](crate::handoff).
@@ -28,15 +28,16 @@ pub struct ServoEnd<const D: usize> {
 }
 
 impl<const D: usize> ServoEnd<D> {
-    /// Applies the edits of the other end to `servo`; call it before each tick.
+    /// Applies the edits of the other end to `servo`, a [`Servo`](crate::Servo) or an
+    /// [`UnprotectedServo`](crate::UnprotectedServo); call it before each tick.
     ///
-    /// Bodies that were accepted for another servo are not taken, nor their poses, and the servo is
-    /// stopped until [`StopSwitch::release`](crate::StopSwitch::release) ends a later stop. An
-    /// unprotected servo takes the bodies of any.
+    /// Bodies that were accepted for another servo are not taken, nor their poses. The servo stops;
+    /// call [`stop`](crate::StopSwitch::stop), then [`release`](crate::StopSwitch::release), to
+    /// let it go on. An unprotected servo takes the bodies of any.
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn receive(&mut self, servo: &mut impl AnyServo<D>) {
-        let servo = servo.renderer_mut();
+        let servo = servo.renderer_mut(Key(()));
         let is_stopped = self.flags.stop.is_set();
         if is_stopped != self.is_stopped {
             self.is_stopped = is_stopped;
@@ -74,7 +75,7 @@ impl<const D: usize> ServoEnd<D> {
     ///
     /// Real-time: allocates nothing, frees nothing, takes no lock, cannot panic.
     pub fn publish(&mut self, servo: &impl AnyServo<D>, progress: &Progress) {
-        let servo = servo.renderer();
+        let servo = servo.renderer(Key(()));
         for event in servo.events() {
             self.events_lost += u64::from(self.events.push(*event).is_err());
         }

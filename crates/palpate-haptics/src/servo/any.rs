@@ -8,44 +8,48 @@ use std::sync::Arc;
 use super::{Renderer, Servo, UnprotectedServo};
 use crate::protection::Protection;
 
-/// A [`Servo`] or an [`UnprotectedServo`]. Sealed: no other type implements it.
-///
-/// The trait is not exported, so that no other crate can replace the renderer of a [`Servo`].
+/// Opens the methods of [`AnyServo`]. Only this crate makes one: no other type implements the
+/// trait, and no other crate replaces the renderer of a [`Servo`].
+#[derive(Debug)]
+pub struct Key(pub(crate) ());
+
+/// A [`Servo`] or an [`UnprotectedServo`]. Sealed: no other type implements the trait, and its
+/// methods are this crate's own.
 pub trait AnyServo<const D: usize> {
     #[doc(hidden)]
-    fn renderer(&self) -> &Renderer<D>;
+    fn renderer(&self, key: Key) -> &Renderer<D>;
 
     #[doc(hidden)]
-    fn renderer_mut(&mut self) -> &mut Renderer<D>;
+    fn renderer_mut(&mut self, key: Key) -> &mut Renderer<D>;
 
     #[doc(hidden)]
-    fn any_protection(&self) -> Option<&Arc<Protection<D>>>;
+    fn any_protection(&self, key: Key) -> Option<&Arc<Protection<D>>>;
 }
 
 impl<const D: usize> AnyServo<D> for Servo<D> {
-    fn renderer(&self) -> &Renderer<D> {
+    fn renderer(&self, _: Key) -> &Renderer<D> {
         &self.renderer
     }
 
-    fn renderer_mut(&mut self) -> &mut Renderer<D> {
+    fn renderer_mut(&mut self, _: Key) -> &mut Renderer<D> {
         &mut self.renderer
     }
 
-    fn any_protection(&self) -> Option<&Arc<Protection<D>>> {
+    fn any_protection(&self, _: Key) -> Option<&Arc<Protection<D>>> {
         Some(&self.protection)
     }
 }
 
 impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
-    fn renderer(&self) -> &Renderer<D> {
+    fn renderer(&self, _: Key) -> &Renderer<D> {
         &self.renderer
     }
 
-    fn renderer_mut(&mut self) -> &mut Renderer<D> {
+    fn renderer_mut(&mut self, _: Key) -> &mut Renderer<D> {
         &mut self.renderer
     }
 
-    fn any_protection(&self) -> Option<&Arc<Protection<D>>> {
+    fn any_protection(&self, _: Key) -> Option<&Arc<Protection<D>>> {
         None
     }
 }

@@ -15,7 +15,8 @@ mod unprotected;
 use std::ops::Deref;
 use std::sync::Arc;
 
-pub(crate) use any::AnyServo;
+pub use any::AnyServo;
+pub(crate) use any::Key;
 pub use renderer::Renderer;
 pub use unprotected::UnprotectedServo;
 
@@ -103,7 +104,8 @@ impl<const D: usize> Servo<D> {
     }
 
     /// A servo that renders `bodies` to a tool held by `device`; otherwise as
-    /// [`for_device`](Self::for_device).
+    /// [`for_device`](Self::for_device). A tool with a smaller force limit than the device's, or
+    /// a longer rise time than the servo's, keeps it.
     ///
     /// # Errors
     ///

@@ -20,7 +20,7 @@ use crate::event::{Event, Reaction};
 use crate::guide::Guide;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
-use crate::protection::{Port, TurningPort};
+use crate::ports::{Port, TurningPort};
 use crate::proxy::Probe;
 use crate::tool::{Coupling, HeldTool, Tool};
 use palpate_safety::{NumberError, PointState, SafetyReport, TurnState, WorkspaceMap};
@@ -114,9 +114,10 @@ impl<const D: usize> Renderer<D> {
         tool: Tool<D>,
         options: ServoOptions,
     ) -> Result<Self, HapticsError> {
-        let renderer = Self::of_points(bodies, 1, options)?;
-        let tool = Box::new(CoupledTool::new(tool.of_servo(&options)));
-        Ok(Self { rendered: Rendered::Tool(tool), ..renderer })
+        let mut renderer = Self::of_points(bodies, 1, options)?;
+        let tool = tool.of_servo(&options);
+        renderer.setting.options.max_force = tool.options().force_limit();
+        Ok(Self { rendered: Rendered::Tool(Box::new(CoupledTool::new(tool))), ..renderer })
     }
 
     fn coupled_tool(&self) -> Option<&CoupledTool<D>> {

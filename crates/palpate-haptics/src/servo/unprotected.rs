@@ -78,7 +78,8 @@ impl<const D: usize> UnprotectedServo<D> {
     /// device. The tool's origin is at the device point. Its axes are the handle's if the
     /// device [turns](Self::set_turn), and the device's otherwise.
     ///
-    /// The tool takes rate, rise time and force limit from `options`; the probe is not used.
+    /// The tool takes the rate of `options`; of the force limits of tool and `options` the
+    /// smaller holds, and of their rise times the longer. The probe is not used.
     /// The one [touch](Renderer::touches) describes the whole tool: its proxy is the tool's
     /// origin, its normal and body are those of the contact that pushes hardest, and its wanted
     /// force is already limited. The details are in [`tool`](Renderer::tool).

@@ -15,7 +15,8 @@ use palpate_field::{Point, Shape, Vector};
 
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
-use palpate_safety::{Impedance, NumberError, limited};
+use palpate_safety::internal::limited;
+use palpate_safety::{Impedance, NumberError};
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};

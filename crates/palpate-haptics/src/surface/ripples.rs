@@ -45,12 +45,12 @@ impl<const D: usize> Ripples<D> {
         };
         let components: Result<[f64; D], _> = direction.as_slice().try_into();
         let unit = components.ok().and_then(|components| Vector(components).normalized());
-        let unit = unit.ok_or(HapticsError::Number(NumberError {
-            parameter: "texture.direction",
-            rule: "a direction of the scene's dimension",
-            value: direction.len() as f64,
-            unit: "numbers",
-        }))?;
+        let unit = unit.ok_or(HapticsError::Number(NumberError::new(
+            "texture.direction",
+            "a direction of the scene's dimension",
+            direction.len() as f64,
+            "numbers",
+        )))?;
         Ok(Self { amplitude, wavelength, waves: Waves::Plane((unit * number).0) })
     }
 

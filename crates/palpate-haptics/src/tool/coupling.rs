@@ -34,10 +34,11 @@ impl Coupling {
     /// [`HapticsError::Number`] if a stiffness is not positive.
     pub(super) fn new(options: &ToolOptions, reach: f64) -> Result<Self, HapticsError> {
         let stiffness = NumberError::check_positive("stiffness", options.stiffness, "N/m")?;
-        let natural = 0.5 * stiffness * reach * reach;
-        let angular_stiffness = options.angular_stiffness.unwrap_or(natural);
-        let angular_stiffness =
-            NumberError::check_positive("angular_stiffness", angular_stiffness, "N·m/rad")?;
+        let angular_stiffness = NumberError::check_positive(
+            "angular_stiffness",
+            options.angular_stiffness_with(reach),
+            "N·m/rad",
+        )?;
         let ToolOptions { damping, angular_damping, .. } = *options;
         Ok(Self {
             stiffness,

@@ -15,7 +15,7 @@ use super::{Coupling, Tool};
 use crate::event::{Event, EventKind, Reaction};
 use crate::guide::limit::{Motion, damped};
 use crate::nearby::Nearby;
-use palpate_safety::shortening;
+use palpate_safety::internal::shortening;
 
 /// The response of the pushing bodies to the coupling.
 struct BodyResponse<const D: usize> {
@@ -131,7 +131,7 @@ impl<const D: usize> Tool<D> {
         };
         let force = and_damper(not_pulling(force), body_response.force);
         let torque = and_damper(not_pulling(torque), body_response.torque);
-        self.touch.force = damped(&force, options.max_force) * self.rise;
+        self.touch.force = damped(&force, options.force_limit()) * self.rise;
         self.touch.torque = damped(&torque, options.max_torque) * self.rise;
         if has_new_bodies {
             let start = shortening(self.effort(), before);

@@ -11,6 +11,7 @@ use crate::options::ServoOptions;
 
 /// A tool after a tick, for traces and snapshots. World coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct HeldTool<const D: usize> {
     /// The pose of the tool: `world_from_tool`.
     pub pose: Pose<D>,
@@ -52,12 +53,13 @@ impl<const D: usize> Tool<D> {
         }
     }
 
-    /// This tool with a servo's rate, rise time and force limit.
+    /// This tool with a servo's rate, the smaller of both force limits and the longer of both
+    /// rise times.
     pub(crate) fn of_servo(mut self, servo: &ServoOptions) -> Self {
-        let ServoOptions { rate, max_force, rise_time, .. } = *servo;
-        self.options.rate = rate;
-        self.options.rise_time = rise_time;
-        self.options.max_force = max_force;
+        self.options.rate = servo.rate;
+        self.options.rise_time = self.options.rise_time.max(servo.rise_time);
+        let own = self.options.max_force.unwrap_or(f64::INFINITY);
+        self.options.max_force = Some(own.min(servo.max_force));
         self
     }
 
@@ -65,6 +67,6 @@ impl<const D: usize> Tool<D> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn limit_force(&mut self, max_force: f64) {
-        self.options.max_force = self.options.max_force.min(max_force);
+        self.options.max_force = Some(self.options.force_limit().min(max_force));
     }
 }

@@ -44,7 +44,7 @@ pub use held::HeldTool;
 use scan::{Scan, Surroundings};
 use settle::{Ends, Lengths, RestSearch};
 pub use shell::{MOST_POINTS, Shell, ShellPoint};
-pub use state::{ToolOptions, ToolState, ToolTouch};
+pub use state::{Handle, ToolOptions, ToolState, ToolTouch};
 use twist::Twist;
 
 /// Fewer bodies than this all count as near: selecting would cost more than it saves.

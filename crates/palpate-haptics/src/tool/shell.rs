@@ -194,7 +194,9 @@ impl<const D: usize> Shell<D> {
             let is_usable = |x: &f64| x.abs() <= LARGEST_LENGTH;
             if let Some(&value) = point.centre.0.iter().find(|x| !is_usable(x)) {
                 let (parameter, rule, unit) = ("a point of a tool", "at most 1e15", "m");
-                return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+                return Err(HapticsError::Number(NumberError::new(
+                    parameter, rule, value, unit,
+                )));
             }
             reach = reach.max(point.centre.norm() + point.radius);
         }
@@ -243,7 +245,7 @@ fn check_count(count: usize, least: usize) -> Result<(), HapticsError> {
     }
     let rule = if least == 1 { "from 1 to 8192" } else { "from 2 to 8192" };
     let (parameter, unit) = ("number of points", "points");
-    Err(HapticsError::Number(NumberError { parameter, rule, value: count as f64, unit }))
+    Err(HapticsError::Number(NumberError::new(parameter, rule, count as f64, unit)))
 }
 
 /// Points in farthest-first order, and the distance of the surface from each prefix [m].

@@ -15,6 +15,9 @@ use palpate_safety::NumberError;
 
 /// The requested virtual coupling of a tool, its limits, and the budget of a tick.
 ///
+/// In a servo, the rate is the servo's; of two force limits the smaller holds, and of two rise
+/// times the longer.
+///
 /// ```
 /// use palpate_haptics::ToolOptions;
 ///
@@ -35,14 +38,27 @@ pub struct ToolOptions {
     pub damping: f64,
     /// The coupling's angular damping [N·m·s/rad].
     pub angular_damping: f64,
-    /// The largest force on the hand [N]; infinite for no limit.
-    pub max_force: f64,
+    /// The largest force on the hand [N]; infinite for no limit. `None` means the servo's limit,
+    /// and 3.3 N for a tool without a servo.
+    pub max_force: Option<f64>,
     /// The largest torque on the hand [N·m]; infinite for no limit.
     pub max_torque: f64,
     /// The most evaluations of the bodies in a tick; at least 32.
     pub budget: u32,
     /// The time over which the force rises from zero after bodies covered the tool [s].
     pub rise_time: f64,
+}
+
+/// The force limit of a tool without a servo [N]: that of a desktop stylus.
+const MAX_FORCE: f64 = 3.3;
+
+/// What a hand moves beside itself: the handle of a device, with a light tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handle {
+    /// The mass [kg].
+    pub mass: f64,
+    /// The moment of inertia about the tool's origin [kg·m²].
+    pub inertia: f64,
 }
 
 impl ToolOptions {
@@ -79,7 +95,7 @@ impl ToolOptions {
     /// The same options with another force limit [N].
     #[must_use]
     pub const fn with_max_force(self, max_force: f64) -> Self {
-        Self { max_force, ..self }
+        Self { max_force: Some(max_force), ..self }
     }
 
     /// The same options with another torque limit [N·m].
@@ -100,25 +116,40 @@ impl ToolOptions {
         Self { rise_time, ..self }
     }
 
-    /// These options with the damping ratio `ratio` (ζ) for a handle of `mass` [kg] and moment
-    /// of inertia `inertia` [kg·m²]: `2 ζ √(K m)` and `2 ζ √(κ I)`. A ratio of 1 is critical
-    /// damping.
-    ///
-    /// Without an angular stiffness the angular damping is zero.
+    /// These options with the damping ratio `ratio` (ζ) for a `handle`: `2 ζ √(K m)` and
+    /// `2 ζ √(κ I)`, with the stiffnesses `K` and `κ` of a tool with this `reach` [m]. A ratio
+    /// of 1 is critical damping.
     ///
     /// ```
-    /// use palpate_haptics::ToolOptions;
+    /// use palpate_haptics::{Handle, Shell, ToolOptions};
     ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let shell = Shell::<3>::ball(0.5)?;
+    /// let handle = Handle { mass: 0.01, inertia: 0.02 };
     /// let options = ToolOptions::default().with_stiffness(400.0);
-    /// let critical = options.with_damping_ratio(1.0, 0.01, 0.0);
+    /// let critical = options.with_damping_ratio(1.0, handle, shell.reach());
     /// assert_eq!(critical.damping, 4.0); // 2 √(400 · 0.01)
+    /// assert_eq!(critical.angular_damping, 2.0); // 2 √(50 · 0.02), of K ρ² / 2 = 50 N·m/rad
+    /// # Ok(())
+    /// # }
     /// ```
     #[must_use]
-    pub fn with_damping_ratio(self, ratio: f64, mass: f64, inertia: f64) -> Self {
-        let angular = self.angular_stiffness.unwrap_or(0.0);
+    pub fn with_damping_ratio(self, ratio: f64, handle: Handle, reach: f64) -> Self {
+        let Handle { mass, inertia } = handle;
         let damping = 2.0 * ratio * (self.stiffness * mass).sqrt();
-        let angular_damping = 2.0 * ratio * (angular * inertia).sqrt();
+        let angular_damping =
+            2.0 * ratio * (self.angular_stiffness_with(reach) * inertia).sqrt();
         Self { damping, angular_damping, ..self }
+    }
+
+    /// The angular stiffness of a tool with this `reach` [m] [N·m/rad].
+    pub(super) fn angular_stiffness_with(&self, reach: f64) -> f64 {
+        self.angular_stiffness.unwrap_or(0.5 * self.stiffness * reach * reach)
+    }
+
+    /// The force limit of a tool without a servo [N].
+    pub(crate) fn force_limit(&self) -> f64 {
+        self.max_force.unwrap_or(MAX_FORCE)
     }
 
     /// Checks all options except the stiffnesses.
@@ -128,29 +159,26 @@ impl ToolOptions {
         NumberError::check_not_negative("damping", self.damping, "N·s/m")?;
         NumberError::check_not_negative("angular_damping", self.angular_damping, "N·m·s/rad")?;
         for (parameter, value, unit) in
-            [("max_force", self.max_force, "N"), ("max_torque", self.max_torque, "N·m")]
+            [("max_force", self.force_limit(), "N"), ("max_torque", self.max_torque, "N·m")]
         {
             if value.is_nan() || value <= 0.0 {
-                return Err(HapticsError::Number(NumberError {
-                    parameter,
-                    rule: "positive",
-                    value,
-                    unit,
-                }));
+                return Err(HapticsError::Number(NumberError::new(
+                    parameter, "positive", value, unit,
+                )));
             }
         }
         if (self.budget as usize) < 2 * FIRST_LEVEL {
             let (parameter, rule, unit) = ("budget", "at least 32", "evaluations");
             let value = f64::from(self.budget);
-            return Err(HapticsError::Number(NumberError { parameter, rule, value, unit }));
+            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
         }
         Ok(())
     }
 }
 
 impl Default for ToolOptions {
-    /// 1 kHz; 500 N/m and 1 N·s/m, which damps 0.5 g critically; 3.3 N and 0.2 N·m; 16 384
-    /// evaluations; rise in 0.1 s.
+    /// 1 kHz; 500 N/m and 1 N·s/m, which damps 0.5 g critically; the servo's force limit and
+    /// 0.2 N·m; 16 384 evaluations; rise in 0.1 s.
     fn default() -> Self {
         Self {
             rate: 1000.0,
@@ -158,7 +186,7 @@ impl Default for ToolOptions {
             angular_stiffness: None,
             damping: 1.0,
             angular_damping: 0.0,
-            max_force: 3.3,
+            max_force: None,
             max_torque: 0.2,
             budget: 16_384,
             rise_time: 0.1,
@@ -196,6 +224,7 @@ impl<const D: usize> ToolState<D> {
 
 /// A tool after a tick. World coordinates.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ToolTouch<const D: usize> {
     /// The device's pose: the goal of the tool.
     pub device: Pose<D>,

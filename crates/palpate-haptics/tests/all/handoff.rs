@@ -14,7 +14,9 @@ use palpate_haptics::{
     HapticsError, PointState, Probe, Protection, Servo, ServoOptions, Surface,
     UnprotectedServo, handoff,
 };
-use palpate_loop::{ClockDriver, Ending, Priority, ServoThread, ThreadOptions, VirtualClock};
+use palpate_loop::{
+    ClockDriver, Ending, Priority, ServoThread, StartError, ThreadOptions, VirtualClock,
+};
 
 const TICK: Duration = Duration::from_millis(1);
 
@@ -367,10 +369,12 @@ fn a_lost_device_or_a_panic_ends_the_thread_with_no_force() {
 fn what_cannot_run_is_refused() {
     let two = Box::new(Hand::at(&[[0.0, 0.0], [1.0, 0.0]]));
     let error = ServoThread::start(servo(floor(0.0), 1), two, plain()).unwrap_err();
-    assert_eq!(error, HapticsError::ContactPoints { servo: 1, device: 2 });
+    let refused = HapticsError::ContactPoints { servo: 1, device: 2 };
+    assert_eq!(error, StartError::Haptics(refused));
     let one = Box::new(Hand::at(&[[0.0, 0.0]]));
     let options = plain().with_duration(-1.0);
-    assert!(ServoThread::start(servo(floor(0.0), 1), one, options).is_err());
+    let error = ServoThread::start(servo(floor(0.0), 1), one, options).unwrap_err();
+    assert_eq!(error.to_string(), "duration must be zero or more and finite, got -1 s");
 }
 
 #[test]

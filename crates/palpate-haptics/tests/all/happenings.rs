@@ -51,6 +51,7 @@ fn events_are_in_order<const D: usize>(count: usize) {
                     assert!(*touched == Some(event.body) && force > 0.8, "{event:?}");
                     counts[4] += 1;
                 }
+                other => panic!("{other:?}"),
             }
         }
         for (touch, (touched, _)) in servo.touches().iter().zip(&told) {

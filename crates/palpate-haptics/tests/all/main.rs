@@ -18,6 +18,7 @@ mod energy;
 mod forces;
 mod friction;
 mod golden;
+mod guides;
 mod handoff;
 mod happenings;
 mod moving;

@@ -66,7 +66,8 @@ fn a_tick_with_its_hand_off_allocates_and_frees_nothing() {
         }
         let height = if tick % 10 < 5 { 0.06 } else { 0.035 };
         let states = [PointState::at_rest(Vector([0.0, height, 0.0])); 2];
-        let progress = Progress { ticks: tick as u64 + 1, ..Progress::default() };
+        let mut progress = Progress::default();
+        progress.ticks = tick as u64 + 1;
         let forces = assert_no_alloc(|| {
             if tick % 100 == 99 {
                 switch.stop();

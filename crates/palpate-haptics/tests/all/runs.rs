@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::common::{ball, cuboid, half_space, protected, without_limits};
 use palpate_devices::{HandPath, Interpolation, RecordedDevice, Tour};
-use palpate_field::{CustomField, Point, Promise, Shape, Vector};
+use palpate_field::{CustomField, Point, Pose, Promise, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState, Probe,
     Protection, Servo, ServoOptions, Surface, UnprotectedServo,
@@ -88,6 +88,74 @@ fn a_report_counts_what_happened() {
     assert_eq!((row.device, row.proxy), (Vector([0.0, -0.0078125]), Vector([0.0, 0.0])));
     assert_eq!((row.force, row.contact), (Vector([0.0, 3.90625]), true));
     assert_eq!(device.forces(), [Vector::ZERO]);
+}
+
+/// A hand that stays at this height.
+fn still(height: f64, duration: f64) -> RecordedDevice<2> {
+    let places = vec![Vector([0.0, height]); 2];
+    let path = HandPath::new(vec![0.0, duration], places, Interpolation::Linear).unwrap();
+    RecordedDevice::new(vec![path]).unwrap()
+}
+
+#[test]
+fn a_body_that_moves_pushes_a_hand_at_rest_with_its_speed() {
+    // 128 ticks a second, in each of which the wall rises by 1/1024 m: at 1/8 m/s.
+    let material = Surface::smooth(512.0, 4.0).unwrap();
+    let wall = Body::new(half_space([0.0, 1.0], 0.0), material).unwrap();
+    let options = ServoOptions::default()
+        .with_rate(128.0)
+        .with_max_force(f64::INFINITY)
+        .with_probe(Probe::new(0.0).unwrap());
+    let bodies = Bodies::new(vec![wall]).unwrap();
+    let mut servo = without_limits(UnprotectedServo::new(bodies, 1, options).unwrap());
+    let mut recorder = Recorder::new(64);
+    let mut rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+        set_pose(0, Pose::translation(Vector([0.0, 0.125 * time.min(0.25)])));
+    };
+    let options = fast(0.5).with_recorder(&mut recorder).with_motion(&mut rise);
+    run(&mut servo, &mut still(0.015625, 0.5), options).unwrap();
+    let row = |tick: usize| recorder.rows()[tick];
+    assert!(!row(15).contact);
+    // After 24 ticks the wall is 1/128 m above the hand; damping resists its approach.
+    let moving = row(24);
+    assert_eq!((moving.contact, moving.proxy[1]), (true, 24.0 / 1024.0));
+    assert!((moving.wanted - Vector([0.0, 4.0 + 0.5])).norm() < 1e-9, "{:?}", moving.wanted);
+    // After 32 ticks it stops, 1/64 m above the hand.
+    assert!((row(40).wanted - Vector([0.0, 8.0])).norm() < 1e-9, "{:?}", row(40).wanted);
+}
+
+#[test]
+fn a_body_that_slides_past_drags_a_hand_at_rest() {
+    let material = Material::default();
+    let friction = material.dynamic_friction;
+    let floor = Body::new(cuboid([2.0, 0.5]), material).unwrap();
+    let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
+    let bodies = Bodies::new(vec![floor]).unwrap();
+    let mut servo = without_limits(UnprotectedServo::new(bodies, 1, options).unwrap());
+    let mut recorder = Recorder::new(1000);
+    let mut slide = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+        set_pose(
+            0,
+            Pose::translation(Vector([0.2 * time, if time > 0.0 { 0.0 } else { -0.1 }])),
+        );
+    };
+    let options = fast(1.0).with_recorder(&mut recorder).with_motion(&mut slide);
+    run(&mut servo, &mut still(0.249, 1.0), options).unwrap();
+    let last = recorder.rows()[999];
+    assert!(last.contact && last.is_slipping);
+    let drag = last.wanted[0] / last.wanted[1];
+    assert!((drag - friction).abs() < 1e-6, "{:?}", last.wanted);
+}
+
+#[test]
+fn a_panic_of_a_motion_ends_the_run_with_zero_forces() {
+    let mut servo = wall_servo(ServoOptions::default());
+    let mut device = still(-0.001, 0.1);
+    let mut bad =
+        |time: f64, _: &mut dyn FnMut(usize, Pose<2>)| assert!(time < 0.05, "too late");
+    let report = run(&mut servo, &mut device, fast(0.1).with_motion(&mut bad)).unwrap();
+    assert_eq!(report.ending, Ending::Panicked { message: "too late".to_owned() });
+    assert_eq!((report.ticks, device.forces()), (50, &[Vector::ZERO][..]));
 }
 
 #[test]

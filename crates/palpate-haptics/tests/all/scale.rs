@@ -25,6 +25,7 @@ fn run<const D: usize>(scale: f64) -> (Vec<Touch<D>>, [u32; 5]) {
                 EventKind::Slip => 2,
                 EventKind::Stick => 3,
                 EventKind::Pop { .. } => 4,
+                other => panic!("{other:?}"),
             };
             events[kind] += 1;
         }

@@ -13,8 +13,8 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, DeviceProfile, EventKind, Guide, GuideOptions, HapticsError, Material,
-    PointState, Protection, SafetyError, ServoOptions, Shell, Surface, Tool, ToolOptions,
-    ToolState, UnprotectedServo, WorkspaceMap,
+    PointState, Protection, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, ToolState, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
@@ -22,10 +22,16 @@ const STIFFNESS: f64 = 500.0;
 
 /// A rod that lies along x, of radius 1 cm.
 fn rod() -> Tool<3> {
+    rod_with(options())
+}
+
+fn rod_with(options: ToolOptions) -> Tool<3> {
     let ends = [Vector([-0.04, 0.0, 0.0]), Vector([0.04, 0.0, 0.0])];
-    let shell = Shell::capsule(ends, 0.01, 41).unwrap();
-    let options = ToolOptions::default().with_stiffness(STIFFNESS).with_damping(0.0);
-    Tool::new(shell, options).unwrap()
+    Tool::new(Shell::capsule(ends, 0.01, 41).unwrap(), options).unwrap()
+}
+
+fn options() -> ToolOptions {
+    ToolOptions::default().with_stiffness(STIFFNESS).with_damping(0.0)
 }
 
 fn ground(material: Material) -> Bodies<3> {
@@ -144,6 +150,70 @@ fn a_tool_is_guided_and_limited() {
     servo.step(&[]);
     assert_eq!(servo.forces(), [Vector::ZERO]);
     assert_eq!(servo.events()[0].kind, EventKind::Leave);
+}
+
+/// The largest force written while `servo` presses its tool 15 mm deep, which its coupling
+/// answers with 7.5 N.
+fn hardest(servo: &mut Servo<3>) -> f64 {
+    let pressed = (0..1000).map(|_| {
+        servo.step(&[at(0.0, -0.005)]);
+        servo.forces()[0].norm()
+    });
+    pressed.fold(0.0, f64::max)
+}
+
+#[test]
+fn of_the_force_limits_of_tool_and_servo_the_smaller_holds() {
+    let profile = DeviceProfile::unlimited("example").with_max_force(5.0);
+    let limited = |max_force| rod_with(options().with_max_force(max_force));
+    for (tool, most) in [(limited(1.0), 1.0), (rod(), 5.0), (limited(6.0), 5.0)] {
+        let options = ServoOptions::of_device(&profile);
+        let bodies = ground(smooth());
+        let mut free =
+            UnprotectedServo::with_tool(bodies.clone(), tool.clone(), options).unwrap();
+        free.step(&[at(0.0, 0.02)]);
+        free.step(&[at(0.0, -0.005)]);
+        assert!((free.forces()[0].norm() - most).abs() < 1e-12);
+        assert_eq!(free.options().max_force, most);
+        let servo = UnprotectedServo::with_tool(bodies, tool, options).unwrap();
+        let mut servo = servo.protected(&Protection::new(profile.clone())).unwrap();
+        servo.step(&[at(0.0, 0.02)]);
+        assert!((hardest(&mut servo) - most).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_servo_made_for_a_tool_keeps_the_tools_force_limit_and_its_guides_share_it() {
+    let device = press(vec![[0.0, 0.02, 0.0], [0.0, -0.005, 0.0]]);
+    let tool = rod_with(options().with_max_force(0.5));
+    let mut servo = Servo::for_tool(ground(smooth()), tool, &device).unwrap();
+    let pull = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
+    servo.guide(&[Guide::to_point(Vector([0.0, 0.5, 0.0]), pull).unwrap()]);
+    servo.step(&[at(0.0, 0.02)]);
+    assert!((hardest(&mut servo) - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn a_tool_takes_the_servos_rate_and_the_longer_rise_time() {
+    let options = ServoOptions::default().with_rate(4000.0).with_rise_time(0.2);
+    for (own, holds) in [(0.1, 0.2), (0.3, 0.3)] {
+        let tool = rod_with(ToolOptions::default().with_rate(100.0).with_rise_time(own));
+        let servo = UnprotectedServo::with_tool(ground(smooth()), tool, options).unwrap();
+        let tool = servo.tool().unwrap().options();
+        assert_eq!((tool.rate, tool.rise_time), (4000.0, holds));
+    }
+}
+
+#[test]
+fn a_force_limit_that_is_no_number_is_refused_with_a_tool_too() {
+    let refused = |max_force| {
+        let options = ServoOptions::default().with_max_force(max_force);
+        UnprotectedServo::with_tool(ground(smooth()), rod(), options).unwrap_err().to_string()
+    };
+    assert_eq!(refused(f64::NAN), "max_force must be positive, got NaN N");
+    assert_eq!(refused(-1.0), "max_force must be positive, got -1 N");
+    let tool = Tool::new(Shell::<3>::ball(0.01).unwrap(), options().with_max_force(0.0));
+    assert_eq!(tool.unwrap_err().to_string(), "max_force must be positive, got 0 N");
 }
 
 #[test]

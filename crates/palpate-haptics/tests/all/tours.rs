@@ -5,11 +5,11 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, cuboid, half_space, torus, without_limits};
-use palpate_devices::{HandPath, RecordedDevice, Tour};
+use palpate_devices::{DeviceError, HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{HapticsError, ServoOptions, UnprotectedServo};
+use palpate_haptics::{ServoOptions, UnprotectedServo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 const DURATION: f64 = 20.0;
@@ -174,7 +174,7 @@ fn nothing_to_touch_is_an_error() {
     let far = Aabb::centred(Vector([0.1; 3]));
     let shape = ball::<3>(0.05).translated(Vector([10.0, 0.0, 0.0])).unwrap();
     let tour = Tour::new(far, 1.0).unwrap();
-    assert_eq!(tour.over(&shape), Err(HapticsError::NothingToTouch));
+    assert_eq!(tour.over(&shape), Err(DeviceError::NothingToTouch));
     assert!(Tour::new(far, 0.0).is_err());
     assert!(Tour::new(Aabb::centred(Vector([0.0; 3])), 1.0).is_err());
 }

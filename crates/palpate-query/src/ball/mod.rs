@@ -17,7 +17,9 @@
 mod rounds;
 
 use palpate_field::scalar::Model;
-use palpate_field::{Aabb, BLOCK, Block, Column, Point, Pose, Quality, Shape, Vector};
+use palpate_field::{
+    Aabb, BLOCK, Block, BoundingBall, Column, Point, Pose, Quality, Shape, Vector,
+};
 
 use crate::certified::{Certified, Limits, Stop};
 use crate::contact::Contact;
@@ -119,13 +121,19 @@ impl<const D: usize> Default for BallWorkspace<D> {
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
 pub fn contact_ball<const D: usize>(
     shape: &Shape<D>,
-    centre: Point<D>,
+    centre: impl Into<Point<D>>,
     radius: f64,
     limits: &Limits,
     workspace: &mut BallWorkspace<D>,
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
     let goal = Goal::least(limits.tolerance);
-    search(shape, (centre, radius), (goal, limits.budget), workspace)
+    search(
+        shape,
+        BoundingBall { centre: centre.into(), radius },
+        goal,
+        limits.budget,
+        workspace,
+    )
 }
 
 /// Whether a ball and a shape touch, in [`Certified::is_hit`]; arguments and errors as of
@@ -140,19 +148,26 @@ pub fn contact_ball<const D: usize>(
 /// If a coordinate is not finite or beyond 1e15 m, or the radius or the tolerance is negative.
 pub fn touches_ball<const D: usize>(
     shape: &Shape<D>,
-    centre: Point<D>,
+    centre: impl Into<Point<D>>,
     radius: f64,
     limits: &Limits,
     workspace: &mut BallWorkspace<D>,
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
     let goal = Goal::sign(limits.tolerance);
-    search(shape, (centre, radius), (goal, limits.budget), workspace)
+    search(
+        shape,
+        BoundingBall { centre: centre.into(), radius },
+        goal,
+        limits.budget,
+        workspace,
+    )
 }
 
 fn search<const D: usize>(
     shape: &Shape<D>,
-    (centre, radius): (Point<D>, f64),
-    (goal, budget): (Goal, u32),
+    BoundingBall { centre, radius }: BoundingBall<D>,
+    goal: Goal,
+    budget: u32,
     workspace: &mut BallWorkspace<D>,
 ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
     QueryError::check_point("centre", centre)?;
@@ -184,7 +199,7 @@ fn search<const D: usize>(
         let surface = centre - gradient * value;
         let gap = value - radius;
         let best = search.contact(surface);
-        return Ok(search.answer(best, (gap - rounding, gap + rounding)));
+        return Ok(search.answer(best, gap - rounding, gap + rounding));
     }
     if value.abs() <= rounding {
         return Ok(search.at_the_surface());
@@ -270,7 +285,8 @@ impl<const D: usize> BallSearch<'_, D> {
     fn answer(
         &self,
         best: Option<Contact<D>>,
-        (lower, upper): (f64, f64),
+        lower: f64,
+        upper: f64,
     ) -> Certified<Option<Contact<D>>> {
         let stop = self.goal.reached(lower, upper).unwrap_or(Stop::RoundingReached);
         Certified { best, lower, upper, stop, evaluations: self.evaluations }
@@ -283,7 +299,7 @@ impl<const D: usize> BallSearch<'_, D> {
             found.map_or(f64::INFINITY, |p| (p - self.centre).norm() + self.geometry)
         });
         let best = self.contact(self.centre);
-        self.answer(best, (-outside - self.radius, inside - self.radius))
+        self.answer(best, -outside - self.radius, inside - self.radius)
     }
 
     /// The contact with this point of the surface, if there is a normal.

@@ -151,13 +151,20 @@ pub fn manifold<'a, const D: usize>(
     let mut search = PairSearch::new(pair, goal, limits)?;
     let separation = search.run(workspace);
     let budget = limits.budget;
-    Ok(spanning(pair, (search.best, separation), settings, budget, workspace))
+    let separated = SeparatedPair { pair, best: search.best, separation };
+    Ok(spanning(separated, settings, budget, workspace))
 }
 
-/// The manifold of a pair whose separation was found at `best`, in its frame.
+/// A pair whose separation was found at the point `best`, in its frame.
+pub(crate) struct SeparatedPair<'a, const D: usize> {
+    pub(crate) pair: BodyPair<'a, D>,
+    pub(crate) best: Point<D>,
+    pub(crate) separation: Certified<Nearest<D>>,
+}
+
+/// The manifold of a pair.
 pub(crate) fn spanning<const D: usize>(
-    mut pair: BodyPair<'_, D>,
-    (best, separation): (Point<D>, Certified<Nearest<D>>),
+    SeparatedPair { mut pair, best, separation }: SeparatedPair<'_, D>,
     settings: &ManifoldSettings,
     budget: u32,
     workspace: &mut PairWorkspace<D>,

@@ -139,7 +139,7 @@ impl<const D: usize> Patches<'_, '_, D> {
         // Bodies that touch in a valley meet all along it nearly as deep: short steps find
         // no way down.
         let first = Some(self.settings.spacing);
-        let (_, p) = descend(&mut self.pair, (start.point, first), goal, 0.0);
+        let (_, p) = descend(&mut self.pair, start.point, first, goal, 0.0);
         let is_near = distance(p, start.point) < NEIGHBOURS * self.settings.spacing;
         let found = is_near.then(|| self.settle(p, self.settings.spacing)).flatten();
         found.filter(|found| found.gap < start.gap).unwrap_or(start)

@@ -17,7 +17,7 @@
 //! and bounded again; the few that stay open are searched one by one.
 
 use palpate_field::{BLOCK, Block, Column, Gradients, Point, Shape};
-use palpate_mesh::FAN;
+use palpate_mesh::internal::FAN;
 
 use super::contacts::MeshContacts;
 use super::placed::{PlacedMesh, View};
@@ -115,7 +115,7 @@ pub struct MeshHits {
     pub evaluations: u32,
 }
 
-/// Which elements of a mesh come as close to a field as `gap` [m], for certain.
+/// The elements of a mesh that are proven to come within `gap` [m] of a field.
 ///
 /// An element touches if the field is somewhere on it at most `gap`, times the steepness of
 /// the field if that exceeds one. So no element within `gap` of the surface is missed, and

@@ -39,6 +39,12 @@ impl<const D: usize> Memory<D> {
 }
 
 impl<const D: usize> Memory<D> {
+    /// The centre of a box, in coordinates of the body that was asked there just before.
+    #[inline]
+    pub(crate) fn local(&self, body: usize, i: usize) -> Point<D> {
+        self.locals[body][i]
+    }
+
     /// Moves the entry of one box to another lane.
     #[inline]
     pub(crate) fn keep(&mut self, body: usize, from: usize, to: usize) {
@@ -149,17 +155,11 @@ impl<'a, const D: usize> BodyPair<'a, D> {
         }
     }
 
-    /// What `g` of one body is at least within `radius` of the `i`-th place that it was
-    /// asked at just before, where it is `value`.
+    /// What `g` of one body is at least within `radius` of a point in its coordinates, where it
+    /// is `value`.
     #[inline]
-    pub(crate) fn floor(
-        &self,
-        body: usize,
-        (i, value): (usize, f64),
-        radius: f64,
-        memory: &Memory<D>,
-    ) -> f64 {
-        self.bodies[body].floor(memory.locals[body][i], value, radius)
+    pub(crate) fn floor(&self, body: usize, local: Point<D>, value: f64, radius: f64) -> f64 {
+        self.bodies[body].floor(local, value, radius)
     }
 
     /// Keeps of the cells, asked for their values just before, those that `open` names in

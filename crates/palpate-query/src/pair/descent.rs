@@ -19,22 +19,23 @@ const SLOW: f64 = 0.1;
 const GROW: f64 = 1.5;
 const SHRINK: f64 = 0.25;
 
-/// The negative of a minimax proximal step: `p − minimax_step(planes, step)` is where the
-/// larger of two tangent planes at `p`, `a + slope_a·e` and `b + slope_b·e`, plus
+/// The negative of a minimax proximal step: `p − minimax_step([a, b], [slope_a, slope_b], step)`
+/// is where the larger of two tangent planes at `p`, `a + slope_a·e` and `b + slope_b·e`, plus
 /// `|e|²/(2·step)` is least. It is `step` times a mean of both slopes.
 ///
 /// ```
 /// use palpate_field::Vector;
-/// use palpate_query::minimax_step;
+/// use palpate_query::internal::minimax_step;
 ///
 /// // Two planes that rise towards each other meet in the middle.
-/// let planes = [(1.0, Vector([1.0, 0.0])), (1.0, Vector([-1.0, 0.0]))];
-/// assert_eq!(minimax_step(planes, 0.5), Vector([0.0, 0.0]));
+/// let slopes = [Vector([1.0, 0.0]), Vector([-1.0, 0.0])];
+/// assert_eq!(minimax_step([1.0, 1.0], slopes, 0.5), Vector([0.0, 0.0]));
 /// ```
 #[must_use]
 #[inline]
 pub fn minimax_step<const D: usize>(
-    [(a, slope_a), (b, slope_b)]: [(f64, Vector<f64, D>); 2],
+    [a, b]: [f64; 2],
+    [slope_a, slope_b]: [Vector<f64, D>; 2],
     step: f64,
 ) -> Vector<f64, D> {
     let between = slope_a - slope_b;
@@ -52,7 +53,8 @@ pub fn minimax_step<const D: usize>(
 /// the value there.
 pub(crate) fn descend<const D: usize>(
     pair: &mut BodyPair<'_, D>,
-    (start, first): (Point<D>, Option<f64>),
+    start: Point<D>,
+    first: Option<f64>,
     goal: Goal,
     slack: f64,
 ) -> (f64, Point<D>) {
@@ -62,7 +64,8 @@ pub(crate) fn descend<const D: usize>(
     let mut step = first.unwrap_or(value.abs().max(goal.tolerance));
     let mut small_gains = 0;
     for _ in 0..STEPS {
-        let next = p - minimax_step(here, step);
+        let [(a, slope_a), (b, slope_b)] = here;
+        let next = p - minimax_step([a, b], [slope_a, slope_b], step);
         let there = pair.slopes(next);
         let next_value = there[0].0.max(there[1].0);
         if next_value < value {
@@ -93,11 +96,11 @@ mod tests {
     #[test]
     fn the_way_is_along_the_larger_plane_or_to_where_both_are_equal() {
         let (left, up) = (Vector([-1.0, 0.0]), Vector([0.0, 1.0]));
-        assert_eq!(minimax_step([(5.0, left), (1.0, up)], 0.5), Vector([-0.5, 0.0]));
-        assert_eq!(minimax_step([(1.0, left), (1.0, up)], 0.5), Vector([-0.25, 0.25]));
+        assert_eq!(minimax_step([5.0, 1.0], [left, up], 0.5), Vector([-0.5, 0.0]));
+        assert_eq!(minimax_step([1.0, 1.0], [left, up], 0.5), Vector([-0.25, 0.25]));
         // Planes that face each other: to the middle, whatever the size.
         for size in [2.0, 50.0] {
-            let way = minimax_step([(1.0, left), (2.0, -left)], size);
+            let way = minimax_step([1.0, 2.0], [left, -left], size);
             assert!((way - Vector([0.5, 0.0])).norm() < 1e-13, "{way:?}");
         }
     }

@@ -15,11 +15,11 @@ pub(crate) mod body_pair;
 pub(crate) mod cell;
 pub(crate) mod descent;
 pub(crate) mod distance_bound;
-mod escape;
 mod nearest;
 mod proof;
 mod rates;
 pub(crate) mod search;
+mod separating_translation;
 
 use crate::certified::{Certified, Limits};
 use crate::error::QueryError;
@@ -30,11 +30,11 @@ use search::PairSearch;
 
 pub use descent::minimax_step;
 pub use distance_bound::DistanceBound;
-pub use escape::{Escape, escape};
 pub use nearest::Nearest;
 pub use proof::{Proof, ProofBox, proof};
 pub use rates::{PoseDerivative, Rates, rates};
 pub use search::PairWorkspace;
+pub use separating_translation::{SeparatingTranslation, separating_translation};
 
 /// The separation of two bodies [m], between bounds, to `limits.tolerance`.
 ///
@@ -52,7 +52,7 @@ pub use search::PairWorkspace;
 /// - **Overlapping**, it is minus the width of the widest ball in the overlap, where both
 ///   fields are exact inside; else it is between that and zero. It has the right sign and is
 ///   continuous as the bodies move. It is never below minus the width of the smaller body.
-///   How far a body must move to leave the other is bounded by [`escape`].
+///   How far a body must move to leave the other is bounded by [`separating_translation`].
 ///
 /// The answer's point is where the larger `g` is least: between the bodies, or in both.
 /// [`Nearest::contact`] finds the points of both surfaces next to it.
@@ -87,7 +87,7 @@ pub fn separation<'a, const D: usize>(
 /// Whether two bodies overlap, in [`Certified::is_hit`]: whether some point is in both.
 ///
 /// Stops as soon as that is known, or known to lie within `limits.tolerance` of a touch.
-/// Bodies whose boxes are apart are told apart without asking them.
+/// Bodies whose boxes are apart are decided without evaluating a field.
 ///
 /// # Errors
 ///

@@ -24,19 +24,20 @@ const VANISHES: f64 = 1e-3;
 /// Steps towards the shortest mean.
 const STEPS: usize = 200;
 
-/// How a separation changes as the matter of both bodies moves, in metres a metre.
+/// The derivative of the separation with respect to the motion of each body's material, in
+/// metres a metre.
 ///
 /// At the point where the larger of both fields is least, a mean of their gradients
-/// vanishes, and by the envelope theorem the fields' own motion alone counts: of the mean
-/// `Σ wᵢ·∇gᵢ`, the parts of one body times −2.
+/// vanishes, and by the envelope theorem the fields' own motion alone counts: the derivative
+/// for a body is −2 times its terms of the mean `Σ wᵢ·∇gᵢ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rates<const D: usize> {
     /// Where the separation is found [m].
     pub point: Point<D>,
-    /// The derivative of the separation by the motion of the matter at `point`, of the first and
-    /// of the second body; without unit.
+    /// The derivative with respect to the motion of the material at `point`, of the first and of
+    /// the second body; without unit.
     pub of: [Vector<f64, D>; 2],
     /// The length of the mean gradient, which vanishes at the exact point: a bound of the error
     /// of the rates. It is larger where the search left the point uncertain.

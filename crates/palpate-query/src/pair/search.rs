@@ -141,7 +141,7 @@ impl<'a, const D: usize> PairSearch<'a, D> {
 
     /// Improves the best point, from `start`, with `first` as in [`descend`].
     pub(crate) fn descend(&mut self, start: Point<D>, first: Option<f64>) {
-        let (value, p) = descend(&mut self.pair, (start, first), self.goal, self.slack);
+        let (value, p) = descend(&mut self.pair, start, first, self.goal, self.slack);
         if value < self.upper {
             (self.upper, self.best) = (value, p);
         }
@@ -339,7 +339,7 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         let mut kept = 0;
         for i in 0..round.len() {
             let (mut part, radius, value) = (round[i], radii[i], values[0][i]);
-            let floor = search.pair.floor(0, (i, value), radius, memory);
+            let floor = search.pair.floor(0, memory.local(0, i), value, radius);
             part.lower = larger(part.lower, floor - search.slack);
             if part.lower < threshold {
                 (round[kept], radii[kept]) = (part, radius);
@@ -360,8 +360,8 @@ impl<const D: usize> PairRounds<'_, '_, D> {
         let mut least =
             LeastBox { value: f64::INFINITY, centre: Vector::ZERO, radius: radii[0] };
         for (i, part) in round.iter_mut().enumerate() {
-            let at = (i, values[1][i]);
-            let floor = search.pair.floor(1, at, radii[i], memory);
+            let local = memory.local(1, i);
+            let floor = search.pair.floor(1, local, values[1][i], radii[i]);
             part.lower = larger(part.lower, floor - search.slack);
             let value = larger(values[0][i], values[1][i]);
             if value < least.value {

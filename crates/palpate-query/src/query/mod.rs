@@ -18,7 +18,9 @@ use crate::element_search::{minimum, touches};
 use crate::error::QueryError;
 use crate::manifold::{Manifold, ManifoldSettings, manifold};
 use crate::mesh::{MeshContacts, MeshHits, PlacedMesh, mesh_contacts, mesh_hits};
-use crate::pair::{Escape, Nearest, Proof, escape, overlap, proof, separation};
+use crate::pair::{
+    Nearest, Proof, SeparatingTranslation, overlap, proof, separating_translation, separation,
+};
 use crate::placed::Placed;
 use crate::pool::Pool;
 use crate::ray::{Ray, RayHit, cast_ray};
@@ -156,18 +158,19 @@ impl<const D: usize> Query<D> {
         manifold(a, b, &settings, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
-    /// A translation that separates two bodies, not always the shortest; see [`escape`].
+    /// A translation that separates two bodies, not always the shortest; see
+    /// [`separating_translation`].
     ///
     /// # Errors
     ///
     /// If neither body is bounded, or a pose or the tolerance is NaN or out of range.
-    pub fn escape<'a>(
+    pub fn separating_translation<'a>(
         &mut self,
         a: impl Into<Placed<'a, D>>,
         b: impl Into<Placed<'a, D>>,
-    ) -> Result<Option<Escape<D>>, QueryError> {
+    ) -> Result<Option<SeparatingTranslation<D>>, QueryError> {
         let (a, b) = (a.into(), b.into());
-        escape(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
+        separating_translation(a, b, &self.limits(sizes(&a, &b)), self.scratch.pair())
     }
 
     /// The separation of two bodies with the boxes that prove it; see [`proof`].
@@ -193,7 +196,7 @@ impl<const D: usize> Query<D> {
     pub fn contact_ball(
         &mut self,
         shape: &Shape<D>,
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         radius: f64,
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
         let limits = self.limits([size(shape), Some(2.0 * radius)]);
@@ -209,7 +212,7 @@ impl<const D: usize> Query<D> {
     pub fn touches_ball(
         &mut self,
         shape: &Shape<D>,
-        centre: Point<D>,
+        centre: impl Into<Point<D>>,
         radius: f64,
     ) -> Result<Certified<Option<Contact<D>>>, QueryError> {
         let limits = self.limits([size(shape), Some(2.0 * radius)]);

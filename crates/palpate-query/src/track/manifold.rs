@@ -8,7 +8,7 @@ use palpate_field::Pose;
 use super::Track;
 use crate::certified::Limits;
 use crate::error::QueryError;
-use crate::manifold::{Manifold, ManifoldSettings, spanning};
+use crate::manifold::{Manifold, ManifoldSettings, SeparatedPair, spanning};
 use crate::pair::PairWorkspace;
 use crate::pair::body_pair::BodyPair;
 use crate::placed::Placed;
@@ -31,10 +31,10 @@ impl<const D: usize> Track<D> {
         settings.check()?;
         let goal = settings.goal(limits);
         let (separation, best) = self.search(poses, goal, limits, workspace)?;
-        let found = (best, separation);
         let [a, b] = self.shapes();
         let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
-        let mut found = spanning(pair, found, settings, limits.budget, workspace);
+        let separated = SeparatedPair { pair, best, separation };
+        let mut found = spanning(separated, settings, limits.budget, workspace);
         self.names.name(&mut found.contacts, poses, settings.spacing);
         Ok(found)
     }

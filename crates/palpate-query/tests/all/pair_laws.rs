@@ -7,8 +7,8 @@
 use arbitrary::Unstructured;
 use palpate_field::{Point, Pose, Shape};
 use palpate_query::{
-    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, escape, overlap,
-    separation,
+    Certified, Limits, Nearest, PairWorkspace, Placed, QueryError, Track, overlap,
+    separating_translation, separation,
 };
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::cases;
@@ -124,8 +124,8 @@ laws! {
         and ten_evaluations_in_the_plane_prove_little_and_nothing_wrong, 700 times;
     tracked as what_is_kept_of_bodies_that_move_in_space_stays_true
         and what_is_kept_of_bodies_that_move_in_the_plane_stays_true, 250 times;
-    escaped as ways_out_of_bodies_in_space_lead_out
-        and ways_out_of_bodies_in_the_plane_lead_out, 30 times;
+    separated as separating_translations_separate_bodies_in_space
+        and separating_translations_separate_bodies_in_the_plane, 30 times;
 }
 
 /// Posed, the bodies are as far apart as before. If the motion is built into the shapes,
@@ -296,8 +296,8 @@ where
     Ok(Ok(()))
 }
 
-/// After a way out, bodies do not overlap, and no shorter way than what is said leads out.
-fn escaped<const D: usize>(
+/// After a separating translation bodies do not overlap, and none is shorter than its bound.
+fn separated<const D: usize>(
     case: &mut Case<'_, D>,
     _: &mut Unstructured<'_>,
 ) -> arbitrary::Result<Verdict> {
@@ -306,7 +306,9 @@ fn escaped<const D: usize>(
         let error = |error: QueryError| error.to_string();
         // It asks for hundreds of separations.
         let limits = Limits::new(0.1 * case.size).with_budget(1000);
-        let Some(way) = escape(&a, &b, &limits, case.workspace).map_err(error)? else {
+        let Some(way) =
+            separating_translation(&a, &b, &limits, case.workspace).map_err(error)?
+        else {
             return Ok(());
         };
         let out = Pose::translation(way.direction * way.length);

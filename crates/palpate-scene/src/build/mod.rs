@@ -40,6 +40,7 @@ pub enum AnyScene {
 
 /// A built scene: its bodies, tool, guides, motions and views.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltScene<const D: usize> {
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BuiltBody<D>>,
@@ -59,6 +60,7 @@ pub struct BuiltScene<const D: usize> {
 
 /// The tool of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltTool<const D: usize> {
     /// The radius of each contact point, or the offset added to the shape [m].
     pub radius: f64,
@@ -66,14 +68,22 @@ pub struct BuiltTool<const D: usize> {
     pub points: Vec<Point<D>>,
     /// The shape in the tool's own coordinates, instead of points.
     pub shape: Option<Shape<D>>,
-    /// The coupling of a tool with a shape, and its largest force.
+    /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
+    /// leave to the device.
     pub options: ToolOptions,
-    /// The largest force on the hand [N]; `None` if the scene leaves it to the device.
-    pub max_force: Option<f64>,
+}
+
+impl<const D: usize> BuiltTool<D> {
+    /// One contact point at the origin, of this radius [m].
+    #[must_use]
+    pub fn of_radius(radius: f64) -> Self {
+        Self { radius, points: Vec::new(), shape: None, options: ToolOptions::default() }
+    }
 }
 
 /// A body of a built scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BuiltBody<const D: usize> {
     /// Its name.
     pub name: String,
@@ -227,7 +237,6 @@ where
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
         shape,
         options: tool.options(),
-        max_force: tool.max_force,
     }))
 }
 
@@ -235,9 +244,7 @@ fn guides<const D: usize>(scene: &Scene) -> Result<Vec<Guide<D>>, Problems> {
     let mut wrong = Problems::default();
     let mut guides = Vec::with_capacity(scene.guides.len());
     for (i, guide) in scene.guides.iter().enumerate() {
-        let made = guide.check(D).and_then(|()| {
-            guide.guide().map_err(|error| Problem::new(error.to_string()).into())
-        });
+        let made = guide.check(D).and_then(|()| guide.built().map_err(Into::into));
         guides.extend(wrong.kept(made.map_err(|problems| problems.at(i))));
     }
     wrong.end(Ok(guides))

@@ -34,8 +34,7 @@ impl<const D: usize> BuiltMotion<D> {
     #[must_use]
     pub fn pose(&self, time: f64) -> Option<Pose<D>> {
         let passed = (time - self.start) / self.duration;
-        // Written so that NaN counts as before the motion.
-        if !(passed >= 0.0) {
+        if passed.is_nan() || passed < 0.0 {
             return None;
         }
         Some(self.screw.pose(match self.repeat {
@@ -77,6 +76,8 @@ impl<const D: usize> BuiltScene<D> {
     /// # }
     /// ```
     ///
+    /// Real-time: allocates nothing, takes no lock.
+    ///
     /// # Panics
     ///
     /// If there is no such body.
@@ -89,6 +90,17 @@ impl<const D: usize> BuiltScene<D> {
         last.map_or(self.bodies[body].world_from_body, |(_, pose)| pose)
     }
 
+    /// The numbers of the bodies that have motions, each once.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn moving(&self) -> impl Iterator<Item = usize> {
+        let bodies = self.motions.iter().map(|motion| motion.body).enumerate();
+        bodies.filter_map(|(i, body)| {
+            let mut before = self.motions.iter().take(i);
+            before.all(|motion| motion.body != body).then_some(body)
+        })
+    }
+
     /// The scene at a time [s]: its bodies where their motions have taken them.
     ///
     /// # Errors
@@ -96,9 +108,9 @@ impl<const D: usize> BuiltScene<D> {
     /// If a body cannot be placed there, as its shape says.
     pub fn at(&self, time: f64) -> Result<Self, ShapeError> {
         let mut scene = self.clone();
-        for motion in &self.motions {
-            let pose = self.pose_at(motion.body, time);
-            let body = &mut scene.bodies[motion.body];
+        for number in self.moving() {
+            let pose = self.pose_at(number, time);
+            let body = &mut scene.bodies[number];
             *body = BuiltBody {
                 shape: body.shape_in_body.clone().placed(&pose)?,
                 world_from_body: pose,
@@ -152,7 +164,9 @@ where
     };
     let Some(bodies) = bodies else { return Err(Problems::told()) };
     let from = from.unwrap_or(bodies[body].world_from_body);
-    let screw = Screw::new(from, to, motion.turns).map_err(Problem::of_shape)?;
+    // Both poses are checked: what is refused are the turns.
+    let screw = Screw::new(from, to, motion.turns)
+        .map_err(|error| Problem::of_shape(error).under("turns"))?;
     let Motion { start, duration, repeat, .. } = *motion;
     Ok(BuiltMotion { body, screw, start, duration, repeat })
 }

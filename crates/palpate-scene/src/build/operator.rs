@@ -34,7 +34,7 @@ pub(super) fn over<const D: usize, T>(
         Ok(operand) => make(operand),
         Err(problems) => {
             let made = make(Built::stand_in()?);
-            problems.end(made.map_err(Problems::as_written))
+            problems.end(made.map_err(Problems::of_the_text))
         }
     }
 }
@@ -71,7 +71,7 @@ impl<'a> Builder<'a> {
             });
         }
         let made = self.combined(object, built, level);
-        let made = if wrong.is_failed() { made.map_err(Problems::as_written) } else { made };
+        let made = if wrong.is_failed() { made.map_err(Problems::of_the_text) } else { made };
         wrong.end(made)
     }
 

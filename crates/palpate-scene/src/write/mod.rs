@@ -26,7 +26,7 @@ pub(crate) use shape::Writer;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let cup = Shape::cylinder(0.04, 0.09)? - Shape::cylinder(0.037, 0.08)?;
 /// let cup = SceneBody::new("cup", cup)
-///     .at(Pose::translation([0.0, 0.045, 0.0].into()))
+///     .at(Pose::translation([0.0, 0.045, 0.0]))
 ///     .made_of(Material::wood());
 /// let scene = Scene::new(Dimension::Three).with_bodies([cup])?;
 /// assert_eq!(Scene::from_json(&scene.to_json())?, scene);

@@ -12,6 +12,7 @@ mod fuzz;
 mod generated;
 mod hostile;
 mod materials;
+mod motions;
 mod random;
 mod refusal;
 mod round_trip;

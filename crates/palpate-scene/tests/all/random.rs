@@ -209,7 +209,8 @@ impl Generator {
             7 => {
                 put("translate", json!(numbers(u, d)?));
                 let rotation = maybe(u, |u| rotation(u, d))?;
-                let pose = WrittenPose { rotation, ..WrittenPose::default() };
+                let mut pose = WrittenPose::default();
+                pose.rotation = rotation;
                 let pose = serde_json::to_value(pose).unwrap();
                 pose.as_object().unwrap().iter().for_each(|(key, turn)| put(key, turn.clone()));
             }
@@ -242,27 +243,34 @@ impl Generator {
     fn tool(&self, u: Random, d: usize, shapes: usize) -> Result<WrittenTool> {
         let shape = maybe(u, |u| Ok(written(&self.shape(u, d, 2, shapes)?)))?;
         let points = if shape.is_some() { 0 } else { u.int_in_range(0..=3)? };
-        Ok(WrittenTool {
-            description: text(u)?,
-            radius: length(u)?,
-            points: (0..points).map(|_| numbers(u, d)).collect::<Result<_>>()?,
-            shape,
-            coupling: maybe(u, |u| {
-                Ok(WrittenCoupling {
-                    description: text(u)?,
-                    stiffness: maybe(u, length)?,
-                    damping: maybe(u, length)?,
-                    angular_stiffness: maybe(u, length)?,
-                    angular_damping: maybe(u, length)?,
-                })
-            })?,
-            workspace: maybe(u, |u| {
-                let pose = maybe(u, |u| pose(u, d))?;
-                Ok(WrittenWorkspace { description: text(u)?, scale: length(u)?, pose })
-            })?,
-            max_force: maybe(u, length)?,
-        })
+        let mut tool = WrittenTool::default();
+        tool.description = text(u)?;
+        tool.radius = length(u)?;
+        tool.points = (0..points).map(|_| numbers(u, d)).collect::<Result<_>>()?;
+        tool.shape = shape;
+        tool.coupling = maybe(u, coupling)?;
+        tool.workspace = maybe(u, |u| workspace(u, d))?;
+        tool.max_force = maybe(u, length)?;
+        Ok(tool)
     }
+}
+
+fn coupling(u: Random) -> Result<WrittenCoupling> {
+    let mut coupling = WrittenCoupling::default();
+    coupling.description = text(u)?;
+    coupling.stiffness = maybe(u, length)?;
+    coupling.damping = maybe(u, length)?;
+    coupling.angular_stiffness = maybe(u, length)?;
+    coupling.angular_damping = maybe(u, length)?;
+    Ok(coupling)
+}
+
+fn workspace(u: Random, d: usize) -> Result<WrittenWorkspace> {
+    let mut workspace = WrittenWorkspace::default();
+    workspace.pose = maybe(u, |u| pose(u, d))?;
+    workspace.description = text(u)?;
+    workspace.scale = length(u)?;
+    Ok(workspace)
 }
 
 fn shape_name(i: usize) -> String {
@@ -347,11 +355,11 @@ fn rotation(u: Random, d: usize) -> Result<WrittenRotation> {
 }
 
 fn pose(u: Random, d: usize) -> Result<WrittenPose> {
-    Ok(WrittenPose {
-        description: text(u)?,
-        translation: maybe(u, |u| numbers(u, d))?,
-        rotation: maybe(u, |u| rotation(u, d))?,
-    })
+    let mut pose = WrittenPose::default();
+    pose.description = text(u)?;
+    pose.translation = maybe(u, |u| numbers(u, d))?;
+    pose.rotation = maybe(u, |u| rotation(u, d))?;
+    Ok(pose)
 }
 
 fn material(u: Random, d: usize) -> Result<Material> {
@@ -410,15 +418,12 @@ fn guide(u: Random, d: usize) -> Result<WrittenGuide> {
     let direction = |u: Random| Ok(direction::<3>(u)?[..d].to_vec());
     let (stiffness, max_force) = (length(u)?, length(u)?);
     let snap_distance = maybe(u, length)?;
-    let mut guide = WrittenGuide {
-        description: text(u)?,
-        stiffness,
-        damping: length(u)?,
-        snap_distance,
-        release_distance: snap_distance.map(|snap| 2.0 * snap),
-        max_force,
-        ..WrittenGuide::default()
-    };
+    let mut guide = WrittenGuide::default();
+    guide.description = text(u)?;
+    (guide.stiffness, guide.max_force) = (stiffness, max_force);
+    guide.damping = length(u)?;
+    guide.snap_distance = snap_distance;
+    guide.release_distance = snap_distance.map(|snap| 2.0 * snap);
     let description = text(u)?;
     match u.int_in_range(0..=5)? {
         0 => guide.point = Some(numbers(u, d)?),
@@ -449,16 +454,14 @@ fn guide(u: Random, d: usize) -> Result<WrittenGuide> {
 }
 
 fn motion(u: Random, d: usize) -> Result<Motion> {
-    Ok(Motion {
-        description: text(u)?,
-        body: "body 0".to_owned(),
-        from: maybe(u, |u| pose(u, d))?,
-        to: pose(u, d)?,
-        start: if u.arbitrary()? { 0.0 } else { length(u)? },
-        duration: length(u)?,
-        turns: u.int_in_range(-3..=3)?,
-        repeat: *u.choose(&[Repeat::Once, Repeat::Loop, Repeat::BackAndForth])?,
-    })
+    let mut motion = Motion::new("body 0", pose(u, d)?);
+    motion.description = text(u)?;
+    motion.from = maybe(u, |u| pose(u, d))?;
+    motion.start = if u.arbitrary()? { 0.0 } else { length(u)? };
+    motion.duration = length(u)?;
+    motion.turns = u.int_in_range(-3..=3)?;
+    motion.repeat = *u.choose(&[Repeat::Once, Repeat::Loop, Repeat::BackAndForth])?;
+    Ok(motion)
 }
 
 fn view(u: Random, d: usize, i: usize) -> Result<View> {
@@ -475,16 +478,15 @@ fn view(u: Random, d: usize, i: usize) -> Result<View> {
         maybe(u, |u| Ok(u.choose(&planes)?.clone()))?
     };
     let is_free = matches!(plane, Some(ViewPlane::Free(_)));
-    Ok(View {
-        name: format!("view {i}"),
-        description: text(u)?,
-        at: if d == 2 || is_free { None } else { maybe(u, number)? },
-        plane,
-        center: maybe(u, direction)?,
-        width: maybe(u, length)?,
-        height: maybe(u, length)?,
-        spacing: maybe(u, length)?,
-    })
+    let mut view = View::new(format!("view {i}"));
+    view.description = text(u)?;
+    view.at = if d == 2 || is_free { None } else { maybe(u, number)? };
+    view.plane = plane;
+    view.center = maybe(u, direction)?;
+    view.width = maybe(u, length)?;
+    view.height = maybe(u, length)?;
+    view.spacing = maybe(u, length)?;
+    Ok(view)
 }
 
 /// Rows of copies along at least one axis.

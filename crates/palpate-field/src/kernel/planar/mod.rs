@@ -16,7 +16,7 @@ pub(super) mod line;
 mod outline;
 mod parabola;
 mod parabola_circle;
-mod parabola_foot;
+pub(crate) mod parabola_foot;
 mod polygon;
 mod quadratic_bezier;
 mod quadrilateral;

@@ -41,11 +41,11 @@ const TINY: f64 = 1e-37;
 /// With r this zero, the others are those of `z² + rz + r² + k`. If there are any, the
 /// lower of them is the nearest point with τ < 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quadratic {
+pub struct Quadratic {
     /// e.
-    along: f64,
+    pub along: f64,
     /// c.
-    up: f64,
+    pub up: f64,
 }
 
 /// The zero of the scaled cubic, its k, and the scale from z to τ.
@@ -56,18 +56,20 @@ struct Zero<S> {
 }
 
 /// A parabola's nearest point.
-pub(super) struct Nearest<S> {
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest<S> {
     /// Its parameter τ, from the vertex.
-    pub(super) tau: S,
+    pub tau: S,
     /// How far the point is below the parabola; negative above.
-    pub(super) below: S,
+    pub below: S,
     /// The unit normal there, pointing out of the region above.
-    pub(super) normal: [S; 2],
+    pub normal: [S; 2],
 }
 
 impl Quadratic {
     /// The parabola of the points `(eτ, cτ²)`, for e ≥ 0 and c > 0 [m].
-    pub(super) fn new(along: f64, up: f64) -> Self {
+    #[must_use]
+    pub fn new(along: f64, up: f64) -> Self {
         Self { along, up }
     }
 
@@ -100,7 +102,7 @@ impl Quadratic {
     /// nearest one on the other side of the axis; or, if there is none, of some point
     /// there.
     #[inline(always)]
-    pub(super) fn feet<S: Scalar>(&self, a: S, b: S) -> [S; 2] {
+    pub fn feet<S: Scalar>(&self, a: S, b: S) -> [S; 2] {
         let Zero { z, k, scale } = self.zero(a, b);
         let rest = -(z.squared().scale(3.0) + k.scale(4.0));
         let other = (z + rest.max(S::constant(0.0)).sqrt()).scale(-0.5);
@@ -111,7 +113,7 @@ impl Quadratic {
     ///
     /// The distance is taken along the normal: an error of τ is of second order.
     #[inline(always)]
-    pub(super) fn nearest<S: Scalar>(&self, a: S, b: S) -> Nearest<S> {
+    pub fn nearest<S: Scalar>(&self, a: S, b: S) -> Nearest<S> {
         let Zero { z, scale, .. } = self.zero(a, b);
         let tau = z * scale;
         let slope = [tau.scale(2.0 * self.up), S::constant(-self.along)];
@@ -119,69 +121,5 @@ impl Quadratic {
         let normal = [slope[0] * inverse, slope[1] * inverse];
         let from_foot = Vector([a - tau.scale(self.along), b - tau * tau.scale(self.up)]);
         Nearest { tau, below: from_foot.dot(Vector(normal)), normal }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Where the distance from (a, b) is the least, by looking at many points and
-    /// then between the best of them.
-    fn by_search(curve: Quadratic, a: f64, b: f64) -> f64 {
-        let square = |tau: f64| {
-            let x = curve.along * tau - a;
-            let y = curve.up * tau * tau - b;
-            x * x + y * y
-        };
-        let far = (a / curve.along).max((b.abs() / curve.up).sqrt()) + 1.0;
-        let count = 4000;
-        let at = |i: usize| far * i as f64 / count as f64;
-        let best = (0..=count).min_by(|i, j| square(at(*i)).total_cmp(&square(at(*j))));
-        let best = best.unwrap();
-        let (mut low, mut high) = (at(best.saturating_sub(1)), at(best + 1));
-        for _ in 0..200 {
-            let third = (high - low) / 3.0;
-            if square(low + third) < square(high - third) {
-                high -= third;
-            } else {
-                low += third;
-            }
-        }
-        square(low).sqrt()
-    }
-
-    #[test]
-    fn the_root_is_the_nearest_point_also_on_the_evolute_and_the_axis() {
-        let mut state = 1_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / 9_007_199_254_740_992.0
-        };
-        for case in 0..20_000 {
-            let curve = Quadratic::new(0.2 + 2.0 * random(), 0.2 + 2.0 * random());
-            let rho = curve.along * curve.along / (2.0 * curve.up);
-            // Anywhere, on the axis, on the evolute and next to it.
-            let s = 2.0 * random();
-            let evolute = [
-                curve.along * s.powi(3) * 4.0 * curve.up * curve.up
-                    / (curve.along * curve.along),
-                rho + 3.0 * curve.up * s * s,
-            ];
-            let [a, b] = match case % 5 {
-                0 => [5.0 * random(), 10.0 * random() - 5.0],
-                1 => [0.0, 6.0 * random() - 1.0],
-                2 => evolute,
-                3 => [evolute[0] * (1.0 + 1e-9 * (random() - 0.5)), evolute[1]],
-                _ => [1e-12 * random(), rho * (1.0 + 1e-9 * (random() - 0.5))],
-            };
-            let nearest = curve.nearest(a, b);
-            let found = by_search(curve, a, b);
-            assert!(
-                (nearest.below.abs() - found).abs() < 1e-12 * (1.0 + a + b.abs()),
-                "{} instead of {found} at {a}, {b} of {curve:?}",
-                nearest.below
-            );
-        }
     }
 }

@@ -6,9 +6,9 @@
 use super::outline::frame_between;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
-use crate::field::Placement;
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Cuboid, Kernel, primitive, tangent_model};
+use crate::pose::Placement;
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector, array};

@@ -6,9 +6,9 @@
 use super::outline::frame_between;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
-use crate::field::Placement;
 use crate::kernel::profile::Lens;
 use crate::kernel::{Kernel, primitive, tangent_model};
+use crate::pose::Placement;
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
 use crate::vector::{Point, Vector};

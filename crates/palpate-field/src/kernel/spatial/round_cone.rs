@@ -16,20 +16,31 @@ use crate::vector::{Point, Vector};
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 8.0;
 
-/// The profile of two balls, neither of which holds the other.
-fn two_discs(
-    [first, second]: [(&'static str, f64); 2],
-    (what, distance): (&'static str, f64),
-) -> Result<TwoDiscs, ShapeError> {
-    positive(first.0, first.1, Unit::Metre)?;
-    positive(second.0, second.1, Unit::Metre)?;
-    positive(what, distance, Unit::Metre)?;
-    let least = (first.1 - second.1).abs();
-    if distance <= least {
-        let rule = format!("more than the difference of the radii, {least} m");
-        return Err(ShapeError::number(what, rule, distance, Unit::Metre));
+/// A length [m] by its name.
+#[derive(Clone, Copy)]
+struct Named {
+    name: &'static str,
+    length: f64,
+}
+
+impl Named {
+    fn new(name: &'static str, length: f64) -> Self {
+        Self { name, length }
     }
-    Ok(TwoDiscs::new(first.1, second.1, distance))
+}
+
+/// The profile of two balls, neither of which holds the other.
+fn two_discs(radii: [Named; 2], distance: Named) -> Result<TwoDiscs, ShapeError> {
+    let [first, second] = radii.map(|radius| radius.length);
+    for Named { name, length } in [radii[0], radii[1], distance] {
+        positive(name, length, Unit::Metre)?;
+    }
+    let least = (first - second).abs();
+    if distance.length <= least {
+        let rule = format!("more than the difference of the radii, {least} m");
+        return Err(ShapeError::number(distance.name, rule, distance.length, Unit::Metre));
+    }
+    Ok(TwoDiscs::new(first, second, distance.length))
 }
 
 /// Two balls above each other on the y axis and all that is between: their convex
@@ -60,8 +71,9 @@ impl RoundCone {
     ///
     /// If a length is not positive, or one ball holds the other.
     pub fn new(bottom_radius: f64, top_radius: f64, height: f64) -> Result<Self, ShapeError> {
-        let radii = [("bottom_radius", bottom_radius), ("top_radius", top_radius)];
-        Ok(Self(two_discs(radii, ("height", height))?))
+        let bottom = Named::new("bottom_radius", bottom_radius);
+        let top = Named::new("top_radius", top_radius);
+        Ok(Self(two_discs([bottom, top], Named::new("height", height))?))
     }
 }
 
@@ -141,9 +153,11 @@ impl RoundConeBetween {
         to_radius: f64,
     ) -> Result<Self, ShapeError> {
         let between = Between::new(from, to)?;
-        let radii = [("from_radius", from_radius), ("to_radius", to_radius)];
-        let distance = ("the distance from `from` to `to`", 2.0 * between.half_length());
-        Ok(Self { cone: RoundCone(two_discs(radii, distance)?), between })
+        let from = Named::new("from_radius", from_radius);
+        let to = Named::new("to_radius", to_radius);
+        let distance = 2.0 * between.half_length();
+        let distance = Named::new("the distance from `from` to `to`", distance);
+        Ok(Self { cone: RoundCone(two_discs([from, to], distance)?), between })
     }
 }
 

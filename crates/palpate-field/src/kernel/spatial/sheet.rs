@@ -5,9 +5,9 @@
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative};
-use crate::field::Placement;
 use crate::kernel::planar::line::Edge;
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
+use crate::pose::Placement;
 use crate::pose::{Pose, Rotation};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};

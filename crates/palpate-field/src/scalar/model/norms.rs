@@ -54,6 +54,29 @@ struct Roundings {
     gradient: f64,
 }
 
+impl Roundings {
+    /// These, with that of the value absolute, for numbers up to `size`.
+    #[inline(always)]
+    fn of_size(self, size: f64) -> Self {
+        Self { value: self.value * size, ..self }
+    }
+}
+
+/// How far a function may exceed its tangent plane.
+struct Above {
+    /// How far the components move over the cell, all together.
+    moves: f64,
+    /// By its curvature.
+    plane: f64,
+}
+
+/// The norm of the positive parts, its inverse, and its gradient where it is positive.
+struct Outside<const M: usize> {
+    norm: f64,
+    inverse: f64,
+    gradient: [f64; M],
+}
+
 /// Those of a norm of squares, with room.
 const OF_SQUARES: Roundings = Roundings { value: 8.0 * UNIT, gradient: 8.0 * UNIT };
 
@@ -66,8 +89,8 @@ const fn of_powers<const P: u32>() -> Roundings {
 }
 
 /// A function of `x` that nowhere lies below its tangent plane and is nowhere steeper
-/// than one: `value` and `gradient` at the centre, at most `above` over the plane, off by
-/// `roundings` of numbers up to `size`.
+/// than one: `value` and `gradient` at the centre, at most `above` over the plane, the value off
+/// by the one of the `roundings`, the gradient relatively by the other.
 ///
 /// A component's rounding is relative: of a remainder that lifts the plane, it takes
 /// nothing that the remainder does not bring. So it counts over what may lower it alone.
@@ -76,8 +99,8 @@ fn convex<const M: usize, const N: usize>(
     value: f64,
     gradient: [f64; M],
     x: &[AffineModel<N>; M],
-    (moves, above): (&Moves<M>, f64),
-    (roundings, size): (Roundings, f64),
+    above: Above,
+    roundings: Roundings,
 ) -> AffineModel<N> {
     let mut slopes = [NONE; N];
     let (mut lower, mut upper, mut reach) = (NONE, NONE, NONE);
@@ -89,9 +112,9 @@ fn convex<const M: usize, const N: usize>(
         upper += size * choose(positive, x[i].upper, x[i].lower);
         reach += size * x[i].slope();
     });
-    let steepest = (moves.sum + (reach + lower.max_of(upper))) * INFLATE;
-    let above = Scalar::min(above, steepest);
-    let fixed = roundings.value * size + roundings.gradient * reach;
+    let steepest = (above.moves + (reach + lower.max_of(upper))) * INFLATE;
+    let above = Scalar::min(above.plane, steepest);
+    let fixed = roundings.value + roundings.gradient * reach;
     AffineModel {
         value,
         gradient: slopes,
@@ -107,8 +130,8 @@ pub(super) fn norm<const M: usize, const N: usize>(x: [AffineModel<N>; M]) -> Af
     let inverse = choose(n > 0.0, 1.0 / choose(n > 0.0, n, 1.0), 0.0);
     let moves = Moves::of(&x);
     let unit = array!(i < M => x[i].value * inverse);
-    let above = moves.curved(n, inverse, 1.0);
-    convex(n, unit, &x, (&moves, above), (OF_SQUARES, n))
+    let above = Above { moves: moves.sum, plane: moves.curved(n, inverse, 1.0) };
+    convex(n, unit, &x, above, OF_SQUARES.of_size(n))
 }
 
 /// Half the square of a norm of the powers `P ≥ 2` has a second derivative of at most
@@ -122,9 +145,10 @@ pub(super) fn power_norm<const P: u32, const M: usize, const N: usize>(
     let split = power::split::<f64, P, M>(values);
     let n = split.largest * split.root;
     let moves = Moves::of(&x);
-    let above = moves.curved(n, 1.0 / choose(n > 0.0, n, 1.0), f64::from(P) - 1.0);
+    let curved = moves.curved(n, 1.0 / choose(n > 0.0, n, 1.0), f64::from(P) - 1.0);
+    let above = Above { moves: moves.sum, plane: curved };
     let gradient = split.gradient::<P>(values);
-    convex(n, gradient, &x, (&moves, above), (of_powers::<P>(), n + TINY / UNIT))
+    convex(n, gradient, &x, above, of_powers::<P>().of_size(n + TINY / UNIT))
 }
 
 #[inline(always)]
@@ -135,7 +159,7 @@ pub(super) fn orthant<const M: usize, const N: usize>(
     let n = <f64 as Scalar>::norm(positive);
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
     let outside = array!(i < M => positive[i] * inverse);
-    to_orthant((n, inverse, outside), &q, 1.0, OF_SQUARES)
+    to_orthant(Outside { norm: n, inverse, gradient: outside }, &q, 1.0, OF_SQUARES)
 }
 
 #[inline(always)]
@@ -147,14 +171,14 @@ pub(super) fn power_orthant<const P: u32, const M: usize, const N: usize>(
     let n = split.largest * split.root;
     let inverse = 1.0 / choose(n > 0.0, n, 1.0);
     let outside = split.gradient::<P>(positive);
-    to_orthant((n, inverse, outside), &q, f64::from(P) - 1.0, of_powers::<P>())
+    let outside = Outside { norm: n, inverse, gradient: outside };
+    to_orthant(outside, &q, f64::from(P) - 1.0, of_powers::<P>())
 }
 
 /// An orthant distance is convex and grows with each `qᵢ`: below, its subgradient is
 /// a bound.
 ///
-/// Given are the norm of the positive parts, its inverse and its gradient where it is
-/// positive, and how much the norm is curved, as for [`Moves::curved`].
+/// Given is how much the norm is curved, as for [`Moves::curved`].
 ///
 /// Above, while the largest `qᵢ` alone may be positive, the plane is that `qᵢ` itself. Where
 /// it goes down to `low`, the others up to `other`, the distance exceeds it by at most
@@ -162,7 +186,7 @@ pub(super) fn power_orthant<const P: u32, const M: usize, const N: usize>(
 /// positive parts on top of what `low` lacks to zero.
 #[inline(always)]
 fn to_orthant<const M: usize, const N: usize>(
-    (n, inverse, outside): (f64, f64, [f64; M]),
+    Outside { norm: n, inverse, gradient: outside }: Outside<M>,
     q: &[AffineModel<N>; M],
     curvature: f64,
     roundings: Roundings,
@@ -193,5 +217,6 @@ fn to_orthant<const M: usize, const N: usize>(
     let over_plane = moves.curved(n, inverse, curvature);
     let above = choose(second > 0.0, over_plane, Scalar::min(over_plane, over_face));
     let size = n + f64::abs(largest) + TINY / UNIT;
-    convex(n + Scalar::min(largest, 0.0), gradient, q, (&moves, above), (roundings, size))
+    let above = Above { moves: moves.sum, plane: above };
+    convex(n + Scalar::min(largest, 0.0), gradient, q, above, roundings.of_size(size))
 }

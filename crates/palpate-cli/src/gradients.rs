@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! `palpate gradients`: the memoir's ways to a gradient (section 2.3), beside the exact one.
+
+use std::io::Write;
+
+use palpate::field::{Aabb, Point, Vector};
+use palpate::local::{
+    FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
+};
+use palpate::plot::{Figure, PlotError, Sampling, Slice};
+use palpate::query::{self, AtPoint};
+use palpate::scene::{AnyScene, BuiltScene};
+use serde_json::{Value, json};
+
+use crate::arguments::GradientsOptions;
+use crate::error_map::{Gradient, bar, sampler};
+use crate::input::{self, joined, longest_edge, promise_in_words};
+use crate::outcome::{Failure, Outcome};
+use crate::output::{self, Files};
+use crate::picture::{self, Dimensions, Drawable, Picture, in_space};
+use crate::plot::{square, title};
+
+/// Panels in a row.
+const COLUMNS: usize = 2;
+/// Cells along a panel, about one for each pixel of a figure.
+const CELLS: usize = 160;
+
+pub(crate) fn run(options: &GradientsOptions) -> Result<Outcome, Failure> {
+    let mut files = Files::reading([options.scene.as_path()]);
+    let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
+    let picture = picture.transpose()?;
+    match &input::scene(Some(&options.scene))?.scene {
+        AnyScene::Planar(scene) => compare(options, scene, picture.as_ref()),
+        AnyScene::Spatial(scene) => compare(options, scene, picture.as_ref()),
+    }
+}
+
+fn compare<const D: usize>(
+    options: &GradientsOptions,
+    scene: &BuiltScene<D>,
+    picture: Option<&Picture>,
+) -> Result<Outcome, Failure>
+where
+    Dimensions: Drawable<D>,
+{
+    let p = input::point::<D>(&options.at)?;
+    let sampler = sampler(options.offset, options.single, scene)?;
+    let window = picture.map(|_| window(options.size, scene, p)).transpose()?;
+    let at = query::evaluate_point(&scene.whole, p).map_err(Failure::input)?;
+    let ways = GradientMethod::ALL
+        .iter()
+        .map(|method| Way { method: *method, found: sampler.find(*method, &scene.whole, p) });
+    let comparison = Comparison { options, sampler, at, ways: ways.collect() };
+    if options.json {
+        comparison.print_json()?;
+    } else {
+        comparison.print_text()?;
+    }
+    if let (Some(picture), Some(window)) = (picture, window) {
+        picture.save(&comparison.figure(scene, &window)?, picture::WIDTH)?;
+    }
+    Ok(Outcome::Yes)
+}
+
+/// The part of a scene to be drawn, with room around it: that about a point, or all of it.
+fn window<const D: usize>(
+    size: Option<f64>,
+    scene: &BuiltScene<D>,
+    about: Point<D>,
+) -> Result<Aabb<D>, Failure> {
+    if let Some(size) = size {
+        return square(about, size);
+    }
+    let bounds = scene.bounds().ok_or_else(|| {
+        Failure::input("--size is needed: no body of the scene has bounds to draw")
+    })?;
+    Ok(bounds.grown(picture::MARGIN * longest_edge(&bounds)))
+}
+
+/// What a method found.
+struct Way<const D: usize> {
+    method: GradientMethod,
+    found: FoundDirection<D>,
+}
+
+impl<const D: usize> Way<D> {
+    /// The angle from the exact gradient [degrees], where both have a direction.
+    fn error(&self, at: &AtPoint<D>) -> Option<f64> {
+        Some(angle_between(self.found.direction?, at.normal?).to_degrees())
+    }
+
+    /// Why there is no direction.
+    fn obstacle(&self) -> Option<&'static str> {
+        match (self.found.direction, self.method) {
+            (Some(_), _) => None,
+            (None, method) if D > 2 && method.is_planar() => Some("only in the plane"),
+            (None, GradientMethod::ClosestVector) => {
+                Some("no direction: the point lies on the surface, or no surface was found")
+            }
+            (None, GradientMethod::Exact) => Some("no direction: the gradient is zero"),
+            (None, _) => Some("no direction: the values on both sides are equal"),
+        }
+    }
+}
+
+/// The methods at a point.
+struct Comparison<'a, const D: usize> {
+    options: &'a GradientsOptions,
+    sampler: GradientSampler,
+    at: AtPoint<D>,
+    ways: Vec<Way<D>>,
+}
+
+impl<const D: usize> Comparison<'_, D>
+where
+    Dimensions: Drawable<D>,
+{
+    /// The offset where the value is that at the point [m].
+    fn adaptive_offset(&self) -> f64 {
+        adaptive_offset(self.at.distance, self.sampler.offset())
+    }
+
+    fn precision(&self) -> &'static str {
+        if self.options.single { "single" } else { "double" }
+    }
+
+    fn print_json(&self) -> Result<(), Failure> {
+        let ways: Vec<Value> = self
+            .ways
+            .iter()
+            .map(|way| {
+                json!({
+                    "method": way.method.name(),
+                    "direction": way.found.direction.map(|d| d.0.to_vec()),
+                    "error_degrees": way.error(&self.at),
+                    "evaluations": way.found.evaluations,
+                    "obstacle": way.obstacle(),
+                })
+            })
+            .collect();
+        let answer = json!({
+            "point_m": self.at.point.0.to_vec(),
+            "distance_m": self.at.distance,
+            "gradient": self.at.gradient.0.to_vec(),
+            "offset_m": self.sampler.offset(),
+            "adaptive_offset_m": self.adaptive_offset(),
+            "precision": self.precision(),
+            "methods": ways,
+        });
+        output::answer().json(&answer)?;
+        Ok(())
+    }
+
+    fn print_text(&self) -> Result<(), Failure> {
+        let Self { at, sampler, .. } = self;
+        let mut out = output::answer();
+        writeln!(out, "distance             {} m", at.distance)?;
+        writeln!(out, "gradient             {}", joined(&at.gradient.0))?;
+        let (offset, adaptive) = (sampler.offset(), self.adaptive_offset());
+        writeln!(out, "offset               {offset:.3e} m, adaptive {adaptive:.3e} m")?;
+        writeln!(out, "values               in {} precision", self.precision())?;
+        for way in &self.ways {
+            write!(out, "{:<20} ", way.method.name())?;
+            match way.obstacle() {
+                Some(obstacle) => writeln!(out, "{obstacle}")?,
+                None => writeln!(out, "{}", self.in_words(way))?,
+            }
+        }
+        Ok(())
+    }
+
+    fn in_words(&self, way: &Way<D>) -> String {
+        /// Decimals of a direction and of an angle in degrees.
+        const DIGITS: usize = 6;
+        let direction = way.found.direction.unwrap_or(Vector::ZERO);
+        // Adding zero turns −0 into 0, also that of rounding.
+        let rounded = |x: f64| (x * 1e6).round() / 1e6 + 0.0;
+        let direction = direction.0.map(|x| format!("{:>9.DIGITS$}", rounded(x))).join(", ");
+        let error = way.error(&self.at).map_or_else(
+            || "no exact direction".to_owned(),
+            |degrees| format!("{degrees:>10.DIGITS$}° off"),
+        );
+        format!("{direction}   {error}   {:>3} evaluations", way.found.evaluations)
+    }
+
+    /// The errors over a window, a panel a method.
+    fn figure(&self, scene: &BuiltScene<D>, window: &Aabb<D>) -> Result<Figure, Failure> {
+        let [_, _, depth] = in_space(self.at.point);
+        let plane = if D < 3 { Ok(Slice::planar()) } else { Slice::xy(depth) };
+        let plane = plane.map_err(Failure::input)?;
+        let view = Dimensions::view(&plane, window, 0.0).map_err(Failure::input)?;
+        let sampling = Sampling::new(CELLS).map_err(Failure::input)?;
+        let isolines = picture::isolines(&scene.whole, &plane, &view, sampling);
+        let isolines = isolines.map_err(Failure::input)?;
+        let bar = bar();
+        let methods = GradientMethod::ALL.iter().filter(|m| D < 3 || !m.is_planar());
+        let panels = methods.map(|method| {
+            let gradient = Gradient::of(scene, *method, self.sampler);
+            let panel = gradient.draw_error(isolines.clone(), &plane, &bar)?;
+            Ok::<_, PlotError>(panel.with_title(method.name().replace('_', " ")))
+        });
+        let panels = panels.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+        bar.finish_and_clear();
+        let caption = format!(
+            "{}. Offset {:.3e} m, values in {} precision.",
+            promise_in_words(scene.whole.promise()),
+            self.sampler.offset(),
+            self.precision(),
+        );
+        let title = format!("Gradients: {}", title(&self.options.scene));
+        Ok(Figure::new(title).with_caption(caption).with_sheet(COLUMNS, panels))
+    }
+}

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Shapes on a plane, as pictures ask for them.
+
+use palpate::field::scalar::Model;
+use palpate::field::{BLOCK, Block, Column, Gradients, Rotation, Shape, Vector};
+use palpate::plot::{
+    BoundedField, Cell, Isolines, Outline, PlotError, Sampling, Slice, Slope, View,
+};
+
+use super::{Dimensions, Drawable};
+
+/// The isolines of `shape` on `plane`.
+pub(crate) fn isolines<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+    view: &View,
+    sampling: Sampling,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    let isolines = Isolines::sample(plane, view, sampling, values(shape, plane))?;
+    Ok(isolines.with_outline(outline(shape, plane, view, sampling)?))
+}
+
+/// A function of plane coordinates that gives values of `shape` on `plane`.
+pub(crate) fn values<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+) -> impl FnMut(&[[f64; 2]], &mut [f64])
+where
+    Dimensions: Drawable<D>,
+{
+    let mut points = Vec::new();
+    move |st, values| {
+        points.clear();
+        points.extend(st.iter().map(|st| Dimensions::point(plane, *st)));
+        shape.distances(&points, values);
+    }
+}
+
+/// A function of plane coordinates that gives values and gradients of `shape` on `plane`.
+pub(crate) fn slopes<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+) -> impl FnMut(&[[f64; 2]], &mut [Slope])
+where
+    Dimensions: Drawable<D>,
+{
+    let mut block = Block::<f64, D, BLOCK>::zero();
+    let mut found = Gradients::<f64, D, BLOCK>::zero();
+    move |points, slopes| {
+        for (points, slopes) in points.chunks(BLOCK).zip(slopes.chunks_mut(BLOCK)) {
+            for (i, st) in points.iter().enumerate() {
+                block.set(i, Dimensions::point(plane, *st));
+            }
+            shape.block_gradients(&block, points.len(), &mut found);
+            for (i, slope) in slopes.iter_mut().enumerate() {
+                let gradient = Dimensions::gradient(plane, found.gradient.get(i));
+                *slope = Slope { value: found.distance.get(i), gradient };
+            }
+        }
+    }
+}
+
+/// The surface of `shape` on `plane`, followed.
+pub(crate) fn outline<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+    view: &View,
+    sampling: Sampling,
+) -> Result<Outline, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    let (turn, extent) = Dimensions::cells(plane);
+    let flat = Flat {
+        shape,
+        plane,
+        values: values(shape, plane),
+        slopes: slopes(shape, plane),
+        turn,
+        extent,
+        cells: Block::zero(),
+        models: Column::zero(),
+    };
+    Outline::follow(view, sampling, flat)
+}
+
+/// A shape on a plane.
+struct Flat<'a, V, S, const D: usize> {
+    shape: &'a Shape<D>,
+    plane: &'a Slice,
+    values: V,
+    slopes: S,
+    turn: Option<Rotation<D>>,
+    /// Half the edges of a cell of which half the edge in the plane is one.
+    extent: Vector<f64, D>,
+    cells: Block<Model, D, BLOCK>,
+    models: Column<Model, BLOCK>,
+}
+
+impl<V, S, const D: usize> BoundedField for Flat<'_, V, S, D>
+where
+    V: FnMut(&[[f64; 2]], &mut [f64]),
+    S: FnMut(&[[f64; 2]], &mut [Slope]),
+    Dimensions: Drawable<D>,
+{
+    fn values(&mut self, points: &[[f64; 2]], values: &mut [f64]) {
+        (self.values)(points, values);
+    }
+
+    fn slopes(&mut self, points: &[[f64; 2]], slopes: &mut [Slope]) {
+        (self.slopes)(points, slopes);
+    }
+
+    fn safe_radii(&mut self, points: &[[f64; 2]], radii: &mut [f64]) {
+        self.values(points, radii);
+        let promise = self.shape.promise();
+        for (point, radius) in points.iter().zip(radii) {
+            let point = Dimensions::point(self.plane, *point);
+            let rounding = promise.rounding.within(point.norm());
+            *radius = promise.safe_radius(point, *radius) - rounding;
+        }
+    }
+
+    fn bounds(&mut self, cells: &[Cell], bounds: &mut [[f64; 2]]) {
+        for (cells, bounds) in cells.chunks(BLOCK).zip(bounds.chunks_mut(BLOCK)) {
+            self.cells.fill_boxes(cells.len(), self.turn.as_ref(), |i| {
+                let Cell { centre, half } = cells[i];
+                (Dimensions::point(self.plane, centre), self.extent * half)
+            });
+            self.shape.block_distances(&self.cells, cells.len(), &mut self.models);
+            for (i, bounds) in bounds.iter_mut().enumerate() {
+                let model = self.models.get(i);
+                *bounds = [model.minimum(), model.maximum()];
+            }
+        }
+    }
+}

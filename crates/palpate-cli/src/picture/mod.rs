@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Draws shapes, and writes picture files.
+
+mod flat;
+#[cfg(test)]
+mod laws;
+
+use std::path::Path;
+
+use palpate::field::{Aabb, Quality, Rotation, Shape, Vector};
+use palpate::plot::{Figure, Gauge, Isolines, PlotError, Promised, Slice, View};
+
+use palpate::scene::{AnyScene, BuiltScene};
+
+use crate::arguments::{Format, Map};
+use crate::outcome::Failure;
+use crate::output::{Destination, Files};
+
+pub(crate) use flat::{isolines, outline, slopes, values};
+
+/// Room around a scene, as a share of its longer side.
+pub(crate) const MARGIN: f64 = 0.15;
+
+/// The width of a PNG where none is asked for [pixels].
+pub(crate) const WIDTH: u32 = 1200;
+
+/// A dimension whose shapes can be drawn.
+pub(crate) trait Drawable<const D: usize> {
+    /// The window that shows `bounds` on `plane`, with a margin of `margin` times its longer
+    /// side.
+    fn view(plane: &Slice, bounds: &Aabb<D>, margin: f64) -> Result<View, PlotError>;
+
+    /// The point of space at plane coordinates.
+    fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, D>;
+
+    /// The number that a picture compares with the promise.
+    const GAUGE: Gauge;
+
+    /// The parts of a gradient to the right, up, and towards the viewer.
+    fn gradient(plane: &Slice, gradient: Vector<f64, D>) -> [f64; 3];
+
+    /// How cells of the picture lie in space: the rotation from the picture's axes, `None` if
+    /// these run along axes of space, and half the edges of a cell for which they are one.
+    fn cells(plane: &Slice) -> (Option<Rotation<D>>, Vector<f64, D>);
+
+    /// The scene, if it is of this dimension.
+    fn scene(scene: AnyScene) -> Option<BuiltScene<D>>;
+}
+
+/// Marks the dimension of a shape.
+pub(crate) struct Dimensions;
+
+impl Drawable<2> for Dimensions {
+    fn view(_: &Slice, bounds: &Aabb<2>, margin: f64) -> Result<View, PlotError> {
+        View::from_bounds(bounds.min.0, bounds.max.0, margin)
+    }
+
+    fn point(_: &Slice, st: [f64; 2]) -> Vector<f64, 2> {
+        Vector(st)
+    }
+
+    const GAUGE: Gauge = Gauge::Distance;
+
+    fn gradient(_: &Slice, Vector([x, y]): Vector<f64, 2>) -> [f64; 3] {
+        [x, y, 0.0]
+    }
+
+    fn cells(_: &Slice) -> (Option<Rotation<2>>, Vector<f64, 2>) {
+        (None, Vector::constant(1.0))
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<2>> {
+        match scene {
+            AnyScene::Planar(scene) => Some(scene),
+            AnyScene::Spatial(_) => None,
+        }
+    }
+}
+
+impl Drawable<3> for Dimensions {
+    fn view(plane: &Slice, bounds: &Aabb<3>, margin: f64) -> Result<View, PlotError> {
+        View::of_box(plane, bounds.min.0, bounds.max.0, margin)
+    }
+
+    fn point(plane: &Slice, st: [f64; 2]) -> Vector<f64, 3> {
+        Vector(plane.point(st))
+    }
+
+    /// The nearest surface may lie outside the slice.
+    const GAUGE: Gauge = Gauge::Steepness;
+
+    fn gradient(plane: &Slice, gradient: Vector<f64, 3>) -> [f64; 3] {
+        plane.project_gradient(gradient.0)
+    }
+
+    fn cells(plane: &Slice) -> (Option<Rotation<3>>, Vector<f64, 3>) {
+        let axes = plane.directions();
+        let runs_along = |axis: [f64; 3]| axis.iter().filter(|x| **x != 0.0).count() == 1;
+        let is_straight = axes.into_iter().all(runs_along);
+        match Rotation::from_rows(std::array::from_fn(|k| axes.map(|axis| axis[k]))) {
+            Ok(_) if is_straight => (None, Vector(plane.normal().map(|x| 1.0 - x.abs()))),
+            Ok(turn) => (Some(turn), Vector([1.0, 1.0, 0.0])),
+            // The axes of a slice are orthonormal; a box that holds any cell is right too.
+            Err(_) => (None, Vector::constant(std::f64::consts::SQRT_2)),
+        }
+    }
+
+    fn scene(scene: AnyScene) -> Option<BuiltScene<3>> {
+        match scene {
+            AnyScene::Spatial(scene) => Some(scene),
+            AnyScene::Planar(_) => None,
+        }
+    }
+}
+
+/// A point of the plane or of space, as a point of space.
+pub(crate) fn in_space<const D: usize>(point: Vector<f64, D>) -> [f64; 3] {
+    point.in_space().0
+}
+
+/// The picture of `shape` on `plane` with the colours of `map`.
+pub(crate) fn mapped<const D: usize>(
+    shape: &Shape<D>,
+    plane: &Slice,
+    isolines: Isolines,
+    map: Map,
+) -> Result<Isolines, PlotError>
+where
+    Dimensions: Drawable<D>,
+{
+    match map {
+        Map::Distance => Ok(isolines),
+        Map::Gradient => isolines.with_gradient(slopes(shape, plane)),
+        Map::Promise => {
+            let promise = shape.promise();
+            let promised = [promise.outside, promise.inside].map(|quality| match quality {
+                Quality::Exact => Promised::Exact,
+                Quality::Bound => Promised::Bound,
+                Quality::Lipschitz => Promised::Lipschitz(promise.lipschitz),
+            });
+            let gauge = <Dimensions as Drawable<D>>::GAUGE;
+            isolines.with_promise(promised, gauge, slopes(shape, plane))
+        }
+    }
+}
+
+/// Refuses a width in pixels for a format without pixels.
+pub(crate) fn check_width(format: Format, width: Option<u32>) -> Result<(), Failure> {
+    match (format, width) {
+        (Format::Svg, Some(_)) => {
+            Err(Failure::input("--width is for PNG pictures; an SVG is drawn at any width"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A picture file to be written.
+#[derive(Debug)]
+pub(crate) struct Picture {
+    destination: Destination,
+    format: Format,
+}
+
+impl Picture {
+    /// A picture at `path`, in the format of its ending, as an output of the run of `files`.
+    pub(crate) fn new(files: &mut Files, path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let format = match ending.to_ascii_lowercase().as_str() {
+            "svg" => Format::Svg,
+            "png" => Format::Png,
+            _ => {
+                let problem = "the name of a picture must end in .svg or .png";
+                return Err(Failure::file(path, problem));
+            }
+        };
+        Ok(Self { destination: files.output(path)?, format })
+    }
+
+    /// The path that the command line gave.
+    pub(crate) fn path(&self) -> &Path {
+        self.destination.name()
+    }
+
+    /// Refuses a width in pixels for a picture without pixels.
+    pub(crate) fn check_width(&self, width: Option<u32>) -> Result<(), Failure> {
+        check_width(self.format, width)
+    }
+
+    /// Writes `figure`; as a PNG, `width` pixels wide.
+    pub(crate) fn save(&self, figure: &Figure, width: u32) -> Result<(), Failure> {
+        let bytes = match self.format {
+            Format::Svg => figure.to_svg().into_bytes(),
+            Format::Png => figure.to_png(width).map_err(Failure::input)?,
+        };
+        self.destination.write(|out| Ok(out.write_all(&bytes)?))
+    }
+}

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Planes in space, as the command line names them.
+
+use palpate::field::Point;
+use palpate::plot::Slice;
+
+use crate::input;
+use crate::outcome::Failure;
+
+/// The plane that `text` names: one along two axes goes through the third coordinate `at`, or
+/// else through `middle` [m]. `option` is the option that names the plane.
+pub(crate) fn named(
+    option: &str,
+    text: &str,
+    at: Option<f64>,
+    middle: Point<3>,
+) -> Result<Slice, Failure> {
+    let at = |axis: usize| at.unwrap_or(middle[axis]);
+    match text {
+        "xy" => Slice::xy(at(2)),
+        "xz" => Slice::xz(at(1)),
+        "yz" => Slice::yz(at(0)),
+        free => {
+            let points: Vec<_> =
+                free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
+            let [origin, right, up] = points.try_into().map_err(|_| {
+                let rule = "xy, xz, yz, or origin:right:up, each of these three numbers joined by commas";
+                Failure::input(format!("{option} must be {rule}, got {free:?}"))
+            })?;
+            Slice::free(origin.0, right.0, up.0)
+        }
+    }
+    .map_err(Failure::input)
+}

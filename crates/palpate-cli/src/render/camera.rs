@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The camera that the command line asks for.
+
+use std::f64::consts::TAU;
+
+use palpate::field::{Aabb, Point, Rotation, Vector};
+use palpate::plot::View as Window;
+use palpate::render::{Camera, Lens, Sight, Subject};
+use palpate::scene::View;
+
+use crate::arguments::RenderOptions;
+use crate::input;
+use crate::outcome::Failure;
+use crate::{picture, views};
+
+/// How many sides a turntable shows, to find a distance from which it shows all.
+const SIDES: u32 = 16;
+
+/// The camera of `--from`, or of `--azimuth` and `--elevation`.
+pub(super) fn of(options: &RenderOptions, subject: &Subject) -> Result<Camera, Failure> {
+    let lens = match options.field_of_view {
+        _ if options.orthographic => Lens::Orthographic,
+        Some(angle) => Lens::Perspective(angle.to_radians()),
+        None => Lens::USUAL,
+    };
+    if let Some(from) = &options.from {
+        let middle = || Ok(subject.bounds().centre());
+        let at = options.at.as_deref().map_or_else(middle, input::point)?;
+        return Camera::looking(input::point(from)?, at, lens).map_err(Failure::input);
+    }
+    let [azimuth, elevation] = [options.azimuth, options.elevation].map(f64::to_radians);
+    let sight = Sight::from_angles(azimuth, elevation).map_err(Failure::input)?;
+    let corners = match options.turntable {
+        Some(_) => turned(subject),
+        None => subject.corners().to_vec(),
+    };
+    Camera::fitting(&corners, sight, lens, aspect(options)).map_err(Failure::input)
+}
+
+/// The camera in front of the plane of a view, and of all that has bounds.
+pub(super) fn of_view(
+    options: &RenderOptions,
+    subject: &Subject,
+    view: &View,
+) -> Result<Camera, Failure> {
+    let plane = views::plane(view)?;
+    let Aabb { min, max } = subject.bounds();
+    let whole =
+        Window::of_box(&plane, min.0, max.0, picture::MARGIN).map_err(Failure::input)?;
+    let from_origin = |st| Vector(plane.point(st)) - Vector(plane.point([0.0; 2]));
+    let sight = Sight::onto_plane(from_origin([1.0, 0.0]), from_origin([0.0, 1.0]));
+    let width = view.width.unwrap_or(whole.width());
+    let height = view.height.unwrap_or(whole.height()).max(width / aspect(options));
+    let centre = plane.point(view.center.unwrap_or(whole.center()));
+    let reach = subject.corners().map(|corner| plane.elevation(corner.0));
+    let distance = reach.into_iter().fold(0.0, f64::max) + height;
+    Camera::facing(sight, Vector(centre), height, distance).map_err(Failure::input)
+}
+
+fn aspect(options: &RenderOptions) -> f64 {
+    f64::from(options.width) / f64::from(options.height)
+}
+
+/// The corners of the scene's box, turned to all sides.
+fn turned(subject: &Subject) -> Vec<Point<3>> {
+    let centre = subject.bounds().centre();
+    let side = |side: u32| {
+        let angle = TAU * f64::from(side) / f64::from(SIDES);
+        let turn = Rotation::identity().turned([0.0, angle, 0.0]);
+        subject.corners().map(|corner| centre + turn.rotate(corner - centre))
+    };
+    (0..SIDES).flat_map(side).collect()
+}

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Scenes at a time, and their views.
+
+use palpate::plot::Slice;
+use palpate::scene::{BuiltScene, View, ViewPlane};
+
+use crate::outcome::Failure;
+
+/// The bodies where they are at a time [s].
+pub(crate) fn at<const D: usize>(
+    scene: &BuiltScene<D>,
+    time: f64,
+) -> Result<BuiltScene<D>, Failure> {
+    if !time.is_finite() {
+        return Err(Failure::input(format!("--time must be finite, got {time} s")));
+    }
+    scene.at(time).map_err(Failure::input)
+}
+
+/// The view of this name.
+pub(crate) fn named<'a, const D: usize>(
+    scene: &'a BuiltScene<D>,
+    name: &str,
+) -> Result<&'a View, Failure> {
+    scene.views.iter().find(|view| view.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.views.iter().map(|view| format!("{:?}", view.name)).collect();
+        Failure::input(if names.is_empty() {
+            format!("--view {name:?}: the scene has no views")
+        } else {
+            format!("--view {name:?}: the scene has the views {}", names.join(", "))
+        })
+    })
+}
+
+/// The plane of a view, in a scene in space.
+pub(crate) fn plane(view: &View) -> Result<Slice, Failure> {
+    let at = view.at.unwrap_or(0.0);
+    match &view.plane {
+        None | Some(ViewPlane::Xy) => Slice::xy(at),
+        Some(ViewPlane::Xz) => Slice::xz(at),
+        Some(ViewPlane::Yz) => Slice::yz(at),
+        Some(ViewPlane::Free(plane)) => Slice::free(plane.origin, plane.right, plane.up),
+    }
+    .map_err(Failure::input)
+}

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Guides: laws of their forces, exact forces, and wrong numbers.
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
+use arbitrary::Unstructured;
+use palpate_field::{Shape, Vector, kernel::Ball};
+use palpate_haptics::{Curve, Guide, GuideOptions, Slope};
+use palpate_testkit::cases::each as cases;
+
+type Random<'a, 'b> = &'a mut Unstructured<'b>;
+
+fn number(u: Random, most: f64) -> arbitrary::Result<f64> {
+    u.int_in_range(-1000..=1000).map(|i: i32| f64::from(i) * 1e-3 * most)
+}
+
+fn vector(u: Random, most: f64) -> arbitrary::Result<Vector<f64, 3>> {
+    Ok(Vector([number(u, most)?, number(u, most)?, number(u, most)?]))
+}
+
+/// A guide of any kind without a snap distance, with the given damping.
+fn any_guide(u: Random, damping: f64) -> arbitrary::Result<Guide<3>> {
+    let options = GuideOptions::default().with_stiffness(200.0).with_damping(damping);
+    let ball = || Shape::from_kernel(Ball::new(0.02).unwrap());
+    let (a, b) = (vector(u, 0.05)?, vector(u, 0.05)? + Vector([0.1, 0.0, 0.0]));
+    let guide = match u.int_in_range(0..=7)? {
+        0 => Guide::to_point(a, options),
+        1 => Guide::along_line(a, b, options),
+        2 => Guide::along_segment(a, b, options),
+        3 => Guide::on_plane(a, b, options),
+        4 => Guide::along_curve(Curve::smooth(&[a, b, vector(u, 0.1)?]).unwrap(), options),
+        5 => Guide::along_curve(Curve::polyline(&[b, a, vector(u, 0.1)?]).unwrap(), options),
+        6 => Guide::well(a, 0.04, options),
+        _ => Guide::down(Slope::new(ball(), 1.2, [-0.01, 0.05]).unwrap(), options),
+    };
+    Ok(guide.unwrap())
+}
+
+#[test]
+fn the_force_is_never_more_than_the_largest() {
+    cases(3000, |u| {
+        let mut guide = any_guide(u, 5.0)?;
+        let scale = *u.choose(&[0.1, 1.0, 1e6])?;
+        let force = guide.force(vector(u, scale)?, vector(u, 10.0 * scale)?);
+        // Limiting rounds.
+        assert!(force.norm() <= guide.options().max_force * (1.0 + 1e-15), "{guide:?}");
+        Ok(())
+    });
+}
+
+#[test]
+fn damping_only_takes() {
+    cases(3000, |u| {
+        let mut guide = any_guide(u, 5.0)?;
+        let (position, velocity) = (vector(u, 0.1)?, vector(u, 1.0)?);
+        let still = guide.force(position, Vector::ZERO);
+        let moving = guide.force(position, velocity);
+        assert!((moving - still).dot(velocity) <= 1e-12, "{guide:?}");
+        Ok(())
+    });
+}
+
+#[test]
+fn a_closed_path_costs_nothing() {
+    cases(40, |u| {
+        let mut guide = any_guide(u, 0.0)?;
+        let (centre, a, b) = (vector(u, 0.05)?, vector(u, 0.02)?, vector(u, 0.02)?);
+        // Where two parts of a curve are equally far, the potential is continuous but has a
+        // kink, and the trapezoidal rule errs.
+        let steps = 20_000;
+        let mut work = 0.0;
+        let at = |step: i32| {
+            let angle = std::f64::consts::TAU * f64::from(step % steps) / f64::from(steps);
+            centre + a * angle.cos() + b * (2.0 * angle).sin()
+        };
+        let mut before = guide.force(at(0), Vector::ZERO);
+        for step in 0..steps {
+            let now = guide.force(at(step + 1), Vector::ZERO);
+            work += 0.5 * (before + now).dot(at(step + 1) - at(step));
+            before = now;
+        }
+        // A few jumps of at most 4 N over steps of at most 2e-5 m; smooth parts err as the
+        // square of the step.
+        assert!(work.abs() < 1e-4, "{work} J: {guide:?}");
+        Ok(())
+    });
+}
+
+#[test]
+fn wells_and_slopes_are_continuous() {
+    cases(500, |u| {
+        let options = GuideOptions::default().with_stiffness(200.0);
+        let ball = Shape::from_kernel(Ball::new(0.02).unwrap());
+        let slope = Slope::new(ball, 1.2, [-0.01, 0.05]).unwrap();
+        let guides = [Guide::well(Vector::ZERO, 0.04, options), Guide::down(slope, options)];
+        for guide in guides {
+            let mut guide = guide.unwrap();
+            let here = vector(u, 0.08)?;
+            let there = here + vector(u, 1e-7)?;
+            let [a, b] = [here, there].map(|x| guide.force(x, Vector::ZERO));
+            // The steepest parts: 200 N/m in a well; 3/2 · 1.2 N over an edge of 15 mm in a
+            // slope; and the gradient of a ball, which turns on a radius of at least 0.01 m.
+            assert!((a - b).norm() <= 400.0 * (here - there).norm() + 1e-12);
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn a_guide_that_snaps_lets_go_farther_out() {
+    let options = GuideOptions::default()
+        .with_stiffness(256.0)
+        .with_snap_distance(0.0078125)
+        .with_release_distance(0.015625)
+        .with_max_force(3.0);
+    let mut guide = Guide::to_point(Vector::ZERO, options).unwrap();
+    let mut at = |x: f64| guide.force(Vector([x, 0.0]), Vector::ZERO)[0];
+    assert_eq!(at(0.01), 0.0);
+    assert_eq!(at(0.0078125), -2.0);
+    assert_eq!(at(0.01171875), -3.0);
+    assert_eq!(at(0.015625), -3.0);
+    assert_eq!(at(0.016), 0.0);
+    assert_eq!(at(0.01), 0.0);
+}
+
+#[test]
+fn numbers_that_are_none_let_go() {
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    cases(200, |u| {
+        let mut guide = any_guide(u, 1.0)?;
+        let (mut position, mut velocity) = (vector(u, 0.1)?, vector(u, 0.1)?);
+        let axis = u.choose_index(3)?;
+        if u.arbitrary()? {
+            position[axis] = *u.choose(&bad)?;
+        } else {
+            velocity[axis] = *u.choose(&bad)?;
+        }
+        assert_eq!(guide.force(position, velocity), Vector::ZERO);
+        assert!(!guide.is_engaged());
+        let huge = guide.force(Vector([1e300; 3]), Vector([1e300; 3]));
+        assert!(huge.is_finite());
+        Ok(())
+    });
+}
+
+#[test]
+fn along_a_curve_nothing_is_damped_and_at_its_ends_everything() {
+    let options = GuideOptions::default().with_damping(2.0);
+    let (from, to) = (Vector([0.0, 0.0]), Vector([1.0, 0.0]));
+    let mut guide = Guide::along_segment(from, to, options).unwrap();
+    let speed = Vector([0.25, 0.0]);
+    assert_eq!(guide.force(Vector([0.5, 0.0]), speed), Vector::ZERO);
+    assert_eq!(guide.force(Vector([1.0, 0.0]), speed), Vector::ZERO);
+    let beyond = guide.force(Vector([1.0 + 1.0 / 1024.0, 0.0]), speed);
+    assert_eq!(beyond, Vector([-300.0 / 1024.0 - 0.5, 0.0]));
+}
+
+#[test]
+fn wrong_numbers_are_named() {
+    let at = |change: fn(&mut GuideOptions)| {
+        let mut options = GuideOptions::default().with_snap_distance(0.01);
+        change(&mut options);
+        Guide::to_point(Vector([0.0, 0.0]), options).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(at(|_| ()), Ok(()));
+    assert_eq!(
+        at(|o| o.stiffness = 0.0),
+        Err("stiffness must be positive and finite, got 0 N/m".into())
+    );
+    assert_eq!(
+        at(|o| o.release_distance = Some(0.005)),
+        Err("release_distance must be at least the snap distance, got 0.005 m".into())
+    );
+    assert_eq!(at(|o| o.max_force = -1.0), Err("max_force must be positive, got -1 N".into()));
+    assert!(at(|o| o.snap_distance = f64::NAN).is_err());
+    let options = GuideOptions::default();
+    let error = Guide::well(Vector([0.0, 0.0]), 0.005, options).unwrap_err();
+    assert_eq!(error.to_string(), "reach must be more than max_force / stiffness, got 0.005 m");
+    assert!(Guide::along_line(Vector([0.0, 0.0]), Vector::ZERO, options).is_err());
+    assert!(Guide::to_point(Vector([f64::NAN, 0.0]), options).is_err());
+    assert!(Curve::polyline(&[Vector([1.0, 0.0]); 3]).is_err());
+    assert!(Curve::<2>::polyline(&[]).is_err());
+    assert!(Curve::smooth(&vec![Vector([1.0, 0.0]); 66]).is_err());
+    let ball = || Shape::<2>::from_kernel(Ball::new(1.0).unwrap());
+    assert!(Slope::new(ball(), 1.0, [1.0, 1.0]).is_err());
+    assert!(Slope::new(ball(), f64::NAN, [0.0, 1.0]).is_err());
+    assert!(Slope::new(ball(), 1.0, [0.0, 1.0]).unwrap().with_edge(0.6).is_err());
+}
