@@ -21,6 +21,9 @@ pub struct Entry<const D: usize> {
     pub name: &'static str,
     /// The primitive described in one sentence.
     pub about: &'static str,
+    /// Where its origin is and which way it points, in phrases between semicolons and commas:
+    /// `"centred; axis along y"`.
+    pub origin: &'static str,
     /// The parameters, in the order of the arguments.
     pub parameters: &'static [Parameter],
     kernel: TypeId,
@@ -34,6 +37,7 @@ impl<const D: usize> Entry<D> {
         Self {
             name: K::NAME,
             about: K::ABOUT,
+            origin: K::ORIGIN,
             parameters: K::PARAMETERS,
             kernel: TypeId::of::<K>(),
             build: |arguments| Ok(Shared::new(Leaf::new(K::from_arguments(arguments)?))),

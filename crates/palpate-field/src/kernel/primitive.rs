@@ -76,6 +76,8 @@ pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     const NAME: &'static str;
     /// The primitive described in one sentence.
     const ABOUT: &'static str;
+    /// Where its origin is and which way it points, in phrases between semicolons and commas.
+    const ORIGIN: &'static str;
     /// The parameters, in the order of `new`.
     const PARAMETERS: &'static [Parameter];
 
@@ -336,8 +338,8 @@ pub(crate) fn positions<const D: usize>(
     points.into_iter().map(|point| point.into().0.to_vec()).collect()
 }
 
-/// Declares a kernel as a primitive: its name, what it is, its parameters in the
-/// order of `new`, how it bounds cells, and an example.
+/// Declares a kernel as a primitive: its name, what it is, where its origin is and which way it
+/// points, its parameters in the order of `new`, and an example.
 ///
 /// A parameter's value is the field of its name; where there is no such field, `=> |kernel| …`
 /// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor of
@@ -346,6 +348,7 @@ macro_rules! primitive {
     (
         $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
         about: $about:literal,
+        origin: $origin:literal,
         parameters: {
             $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* $(,)?
         },
@@ -354,7 +357,7 @@ macro_rules! primitive {
         primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
             { $($parameter: $kind = $what $(=> $given)?),* });
         primitive!(@declare $dimension, $kernel, $kernel $(<$argument>)?, $name, $about,
-            { $($parameter: $kind = $what),* }, ($($example),*));
+            $origin, { $($parameter: $kind = $what),* }, ($($example),*));
     };
     (@accessors [D] any, $kernel:ty, $parameters:tt) => {
         primitive!(@methods [const D: usize], D, $kernel, $parameters);
@@ -400,7 +403,7 @@ macro_rules! primitive {
     };
     (
         @constructor [$($generics:tt)*], $dimension:tt, $type:ident,
-        $name:ident, $about:literal,
+        $name:ident, $about:literal, $origin:literal,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         $example:tt
     ) => {
@@ -433,13 +436,14 @@ macro_rules! primitive {
     };
     (
         @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
-        $name:ident, $about:literal,
+        $name:ident, $about:literal, $origin:literal,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
         impl<$($generics)*> $crate::kernel::NamedKernel<$dimension> for $kernel {
             const NAME: &'static str = stringify!($name);
             const ABOUT: &'static str = $about;
+            const ORIGIN: &'static str = $origin;
             const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
                 $($crate::kernel::Parameter {
                     name: stringify!($parameter),

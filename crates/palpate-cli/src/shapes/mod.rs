@@ -39,6 +39,7 @@ pub(crate) fn run(options: &ShapesOptions) -> Result<Outcome, Failure> {
             };
             writeln!(out, "    {}{unit}: {}", text("key"), text("about"))?;
         }
+        writeln!(out, "    origin: {}", text("origin"))?;
         writeln!(out, "    promise: {}", text("promise"))?;
     }
     writeln!(out, "{} primitives", rows.len())?;
@@ -56,6 +57,7 @@ fn described<const D: usize>(entry: &Entry<D>) -> Result<Value, Failure> {
         "name": entry.name,
         "dimension": D,
         "about": entry.about,
+        "origin": entry.origin,
         "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
         "promise": promise_in_words(promise),
         "outside": quality_in_words(promise.outside),
