@@ -76,7 +76,7 @@ pub struct Isolines {
     pub(crate) sampling: Sampling,
     pub(crate) ground: Ground,
     title: String,
-    overlays: Vec<Overlay>,
+    pub(crate) overlays: Vec<Overlay>,
 }
 
 /// The ground below the lines.

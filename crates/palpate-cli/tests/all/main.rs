@@ -17,5 +17,6 @@ mod motions;
 mod outputs;
 mod pictures;
 mod program;
+mod shapes;
 mod tables;
 mod touch;

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -164,6 +165,7 @@ primitive! {
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
+    marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.9, 0.4])),
 }
 
@@ -174,5 +176,6 @@ primitive! {
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
+    marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.9, 0.6, 0.3])),
 }

@@ -4,6 +4,7 @@
 //! Half-spaces.
 
 use crate::error::{ShapeError, Unit, finite};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -62,6 +63,14 @@ primitive! {
     parameters: {
         normal: Direction = "the direction out of the half-space, of any length",
         offset: Coordinate = "where the plane is along the normal",
+    },
+    marks: |kernel| {
+        let out = kernel.normal().normalized().unwrap_or(Vector::ZERO);
+        let foot = out * kernel.offset();
+        vec![
+            Mark::direction("normal", foot, foot + out * 0.5),
+            Mark::from_origin("offset", foot),
+        ]
     },
     example: (Vector(std::array::from_fn(|i| [0.3, 1.0, -0.2][i])), 0.1),
 }

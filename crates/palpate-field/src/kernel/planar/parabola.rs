@@ -6,6 +6,7 @@
 use super::parabola_foot::Quadratic;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -94,6 +95,7 @@ primitive! {
     about: "What is above a parabola.",
     origin: "endless; at its vertex, opening upwards",
     parameters: { focal_length: Length = "from the vertex to the focus" },
+    marks: |kernel| vec![Mark::from_origin("focal_length", at(0.0, kernel.focal_length()))],
     example: (0.2),
 }
 
@@ -219,5 +221,6 @@ primitive! {
         width: Length = "the length of the chord" => |kernel| 2.0 * kernel.half_width,
         height: Length = "the full height",
     },
+    marks: |kernel| sets::arch("width", kernel.width(), kernel.height()),
     example: (1.3, 1.7),
 }

@@ -6,6 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::sets;
 use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -84,6 +85,7 @@ primitive! {
         height: Length = "the full height, the half disc included"
             => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::arch("width", kernel.width(), kernel.height()),
     example: (1.1, 1.5),
 }
 
@@ -178,6 +180,9 @@ primitive! {
         bottom_radius: Length = "the radius of the lower disc",
         top_radius: Length = "the radius of the upper disc",
         height: Length = "between the centres of the discs",
+    },
+    marks: |kernel| {
+        sets::two_balls(kernel.bottom_radius(), kernel.top_radius(), kernel.height())
     },
     example: (0.5, 0.25, 0.8),
 }

@@ -11,6 +11,7 @@
 use super::cylinder::{from_axis, turned_bounds};
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, sets};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
@@ -76,6 +77,10 @@ primitive! {
     parameters: {
         side: Length = "the edge length" => |kernel| 2.0 * kernel.half_side,
     },
+    marks: |kernel| {
+        let half = 0.5 * kernel.side();
+        vec![Mark::width("side", half, -half)]
+    },
     example: (0.9),
 }
 
@@ -133,6 +138,7 @@ primitive! {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::cylinder(kernel.radius(), kernel.height()),
     example: (0.4, 1.0),
 }
 
@@ -211,6 +217,7 @@ primitive! {
         radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
     },
+    marks: |kernel| sets::cone(kernel.radius(), kernel.height()),
     example: (0.6, 1.0),
 }
 
@@ -261,10 +268,11 @@ impl Kernel<3> for PyramidApproximation {
 primitive! {
     PyramidApproximation, pyramid_approximation, 3,
     about: "The article's approximate pyramid, corrected to be a bound.",
-    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
+    origin: "centred, at half its height; a tip up, a base with edges along x and z",
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
     },
+    marks: |kernel| sets::arch("side", kernel.side(), kernel.height()),
     example: (1.0, 0.9),
 }

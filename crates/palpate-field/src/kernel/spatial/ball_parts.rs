@@ -6,6 +6,7 @@
 use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::profile::{Curve, CutDiskProfile, Moon, Wedge, bounds_of_zone};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
@@ -98,6 +99,7 @@ primitive! {
         angle: Angle = "the opening from side to side, less than a full turn"
             => |kernel| kernel.0.angle(),
     },
+    marks: |kernel| sets::sector(kernel.radius(), kernel.angle()),
     example: (0.9, 1.2),
 }
 
@@ -176,6 +178,7 @@ primitive! {
         radius: Length = "the radius of the ball",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
     },
+    marks: |kernel| sets::cut(kernel.radius(), kernel.cut_height()),
     example: (0.8, -0.3),
 }
 
@@ -261,6 +264,19 @@ primitive! {
         thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside"
             => |kernel| 2.0 * kernel.half_thickness,
     },
+    marks: |kernel| {
+        let (radius, half) = (kernel.radius(), 0.5 * kernel.thickness());
+        let place = |x: f64, radius: f64| at(x * radius, -0.8 * radius);
+        let cut = kernel.cut_height();
+        let rim = ((radius - cut) * (radius + cut)).max(0.0).sqrt();
+        vec![
+            Mark::from_origin("radius", place(0.6, radius)),
+            Mark::from_origin("cut_height", at(rim, cut)).right(),
+            Mark::length_between(
+                "thickness", place(-0.6, radius - half), place(-0.6, radius + half),
+            ),
+        ]
+    },
     example: (0.8, 0.2, 0.15),
 }
 
@@ -335,5 +351,6 @@ primitive! {
         distance: Length = "from centre to centre, so that the spheres cross"
             => |kernel| kernel.0.distance,
     },
+    marks: |kernel| sets::bite(kernel.radius(), kernel.cut_radius(), kernel.distance()),
     example: (0.9, 0.6, 1.1),
 }

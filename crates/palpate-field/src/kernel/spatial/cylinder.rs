@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -88,6 +89,7 @@ primitive! {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::cylinder(kernel.radius(), kernel.height()),
     example: (0.4, 1.0),
 }
 
@@ -158,6 +160,15 @@ primitive! {
         height: Length = "the full height",
         rounding: LengthOrZero = "the radius of the rims",
     },
+    marks: |kernel| {
+        let [radius, height, rounding] = [kernel.radius(), kernel.height(), kernel.rounding()];
+        let flat = radius - rounding;
+        vec![
+            Mark::from_origin("radius", at(radius, 0.0)),
+            Mark::height(height, flat, flat),
+            Mark::rounding(Vector([2.0 * radius, height, 0.0]), rounding),
+        ]
+    },
     example: (0.4, 1.0, 0.1),
 }
 
@@ -204,5 +215,6 @@ primitive! {
     about: "A cylinder without ends about the y axis.",
     origin: "endless along y; about the y axis",
     parameters: { radius: Length = "the radius" },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.3),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::planar::RegularPolygon;
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
@@ -97,6 +98,15 @@ primitive! {
             => |kernel| kernel.0.polygon.radius(),
         height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
     },
+    marks: |kernel| {
+        let (radius, height) = (kernel.radius(), kernel.height());
+        // From the axis to a side.
+        let flat = 0.5 * 3.0_f64.sqrt() * radius;
+        vec![
+            Mark::from_origin("radius", Vector([0.0, 0.0, radius])),
+            Mark::height(height, flat, flat),
+        ]
+    },
     example: (0.6, 0.5),
 }
 
@@ -140,6 +150,15 @@ primitive! {
     parameters: {
         side: Length = "the edge of the triangle",
         height: Length = "the full height" => |kernel| 2.0 * kernel.prism.half_height,
+    },
+    marks: |kernel| {
+        let (side, height) = (kernel.side(), kernel.height());
+        let back = -side / 12.0_f64.sqrt();
+        vec![
+            Mark::length_between("side", Vector([-0.5 * side, 0.0, back]), Vector([0.5 * side, 0.0, back]))
+                .beside(-Vector::unit(2)),
+            Mark::height(height, side / 3.0, side / 3.0),
+        ]
     },
     example: (1.0, 0.6),
 }
