@@ -30,9 +30,6 @@ const COLUMNS: usize = 5;
 const TILE_CELLS: [usize; 2] = [140, 70];
 /// Room around a shape, as a share of its longest edge.
 const MARGIN: f64 = 0.2;
-/// The range shown of a shape without bounds, along each axis [m]: about the size of the
-/// examples, with more below, where the infinite cone is.
-const UNBOUNDED: [f64; 2] = [-1.2, 0.8];
 
 /// A shape with its name.
 struct Specimen<const D: usize> {
@@ -216,9 +213,7 @@ impl<const D: usize> Specimen<D> {
     where
         Dimensions: Drawable<D>,
     {
-        let [min, max] = UNBOUNDED.map(Vector::constant);
-        let unbounded = || Aabb { min, max };
-        let bounds = self.shape.promise().bounds.map_or_else(unbounded, |bounds| bounds.aabb);
+        let bounds = picture::shown_bounds(&self.shape);
         let plane = plane(&bounds)?;
         let view = Dimensions::view(&plane, &bounds, picture::MARGIN)?;
         let longest = bounds.half_extents().0.into_iter().fold(0.0, f64::max);

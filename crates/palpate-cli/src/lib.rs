@@ -32,6 +32,7 @@ mod plot;
 mod render;
 mod schema;
 mod shapes;
+mod table;
 mod threads;
 mod times;
 mod trace;

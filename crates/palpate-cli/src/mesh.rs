@@ -26,14 +26,35 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
     let report = mesh.report();
     let is_good = report.is_watertight() && report.degenerate == 0;
     let mut out = output::answer();
+    let hint = if options.scale.is_none() { hint(&report) } else { None };
     if options.json {
-        out.json(&as_json(&report, is_good))?;
+        let mut answer = as_json(&report, is_good);
+        answer["hint"] = hint.into();
+        out.json(&answer)?;
     } else {
         let name = options.file.display().to_string();
         let verdict = if is_good { "good" } else { "not good" };
         writeln!(out, "{}: {verdict}, {}", shown(&name), in_words(&report))?;
+        if let Some(hint) = hint {
+            writeln!(out, "  hint     {hint}")?;
+        }
     }
     Ok(if is_good { Outcome::Yes } else { Outcome::No })
+}
+
+/// Meshes larger than this are rarely touched, and often in millimetres [m].
+const LARGE: f64 = 2.0;
+
+/// What to do if the size of a mesh is that of another unit.
+fn hint(report: &Report<3>) -> Option<String> {
+    let size =
+        report.bounds.half_extents().0.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x));
+    (size > LARGE).then(|| {
+        format!(
+            "it is {size:.3} m across: if the file is in millimetres, --scale 0.001 makes that \
+             {size:.3} mm"
+        )
+    })
 }
 
 /// Why a file is no mesh: what it is instead, or what is wrong with it.

@@ -21,11 +21,15 @@ pub struct Entry<const D: usize> {
     pub name: &'static str,
     /// The primitive described in one sentence.
     pub about: &'static str,
+    /// Where its origin is and which way it points, in phrases between semicolons and commas:
+    /// `"centred; axis along y"`.
+    pub origin: &'static str,
     /// The parameters, in the order of the arguments.
     pub parameters: &'static [Parameter],
     kernel: TypeId,
     build: fn(&[Argument]) -> Result<SharedField<D>, ShapeError>,
     arguments: fn(&dyn Any) -> Option<Vec<Argument>>,
+    marks: fn(&[Argument]) -> Result<Vec<Mark<D>>, ShapeError>,
     example: fn() -> Result<Vec<Argument>, ShapeError>,
 }
 
@@ -34,10 +38,12 @@ impl<const D: usize> Entry<D> {
         Self {
             name: K::NAME,
             about: K::ABOUT,
+            origin: K::ORIGIN,
             parameters: K::PARAMETERS,
             kernel: TypeId::of::<K>(),
             build: |arguments| Ok(Shared::new(Leaf::new(K::from_arguments(arguments)?))),
             arguments: |kernel| kernel.downcast_ref::<K>().map(K::arguments),
+            marks: |arguments| Ok(K::from_arguments(arguments)?.marks()),
             example: || K::example().map(|kernel| kernel.arguments()),
         }
     }
@@ -103,13 +109,31 @@ impl<const D: usize> Entry<D> {
         self.build(arguments)?.placed(world_from_body)
     }
 
+    /// Where the primitive made from `arguments` shows its parameters.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build).
+    pub fn marks(&self, arguments: &[Argument]) -> Result<Vec<Mark<D>>, ShapeError> {
+        (self.marks)(arguments)
+    }
+
+    /// The arguments of the [`example`](Self::example).
+    ///
+    /// # Errors
+    ///
+    /// None in practice.
+    pub fn example_arguments(&self) -> Result<Vec<Argument>, ShapeError> {
+        (self.example)()
+    }
+
     /// The example of the primitive, of about 1 m.
     ///
     /// # Errors
     ///
     /// None in practice.
     pub fn example(&self) -> Result<Shape<D>, ShapeError> {
-        self.build(&(self.example)()?)
+        self.build(&self.example_arguments()?)
     }
 }
 

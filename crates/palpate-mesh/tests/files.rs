@@ -213,11 +213,90 @@ fn errors_say_which_file_and_what_to_do() {
     let outside = read(b"v 0 0 0\nv 1 0 0\nf 1 2 4\n", Format::Obj).unwrap_err();
     assert_eq!(
         outside.to_string(),
-        "it is no good OBJ: face vertex index out of bounds; export it again"
+        "it is no good OBJ: line 3: a face names vertex 4, and there are 2; export it again"
     );
     let nan = read(b"v 0 0 0\nv 1 nan 0\nv 1 1 1\nf 1 2 3\n", Format::Obj).unwrap_err();
     assert_eq!(
         nan.to_string(),
-        "vertex 1 must be finite and at most 1e15 m in size, got NaN m"
+        "it is no good OBJ: line 2: a coordinate is a finite number of at most 1e15 in size, got \
+         \"nan\"; export it again"
+    );
+}
+
+/// What is wrong with a file, after "it is no good FORMAT: ".
+fn wrong(bytes: &[u8], format: Format) -> String {
+    let wrong = read(bytes, format).unwrap_err().to_string();
+    let wrong = wrong.strip_prefix(&format!("it is no good {}: ", format.name()));
+    wrong.unwrap().strip_suffix("; export it again").unwrap().to_owned()
+}
+
+#[test]
+fn errors_of_text_name_their_line() {
+    for (text, expected) in [
+        ("v 0 0 0\nv 1 0\n", "line 2: a vertex has 3 coordinates, got 2"),
+        (
+            "v 0 0 0\nv 1 0,5 0\n",
+            "line 2: a coordinate is a finite number of at most 1e15 in size, got \"0,5\"",
+        ),
+        (
+            "v 0 0 0\nf 1 0 x\n",
+            "line 2: a corner is the number of a vertex, counted from 1, got \"0\"",
+        ),
+        ("v 0 0 0\n\nf 1 1\n", "line 3: a face has 3 corners or more, got 2"),
+        ("v 0 0 0\nf 1 1 -2\n", "line 2: a face names vertex -2, and 1 are before it"),
+        // Two lines that are one.
+        (
+            "v 0 0 0\nv 0 0 \\\n0\nv 0 x 0\n",
+            "line 4: a coordinate is a finite number of at most 1e15 in size, got \"x\"",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2",
+            "line 4: a face has 3 corners or more, got 2; the file ends there: it may be cut off",
+        ),
+    ] {
+        assert_eq!(wrong(text.as_bytes(), Format::Obj), expected);
+    }
+    let facet = " facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\n";
+    let two = format!(
+        "solid a\n{facet}endsolid a\nsolid b\n{}endsolid b\n",
+        facet.replace("1 0 0\n   v", "1 x 0\n   v")
+    );
+    assert!(
+        wrong(two.as_bytes(), Format::Stl).starts_with("line 11: "),
+        "{}",
+        wrong(two.as_bytes(), Format::Stl)
+    );
+    let cut = format!("solid a\n{facet}{}", &facet[..60]);
+    let said = wrong(cut.as_bytes(), Format::Stl);
+    assert!(said.starts_with("line 9, the last: the file is cut off: "), "{said}");
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 oops\n0 1 0\n3 0 1 2\n";
+    let said = wrong(ply.as_bytes(), Format::Ply);
+    assert!(said.starts_with("line 11: "), "{said}");
+    let cut = ply.replace("oops\n0 1 0\n3 0 1 2\n", "0\n");
+    let said = wrong(cut.as_bytes(), Format::Ply);
+    assert!(said.ends_with("; the file ends there: it is cut off"), "{said}");
+}
+
+#[test]
+fn errors_of_binary_files_name_their_byte() {
+    for (format, bytes) in all() {
+        let is_text = std::str::from_utf8(&bytes).is_ok_and(|text| text.contains("\n"));
+        if is_text && format != Format::Glb {
+            continue;
+        }
+        let cut = &bytes[..bytes.len() - 7];
+        let said = wrong(cut, format);
+        assert!(said.contains("cut off"), "{format:?}: {said}");
+        // What begins as a text does is taken for one.
+        let place = if bytes.starts_with(b"solid") { "line " } else { "byte " };
+        assert!(said.contains(place), "{format:?}: {said}");
+    }
+    let mut stl = vec![0; 84];
+    stl[80] = 3;
+    assert_eq!(
+        wrong(&stl, Format::Stl),
+        "byte 80: 3 triangles are counted, which take 234 bytes, and the file ends at byte 84: it is \
+         cut off"
     );
 }

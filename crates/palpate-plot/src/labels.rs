@@ -160,13 +160,7 @@ fn candidates(line: &[Point], width: f64) -> Vec<(f64, Spot)> {
             if bend > MOST_BEND || distance(a, b) < 0.9 * width {
                 return None;
             }
-            let mut angle = (b[1] - a[1]).atan2(b[0] - a[0]);
-            // Read from left to right, and upwards where the line is vertical.
-            if angle > FRAC_PI_2 - VERTICAL {
-                angle -= PI;
-            } else if angle < -FRAC_PI_2 - VERTICAL {
-                angle += PI;
-            }
+            let angle = upright((b[1] - a[1]).atan2(b[0] - a[0]));
             let middle = at(s);
             let down = CAP_HEIGHT * SIZE / 2.0;
             let (sin, cos) = angle.sin_cos();
@@ -174,6 +168,55 @@ fn candidates(line: &[Point], width: f64) -> Vec<(f64, Spot)> {
             Some((bend + 1.5 * angle.abs(), spot))
         })
         .collect()
+}
+
+/// The angle of a text along a line [rad]: read from left to right, and upwards where the line is
+/// vertical.
+fn upright(angle: f64) -> f64 {
+    if angle > FRAC_PI_2 - VERTICAL {
+        angle - PI
+    } else if angle < -FRAC_PI_2 - VERTICAL {
+        angle + PI
+    } else {
+        angle
+    }
+}
+
+/// A place for `label` along the line from `a` to `b` [px], above it or below it, within `plot`;
+/// marks it as occupied. `None` if the line is too short, or there is no room.
+pub(crate) fn place_along<'a>(
+    [a, b]: [Point; 2],
+    label: &'a str,
+    plot: &Rect,
+    occupied: &mut Occupied,
+) -> Option<Text<'a>> {
+    let style = TextStyle::LEGEND;
+    let length = distance(a, b);
+    if length < crate::text::width(label, style.size, Weight::SemiBold) {
+        return None;
+    }
+    let angle = upright((b[1] - a[1]).atan2(b[0] - a[0]));
+    let (sin, cos) = angle.sin_cos();
+    let middle = CAP_HEIGHT * style.size / 2.0;
+    let beside = 0.5 * style.size + CLEARANCE + 0.5;
+    // From the line to the baseline, downwards.
+    let sides = [middle - beside, middle + beside];
+    let texts = [0.5, 0.35, 0.65, 0.2, 0.8].into_iter().flat_map(|share| {
+        let at = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+        sides.map(|down| Text {
+            text: label,
+            at: [at[0] - sin * down, at[1] + cos * down],
+            size: style.size,
+            weight: Weight::SemiBold,
+            anchor: Anchor::Middle,
+            angle,
+        })
+    });
+    let inner = plot.grown(-2.0);
+    let is_inside = |text: &Text<'_>| discs(text).iter().all(|(at, _)| inner.contains(*at));
+    let text = texts.filter(is_inside).find(|text| occupied.is_free(text, true))?;
+    occupied.add_text(&text);
+    Some(text)
 }
 
 /// A place for `label` beside the symbol of a point [px], within `plot`; marks it as occupied.
@@ -244,6 +287,19 @@ mod tests {
             .map(|a| [200.0 + 12.0 * a.cos(), 150.0 + 12.0 * a.sin()])
             .collect();
         assert!(place_on_lines(&[circle], "0.25", &PLOT, &[], &mut occupied).is_empty());
+    }
+
+    #[test]
+    fn labels_along_a_line_are_above_it_or_below_and_within_its_length() {
+        let mut occupied = Occupied::default();
+        let upright = [[100.0, 250.0], [100.0, 50.0]];
+        occupied.add_line(upright.to_vec());
+        let mut place = |label| place_along(upright, label, &PLOT, &mut occupied).unwrap();
+        let (first, second) = (place("radius 0.4 m"), place("height 1 m"));
+        assert_eq!((first.angle, second.angle), (-FRAC_PI_2, -FRAC_PI_2));
+        assert!(first.at[0] < 100.0 && second.at[0] > 100.0);
+        let short = [[100.0, 100.0], [120.0, 100.0]];
+        assert!(place_along(short, "radius 0.4 m", &PLOT, &mut occupied).is_none());
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //!
 //! A [`Layer`] is a legend with points and arrows for a picture of pixels that was made elsewhere.
 //!
-//! Over the isolines lie [`Polyline`]s, [`Arrows`] and [`Markers`], in plane coordinates;
+//! Over the isolines lie [`Polyline`]s, [`Arrows`], [`Markers`] and [`DimensionLine`]s, in plane coordinates;
 //! [`Slice::project`] takes points of space there.
 //!
 //! Input is checked where it enters, so drawing cannot fail; [`PlotError`] says what is wrong,
@@ -47,6 +47,7 @@ mod body_picture;
 mod chain;
 mod chart;
 mod contours;
+mod dimension;
 mod drawing;
 mod error;
 mod figure;
@@ -85,6 +86,7 @@ mod wheel;
 
 pub use body::Body;
 pub use chart::{Chart, Quantity, Series};
+pub use dimension::DimensionLine;
 pub use error::PlotError;
 pub use figure::Figure;
 pub use follow::{BoundedField, Cell};

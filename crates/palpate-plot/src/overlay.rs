@@ -3,6 +3,7 @@
 
 //! Overlays of isolines: paths, arrows and points.
 
+use crate::dimension::DimensionLine;
 use crate::error::{LARGEST, PlotError, finite_points};
 use crate::palette::Color;
 
@@ -259,4 +260,5 @@ pub(crate) enum Overlay {
     Polyline(Polyline),
     Arrows(Arrows),
     Markers(Markers),
+    Dimension(DimensionLine),
 }

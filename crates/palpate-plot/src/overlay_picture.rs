@@ -3,6 +3,7 @@
 
 //! Draws paths, arrows and points over isolines.
 
+use crate::dimension::DimensionLine;
 use crate::drawing::{Drawing, Path, Stroke, TextPaint};
 use crate::frame::{Frame, TOLERANCE};
 use crate::geometry::{Point, clip_line, clip_segment, distance, simplify};
@@ -29,6 +30,7 @@ pub(crate) struct Overlays<'a> {
     lines: Vec<(&'a Polyline, Stroke)>,
     arrows: Vec<(&'a Arrows, Color)>,
     markers: Vec<(&'a Markers, Symbol, Color)>,
+    dimensions: Vec<(&'a DimensionLine, Color)>,
     /// Legend, in the order in which the overlays were added; overlays of one name have one entry.
     pub(crate) entries: Vec<Entry>,
 }
@@ -40,6 +42,7 @@ impl<'a> Overlays<'a> {
             lines: Vec::new(),
             arrows: Vec::new(),
             markers: Vec::new(),
+            dimensions: Vec::new(),
             entries: Vec::new(),
         };
         // Faint lines take no colour and no dash from the others.
@@ -82,6 +85,12 @@ impl<'a> Overlays<'a> {
                     all.explain(Entry::new(Key::Point(symbol, color), &*markers.name));
                     all.markers.push((markers, symbol, color));
                 }
+                Overlay::Dimension(line) => {
+                    let color = line.color.unwrap_or(next);
+                    let key = Key::Line(DimensionLine::stroke(color));
+                    all.explain(Entry::new(key, &*line.name));
+                    all.dimensions.push((line, color));
+                }
             }
         }
         all
@@ -105,9 +114,12 @@ impl<'a> Overlays<'a> {
         for (markers, ..) in &self.markers {
             self.shown(markers).for_each(|(_, p)| occupied.add_disc(p, Symbol::RADIUS));
         }
+        for (line, _) in &self.dimensions {
+            line.occupy(&self.frame, occupied);
+        }
     }
 
-    /// Finds places for the labels of the points.
+    /// Finds places for the labels of points and dimension lines.
     pub(crate) fn place_labels(&self, occupied: &mut Occupied) -> Vec<(Text<'a>, Color)> {
         let mut placed = Vec::new();
         for (markers, _, color) in &self.markers {
@@ -117,6 +129,10 @@ impl<'a> Overlays<'a> {
                     placed.extend(text.map(|text| (text, *color)));
                 }
             }
+        }
+        for (line, color) in &self.dimensions {
+            let text = line.place_label(&self.frame, occupied);
+            placed.extend(text.map(|text| (text, *color)));
         }
         placed
     }
@@ -146,6 +162,9 @@ impl<'a> Overlays<'a> {
         }
         for (markers, symbol, color) in &self.markers {
             self.shown(markers).for_each(|(_, p)| symbol.draw(drawing, p, *color));
+        }
+        for (line, color) in &self.dimensions {
+            line.draw(drawing, &self.frame, *color);
         }
         let halo = Some((Color::WHITE, 4.0));
         for (text, color) in labels {

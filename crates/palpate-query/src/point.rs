@@ -21,8 +21,8 @@ pub struct AtPoint<const D: usize> {
     pub gradient: Vector<f64, D>,
     /// The gradient's unit vector; `None` where it is shorter than 1e-6.
     pub normal: Option<Vector<f64, D>>,
-    /// The nearest point of the surface where the promise is exact, else one close by;
-    /// `None` if the way there was not found ([`Shape::surface_point`]) [m].
+    /// Where the promise is exact the nearest point of the surface, else a place close by where
+    /// the field is zero; `None` if the way there was not found ([`Shape::surface_point`]) [m].
     pub surface: Option<Point<D>>,
     /// `true` if the value is negative.
     pub is_inside: bool,

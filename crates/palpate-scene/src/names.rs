@@ -50,8 +50,16 @@ pub(crate) fn did_you_mean(near: &[&str]) -> String {
     format!("did you mean {}?", listed(near, "or"))
 }
 
-/// The names of `known` that `found` may be a slip of, the nearest first.
-pub(crate) fn near<'a>(found: &str, known: &[&'a str]) -> Vec<&'a str> {
+/// The names of `known` that `found` may be a slip of, the nearest first: a third of the letters may
+/// be wrong, and two that are swapped count as one.
+///
+/// ```
+/// use palpate_scene::near_names;
+///
+/// assert_eq!(near_names("raduis", &["height", "radius"]), ["radius"]);
+/// ```
+#[must_use]
+pub fn near<'a>(found: &str, known: &[&'a str]) -> Vec<&'a str> {
     let found = shortened(found);
     let letters = found.chars().count();
     // A third of the letters may be wrong: more, and the guess is none.

@@ -3,12 +3,9 @@
 
 //! Many points from a file, in bounded memory and on all cores.
 
-use std::fmt;
-use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-use csv::StringRecord;
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::field::{BLOCK, Block, Gradients, Point, Shape, Vector};
 use palpate::query::{AtPoint, BallWorkspace};
@@ -17,10 +14,10 @@ use rayon::prelude::*;
 use super::answer;
 use super::ball::{Ball, Balls};
 use crate::arguments::EvalOptions;
-use crate::hand_csv::columns;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination};
+use crate::table::{Table, coordinates};
 use crate::threads;
 
 /// Points read before they are evaluated: enough to keep all cores busy, few
@@ -74,21 +71,14 @@ struct Stream<'a, const D: usize> {
     interrupt: &'a Interrupt,
 }
 
-/// The rows of a file that are still to be read.
-struct Rows<const D: usize> {
-    reader: csv::Reader<File>,
-    /// The columns of the coordinates.
-    columns: [usize; D],
-    record: StringRecord,
-}
-
 impl<const D: usize> Stream<'_, D> {
     /// Writes the answers, batch by batch, and returns for how many points. An interrupted run
     /// ends after a whole row.
     fn evaluate(&self, out: &mut dyn Write) -> Result<(Outcome, usize), Failure> {
-        let file = File::open(self.job.points).map_err(|error| self.wrong(error))?;
-        let bar = bar(file.metadata().map(|metadata| metadata.len()).unwrap_or(0));
-        let mut rows = self.rows(file)?;
+        let mut table = Table::open(self.job.points)?;
+        let columns = coordinates::<D>(&table, &format!("a point in {D}D"), &[])?;
+        let size = std::fs::metadata(self.job.points).map_or(0, |metadata| metadata.len());
+        let bar = bar(size);
         self.interrupt.heed();
         if !self.as_json {
             let mut header = answer::header::<D>();
@@ -102,9 +92,16 @@ impl<const D: usize> Stream<'_, D> {
         loop {
             // Flushed, so that a reader of a pipe sees every finished batch.
             out.flush()?;
-            self.read(&mut rows, &mut batch)?;
+            self.read(&mut table, &columns, &mut batch)?;
             if self.interrupt.is_asked() {
                 return Ok((Outcome::Interrupted, done));
+            }
+            if !table.is_good() {
+                // No more is evaluated, but every bad value is found.
+                while !batch.is_empty() && !self.interrupt.is_asked() {
+                    self.read(&mut table, &columns, &mut batch)?;
+                }
+                table.finish()?;
             }
             if batch.is_empty() {
                 bar.finish_and_clear();
@@ -122,41 +119,27 @@ impl<const D: usize> Stream<'_, D> {
                 out.write_all(text.as_bytes())?;
             }
             done += batch.len();
-            bar.set_position(rows.reader.position().byte());
+            bar.set_position(table.position());
         }
     }
 
-    fn rows(&self, file: File) -> Result<Rows<D>, Failure> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-        let header = reader.headers().map_err(|error| self.wrong(error))?;
-        let columns = columns::<D>(header).map_err(|problem| self.wrong(problem))?;
-        Ok(Rows { reader, columns, record: StringRecord::new() })
-    }
-
-    /// Reads the next batch, which is shorter at the end of the file and if interrupted.
-    fn read(&self, rows: &mut Rows<D>, batch: &mut Vec<Point<D>>) -> Result<(), Failure> {
-        let Rows { reader, columns, record } = rows;
+    /// Reads the next batch, which is shorter at the end of the file and if interrupted. A row
+    /// with a bad value is noted, and stands in the batch as the origin.
+    fn read(
+        &self,
+        table: &mut Table,
+        columns: &[usize],
+        batch: &mut Vec<Point<D>>,
+    ) -> Result<(), Failure> {
         batch.clear();
-        while batch.len() < self.job.batch()
-            && !self.interrupt.is_asked()
-            && reader.read_record(record).map_err(|error| self.wrong(error))?
-        {
-            let line = record.position().map_or(0, csv::Position::line);
-            let point = columns.map(|column| number(record, column));
-            match point.iter().position(Option::is_none) {
-                None => batch.push(Vector(point.map(Option::unwrap_or_default))),
-                Some(axis) => {
-                    let field = record.get(columns[axis]).unwrap_or_default();
-                    let rule = "a coordinate must be a finite number";
-                    return Err(self.wrong(format!("line {line}: {rule}, got {field:?}")));
-                }
+        while batch.len() < self.job.batch() && !self.interrupt.is_asked() && table.advance()? {
+            let mut point = Vector::ZERO;
+            for (axis, column) in columns.iter().enumerate() {
+                point[axis] = table.number(*column).unwrap_or_default();
             }
+            batch.push(point);
         }
         Ok(())
-    }
-
-    fn wrong(&self, problem: impl fmt::Display) -> Failure {
-        Failure::file(self.job.points, problem)
     }
 }
 
@@ -166,12 +149,6 @@ fn bar(size: u64) -> ProgressBar {
         ProgressStyle::with_template("{bar:40} {percent} % of {total_bytes}, {eta} left")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     )
-}
-
-/// A finite number of at most the size that shapes are made for.
-fn number(record: &StringRecord, column: usize) -> Option<f64> {
-    let number: f64 = record.get(column)?.parse().ok()?;
-    (number.abs() <= palpate::field::LARGEST_LENGTH).then_some(number)
 }
 
 impl<const D: usize> Job<'_, D> {

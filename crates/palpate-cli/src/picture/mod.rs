@@ -25,6 +25,16 @@ pub(crate) use flat::{isolines, noted, outline, scene, values};
 /// Room around a scene, as a share of its longer side.
 pub(crate) const MARGIN: f64 = 0.15;
 
+/// The range shown of a shape without bounds, along each axis [m]: about the size of the
+/// examples of the catalogue, with more below, where the infinite cone is.
+const UNBOUNDED: [f64; 2] = [-1.2, 0.8];
+
+/// The box around a shape, or a part of a shape without bounds.
+pub(crate) fn shown_bounds<const D: usize>(shape: &Shape<D>) -> Aabb<D> {
+    let [min, max] = UNBOUNDED.map(Vector::constant);
+    shape.promise().bounds.map_or(Aabb { min, max }, |bounds| bounds.aabb)
+}
+
 /// The width of a PNG where none is asked for [pixels].
 pub(crate) const WIDTH: u32 = 1200;
 

@@ -18,4 +18,6 @@ mod outputs;
 mod pictures;
 mod program;
 mod render;
+mod shapes;
+mod tables;
 mod touch;

@@ -490,3 +490,31 @@ fn what_a_command_needs_is_said_with_an_example_of_the_scene() {
     let example = ["descend", "ball.json", "--segment", "-0.5,0,0", "0.5,0,0"];
     assert_eq!(status(&folder.run(&example)), 0);
 }
+
+#[test]
+fn a_mesh_in_another_unit_gets_a_hint() {
+    let nut = ["mesh", "testdata/meshes/nut.ply"];
+    let said = text(&palpate(&nut));
+    let hint = "  hint     it is 46.037 m across: if the file is in millimetres, --scale 0.001 makes \
+                that 46.037 mm\n";
+    assert!(said.ends_with(hint), "{said}");
+    let scaled = [&nut[..], &["--scale", "0.001"]].concat();
+    assert!(!text(&palpate(&scaled)).contains("hint"));
+    let answer = palpate(&[&nut[..], &["--json"]].concat());
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    assert!(answer["hint"].as_str().unwrap().starts_with("it is 46.037 m across"));
+    let answer = palpate(&[&scaled[..], &["--json"]].concat());
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    assert_eq!(answer["hint"], Value::Null);
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read_is_told_with_its_line() {
+    let folder = Folder::new();
+    folder.write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+    assert_eq!(
+        refused(&folder, &["mesh", "part.obj"]),
+        "palpate: part.obj: it is no good OBJ: line 4: a face names vertex 4, and there are 3; export \
+         it again\n"
+    );
+}

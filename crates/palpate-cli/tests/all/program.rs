@@ -76,20 +76,6 @@ fn eval_streams_the_same_bytes_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_bad_row_is_named_by_its_line() {
-    let folder = Folder::new();
-    let points = folder.write("points.csv", "x_m,y_m,z_m\n0,0,0\n0,oops,0\n");
-    let output = palpate(&["eval", "scenes/s1.json", "--points", &points]);
-    assert_eq!(status(&output), 2);
-    assert!(
-        errors(&output).contains("line 3: a coordinate must be a finite number, got \"oops\"")
-    );
-    let flat = folder.write("flat.csv", "x_m,y_m\n0,0\n");
-    let output = palpate(&["eval", "scenes/s1.json", "--points", &flat]);
-    assert!(errors(&output).contains("there is no column z_m for a 3D scene"));
-}
-
-#[test]
 fn check_answers_yes_or_no() {
     let output = palpate(&["check", "scenes/cup.json"]);
     assert_eq!(status(&output), 0);
@@ -155,7 +141,7 @@ fn the_schema_is_the_committed_one() {
 }
 
 #[test]
-fn shapes_lists_the_catalogue_with_units_and_models() {
+fn shapes_lists_the_catalogue_with_units_and_origins() {
     let all = json(&["shapes", "--json"]);
     let all = all.as_array().unwrap();
     let spatial = palpate::field::catalogue::Entry::<3>::ALL.len();
@@ -164,8 +150,7 @@ fn shapes_lists_the_catalogue_with_units_and_models() {
     let arc = all.iter().find(|shape| shape["name"] == "arc").unwrap();
     assert_eq!(arc["parameters"][1]["key"], "angle_degrees");
     assert_eq!(arc["parameters"][1]["unit"], "degrees");
-    let by_default = |shape: &&Value| shape["model"] == "default (Lipschitz)";
-    assert!(all.iter().filter(by_default).count() <= 10);
+    assert_eq!(arc["origin"], "at the centre of its circle; open downwards");
     let planar = text(&palpate(&["shapes", "--dimension", "2"]));
     let count = format!("{in_plane} primitives");
     assert!(planar.contains(&count) && !planar.contains("(3D)"));

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -55,6 +56,8 @@ impl<const D: usize> Kernel<D> for Ball {
 primitive! {
     Ball, ball, any,
     about: "All points within a radius of the origin.",
+    origin: "centred",
     parameters: { radius: Length = "the radius" },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius, 0.0))],
     example: (0.7),
 }

@@ -6,6 +6,7 @@
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::between::Between;
+use crate::kernel::mark::{Mark, across, at};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -79,9 +80,17 @@ fn promise<const D: usize>(half_length: f64, radius: f64) -> Promise<D> {
 primitive! {
     Capsule, capsule, any,
     about: "A rod with round ends along the y axis.",
+    origin: "centred; its length along y",
     parameters: {
         radius: Length = "the radius of the rod",
         height: Length = "the length from tip to tip",
+    },
+    marks: |kernel| {
+        let [radius, height] = [kernel.radius(), kernel.height()];
+        vec![
+            Mark::from_origin("radius", at(radius, 0.0)),
+            Mark::height(height, 0.0, 0.0),
+        ]
     },
     example: (0.3, 1.4),
 }
@@ -135,10 +144,19 @@ impl<const D: usize> Kernel<D> for Segment<D> {
 primitive! {
     Segment<D>, segment, any,
     about: "All points within a radius of the segment between two points.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "one end" => |kernel| kernel.between.from(),
         to: Vector = "the other end" => |kernel| kernel.between.to(),
         radius: LengthOrZero = "the radius, zero for a curve without inside",
+    },
+    marks: |kernel| {
+        let (from, to) = (kernel.from(), kernel.to());
+        vec![
+            Mark::position("from", from),
+            Mark::position("to", to),
+            Mark::length_between("radius", to, to + across(to - from) * kernel.radius),
+        ]
     },
     example: (
         Vector(std::array::from_fn(|i| [-0.4, -0.3, 0.2][i])),

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -73,9 +74,11 @@ impl<const D: usize> Kernel<D> for Cuboid<D> {
 primitive! {
     Cuboid<D>, cuboid, any,
     about: "A box along the axes: a rectangle in 2D.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
     },
+    marks: |kernel| Mark::edges(kernel.size(), 0.0),
     example: (Vector(std::array::from_fn(|i| [1.2, 0.8, 0.6][i]))),
 }
 
@@ -137,9 +140,15 @@ impl<const D: usize> Kernel<D> for RoundedCuboid<D> {
 primitive! {
     RoundedCuboid<D>, rounded_cuboid, any,
     about: "A box along the axes, its edges rounded inwards.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths",
         rounding: LengthOrZero = "the radius of the edges",
+    },
+    marks: |kernel| {
+        let mut marks = Mark::edges(kernel.size(), kernel.rounding);
+        marks.push(Mark::rounding(kernel.size(), kernel.rounding));
+        marks
     },
     example: (Vector(std::array::from_fn(|i| [1.2, 0.8, 0.6][i])), 0.15),
 }

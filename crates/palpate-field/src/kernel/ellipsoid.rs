@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -160,17 +161,21 @@ impl<const D: usize> Kernel<D> for Ellipsoid<D> {
 primitive! {
     Ellipsoid<2>, ellipse, 2,
     about: "An ellipse along the axes.",
+    origin: "centred; radii along the axes",
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
+    marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.9, 0.4])),
 }
 
 primitive! {
     Ellipsoid<3>, ellipsoid, 3,
     about: "An ellipsoid along the axes.",
+    origin: "centred; radii along the axes",
     parameters: {
         radii: Vector = "the radii along the axes" => |kernel| Vector(kernel.radii),
     },
+    marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.9, 0.6, 0.3])),
 }

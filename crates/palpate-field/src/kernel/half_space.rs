@@ -4,6 +4,7 @@
 //! Half-spaces.
 
 use crate::error::{ShapeError, Unit, finite};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -58,9 +59,18 @@ impl<const D: usize> Kernel<D> for HalfSpace<D> {
 primitive! {
     HalfSpace<D>, half_space, any,
     about: "All points behind a plane.",
+    origin: "endless; `offset` from the origin along `normal`, which points out",
     parameters: {
         normal: Direction = "the direction out of the half-space, of any length",
         offset: Coordinate = "where the plane is along the normal",
+    },
+    marks: |kernel| {
+        let out = kernel.normal().normalized().unwrap_or(Vector::ZERO);
+        let foot = out * kernel.offset();
+        vec![
+            Mark::direction("normal", foot, foot + out * 0.5),
+            Mark::from_origin("offset", foot),
+        ]
     },
     example: (Vector(std::array::from_fn(|i| [0.3, 1.0, -0.2][i])), 0.1),
 }

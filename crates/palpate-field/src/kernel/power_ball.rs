@@ -6,6 +6,7 @@
 use super::exponent::{Exponent, in_another_norm};
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -71,10 +72,12 @@ impl<const D: usize> Kernel<D> for PowerBall {
 primitive! {
     PowerBall, power_ball, any,
     about: "A ball in the norm of fourth, sixth or eighth powers: a rounded cube.",
+    origin: "centred; radii along the axes",
     parameters: {
         radius: Length = "the radius along the axes",
         exponent: Count = "the power that the norm adds up, 4, 6 or 8"
             => |kernel| kernel.exponent.number(),
     },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius, 0.0))],
     example: (0.8, 4),
 }

@@ -7,6 +7,7 @@ use super::cuboid::{RoundedCuboid, faces};
 use super::exponent::{Exponent, in_another_norm};
 use crate::bounds::Bounds;
 use crate::error::ShapeError;
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -80,12 +81,20 @@ impl<const D: usize> Kernel<D> for PowerCuboid<D> {
 primitive! {
     PowerCuboid<D>, power_cuboid, any,
     about: "A box along the axes, its edges rounded inwards in a norm of higher powers.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| kernel.rounded.size,
         rounding: LengthOrZero = "the radius of the edges along the axes"
             => |kernel| kernel.rounded.rounding,
         exponent: Count = "the power that the norm adds up, 4, 6 or 8"
             => |kernel| kernel.exponent.number(),
+    },
+    marks: |kernel| {
+        let (size, rounding) = (kernel.size(), kernel.rounding());
+        let mut marks = Mark::edges(size, rounding);
+        let (x, y) = (0.5 * size[0], 0.5 * size[1] - rounding);
+        marks.push(Mark::length_between("rounding", at(x - rounding, y), at(x, y)));
+        marks
     },
     example: (Vector(std::array::from_fn(|i| [1.4, 1.1, 0.9][i])), 0.4, 6),
 }

@@ -4,7 +4,7 @@
 //! The one declaration of each primitive.
 
 use crate::error::{ShapeError, Unit};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Mark};
 use crate::vector::Vector;
 
 /// The kind of a parameter.
@@ -76,6 +76,8 @@ pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     const NAME: &'static str;
     /// The primitive described in one sentence.
     const ABOUT: &'static str;
+    /// Where its origin is and which way it points, in phrases between semicolons and commas.
+    const ORIGIN: &'static str;
     /// The parameters, in the order of `new`.
     const PARAMETERS: &'static [Parameter];
 
@@ -89,6 +91,10 @@ pub trait NamedKernel<const D: usize>: Kernel<D> + Sized {
     /// The arguments of the primitive, in the order of the parameters, with the bits given to
     /// [`from_arguments`](Self::from_arguments).
     fn arguments(&self) -> Vec<Argument>;
+
+    /// Where its parameters can be seen: one mark for each that is a length, an angle, a position
+    /// or a direction, or several where it has several numbers. A mark of length zero is there too.
+    fn marks(&self) -> Vec<Mark<D>>;
 
     /// An example of about 1 m, asymmetric where possible, for tests and pictures.
     ///
@@ -336,8 +342,8 @@ pub(crate) fn positions<const D: usize>(
     points.into_iter().map(|point| point.into().0.to_vec()).collect()
 }
 
-/// Declares a kernel as a primitive: its name, what it is, its parameters in the
-/// order of `new`, how it bounds cells, and an example.
+/// Declares a kernel as a primitive: its name, what it is, where its origin is and which way it
+/// points, its parameters in the order of `new`, where pictures show them, and an example.
 ///
 /// A parameter's value is the field of its name; where there is no such field, `=> |kernel| …`
 /// gives it. Each gets an accessor of its name, and [`Shape`](crate::Shape) a constructor of
@@ -346,15 +352,17 @@ macro_rules! primitive {
     (
         $kernel:ident $(<$argument:tt>)?, $name:ident, $dimension:tt,
         about: $about:literal,
+        origin: $origin:literal,
         parameters: {
             $($parameter:ident: $kind:ident = $what:literal $(=> $given:expr)?),* $(,)?
         },
+        marks: $marks:expr,
         example: ($($example:expr),* $(,)?) $(,)?
     ) => {
         primitive!(@accessors [$($argument)?] $dimension, $kernel $(<$argument>)?,
             { $($parameter: $kind = $what $(=> $given)?),* });
         primitive!(@declare $dimension, $kernel, $kernel $(<$argument>)?, $name, $about,
-            { $($parameter: $kind = $what),* }, ($($example),*));
+            $origin, $marks, { $($parameter: $kind = $what),* }, ($($example),*));
     };
     (@accessors [D] any, $kernel:ty, $parameters:tt) => {
         primitive!(@methods [const D: usize], D, $kernel, $parameters);
@@ -400,13 +408,13 @@ macro_rules! primitive {
     };
     (
         @constructor [$($generics:tt)*], $dimension:tt, $type:ident,
-        $name:ident, $about:literal,
+        $name:ident, $about:literal, $origin:literal, $marks:expr,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         $example:tt
     ) => {
         impl<$($generics)*> $crate::kernel::primitive::shape_type!($dimension) {
             #[doc = concat!(
-                $about, "\n\nThe constructor of [`kernel::", stringify!($type),
+                $about, "\n\nOrigin: ", $origin, ".\n\nThe constructor of [`kernel::", stringify!($type),
                 "`](struct@", stringify!($type),
                 "), which has the formula and an example. Parameters:\n\n",
             )]
@@ -433,13 +441,14 @@ macro_rules! primitive {
     };
     (
         @primitive [$($generics:tt)*], $dimension:tt, $kernel:ty,
-        $name:ident, $about:literal,
+        $name:ident, $about:literal, $origin:literal, $marks:expr,
         { $($parameter:ident: $kind:ident = $what:literal),* },
         ($($example:expr),*)
     ) => {
         impl<$($generics)*> $crate::kernel::NamedKernel<$dimension> for $kernel {
             const NAME: &'static str = stringify!($name);
             const ABOUT: &'static str = $about;
+            const ORIGIN: &'static str = $origin;
             const PARAMETERS: &'static [$crate::kernel::Parameter] = &[
                 $($crate::kernel::Parameter {
                     name: stringify!($parameter),
@@ -474,6 +483,11 @@ macro_rules! primitive {
                 vec![$(
                     $crate::kernel::primitive::ToArgument::to_argument(&self.$parameter())
                 ),*]
+            }
+
+            fn marks(&self) -> Vec<$crate::kernel::Mark<$dimension>> {
+                let marks: fn(&Self) -> _ = $marks;
+                marks(self)
             }
 
             fn example() -> Result<Self, $crate::error::ShapeError> {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -218,14 +219,18 @@ impl<const D: usize> Kernel<D> for Simplex<D> {
 primitive! {
     Simplex<2>, triangle, 2,
     about: "The solid triangle of three points.",
+    origin: "given by its points",
     parameters: { points: Points = "the three corners" },
+    marks: |kernel| Mark::positions("points", kernel.points()),
     example: (vec![Vector([-0.6, -0.4]), Vector([0.7, -0.3]), Vector([0.1, 0.6])]),
 }
 
 primitive! {
     Simplex<3>, tetrahedron, 3,
     about: "The solid tetrahedron of four points.",
+    origin: "given by its points",
     parameters: { points: Points = "the four corners" },
+    marks: |kernel| Mark::positions("points", kernel.points()),
     example: (vec![
         Vector([-0.6, -0.4, -0.3]),
         Vector([0.7, -0.3, -0.4]),

@@ -270,8 +270,9 @@ impl<const D: usize> Shape<D> {
         (promise.safe_radius(p, self.distance(p)) - promise.rounding.within(p.norm())).max(0.0)
     }
 
-    /// A point of the surface near `p` [m]: the nearest one where the promise is
-    /// exact, else one close by.
+    /// A place near `p` where the field is zero [m]: where the promise is exact the nearest point
+    /// of the surface, else one close by. A bound may be zero inside too, at the wall where
+    /// members of a union touch.
     ///
     /// Newton's method along the gradient, which need not be of length one:
     /// `p − f·∇f/|∇f|²`, until the distance is rounding. `None` if the gradient

@@ -4,7 +4,7 @@
 //! Promises never overclaim, on every primitive and on random trees.
 
 use arbitrary::Unstructured;
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Quality, Shape, ShapeError, Vector};
 use palpate_testkit::arbitrary::{self as draw, Turn};
 use palpate_testkit::kernels::Space;
 use palpate_testkit::tree::Solid;
@@ -93,4 +93,21 @@ palpate_testkit::in_both_dimensions! {
     values_are_no_steeper_than_promised: lipschitz, 1800, 60;
     shapes_stay_in_their_bounds: bounds, 1800, 60;
     convex_fields_lie_below_their_chords: convex, 1800, 60;
+}
+
+#[test]
+fn a_wall_between_members_that_touch_is_zero_and_parts_that_overlap_have_none()
+-> Result<(), ShapeError> {
+    let pair = |reach: f64| {
+        let part = |x: f64| Shape::<2>::cuboid([2.0 + reach, 2.0])?.translated([x, 0.0]);
+        Shape::union([part(-1.0)?, part(1.0)?])
+    };
+    let touching = pair(0.0)?;
+    assert_eq!(touching.promise().inside, Quality::Bound);
+    // The surface is 1 m away, at the top and the bottom.
+    assert_eq!(touching.distance([0.0, 0.0]), 0.0);
+    assert_eq!(touching.surface_point([0.25, 0.0]), Some(Vector([0.0, 0.0])));
+    assert_eq!(touching.safe_radius([0.0, 0.0]), 0.0);
+    assert_eq!(pair(0.5)?.distance([0.0, 0.0]), -0.25);
+    Ok(())
 }

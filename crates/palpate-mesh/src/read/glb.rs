@@ -15,8 +15,9 @@ use super::Format;
 use super::ReadProblem;
 use crate::mesh::TriangleMesh;
 
-/// Bytes before the first chunk.
+/// Bytes before the first chunk, and before what it holds.
 const HEADER: u32 = 12;
+const JSON: u32 = 20;
 
 /// Nodes may show one mesh in many places, so that a small file is a large scene: the most
 /// vertices and the most corners of triangles that are placed.
@@ -31,8 +32,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     if !bytes.starts_with(b"glTF") || length < HEADER {
         return Err(malformed("it does not begin as binary glTF does"));
     }
+    if length as usize > bytes.len() {
+        let found = bytes.len();
+        return Err(malformed(format_args!(
+            "byte 8: the file should have {length} bytes, and ends at byte {found}: it is cut off"
+        )));
+    }
     let Gltf { document, blob } =
-        Gltf::from_slice_without_validation(bytes).map_err(malformed)?;
+        Gltf::from_slice_without_validation(bytes).map_err(malformed_json)?;
     let document = validated(document)?;
     let mut scene = Scene { blob: blob.unwrap_or_default(), ..Scene::default() };
     scene.place_all(&document)?;
@@ -48,10 +55,15 @@ fn validated(document: Document) -> Result<Document, ReadProblem> {
         let (accessor, count) = (accessor.value(), json.accessors.len());
         if accessor >= count {
             let problem = format!("a mesh names accessor {accessor}, and there are {count}");
-            return Err(malformed(problem));
+            return Err(malformed_json(problem));
         }
     }
-    Document::from_json(json).map_err(malformed)
+    Document::from_json(json).map_err(malformed_json)
+}
+
+/// What is wrong with the description of the scene.
+fn malformed_json(problem: impl std::fmt::Display) -> ReadProblem {
+    malformed(format_args!("in the JSON from byte {JSON} on: {problem}"))
 }
 
 fn malformed(problem: impl std::fmt::Display) -> ReadProblem {

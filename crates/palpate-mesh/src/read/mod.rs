@@ -162,6 +162,16 @@ pub fn read(bytes: &[u8], format: Format) -> Result<TriangleMesh, ReadProblem> {
     }
 }
 
+/// That a text ends in the line of a complaint, if it does: it may be cut off.
+fn cut_off(text: &str, line: usize) -> &'static str {
+    let is_last = text.lines().nth(line).is_none();
+    if is_last && !text.ends_with('\n') {
+        "; the file ends there: it may be cut off"
+    } else {
+        ""
+    }
+}
+
 /// The mesh of polygons: how many corners each has, and the corners of all.
 fn of_polygons(
     vertices: Vec<Point<3>>,

@@ -12,13 +12,13 @@ use std::fmt::Write;
 use palpate_field::Vector;
 
 use super::ReadProblem;
-use super::{Format, of_polygons};
+use super::{Format, cut_off, of_polygons};
 use crate::mesh::TriangleMesh;
 
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     let options = tobj::LoadOptions::default();
     let no_material = |_: &std::path::Path| Err(tobj::LoadError::GenericFailure);
-    let essence = essence(bytes);
+    let essence = essence(&String::from_utf8_lossy(bytes))?;
     let (models, _) = tobj::load_obj_buf(&mut essence.as_bytes(), &options, no_material)
         .map_err(|error| Format::Obj.malformed(error))?;
     let Some(model) = models.into_iter().next() else {
@@ -46,13 +46,21 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
     lines.take(SOON).any(is_vertex)
 }
 
-/// The positions and faces of a file.
-fn essence(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes).replace("\\\r\n", " ").replace("\\\n", " ");
+/// The positions and faces of a file, with nothing that tobj would refuse without its line.
+fn essence(text: &str) -> Result<String, ReadProblem> {
     let mut essence = String::with_capacity(text.len());
     let mut vertices = 0_usize;
-    for line in text.lines() {
-        let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
+    // The line that names the last vertex, which may come after it.
+    let mut last: Option<(Line<'_>, usize)> = None;
+    let mut lines = text.lines().enumerate();
+    while let Some((number, first)) = lines.next() {
+        let mut whole = first.to_owned();
+        // A backslash at the end joins a line to the next.
+        while let Some(joined) = whole.strip_suffix('\\').map(str::to_owned) {
+            whole = joined + " " + lines.next().map_or("", |(_, next)| next);
+        }
+        let line = Line { text, number: number + 1 };
+        let mut words = whole.split('#').next().unwrap_or_default().split_whitespace();
         match words.next() {
             Some("v") => {
                 vertices += 1;
@@ -60,24 +68,86 @@ fn essence(bytes: &[u8]) -> String {
                 // are a colour.
                 let numbers: Vec<_> = words.collect();
                 let kept = if numbers.len() == 4 { 4 } else { numbers.len().min(3) };
+                line.check_vertex(&numbers)?;
                 essence.push_str("v ");
                 essence.push_str(&numbers[..kept].join(" "));
                 essence.push('\n');
             }
             Some("f") => {
                 essence.push('f');
+                let mut corners = 0;
                 for word in words {
+                    let corner = word.split('/').next().unwrap_or_default();
+                    let vertex = line.corner(corner, vertices)?;
+                    if last.is_none_or(|(_, last)| last < vertex) {
+                        last = Some((line, vertex));
+                    }
                     essence.push(' ');
-                    essence.push_str(word.split('/').next().unwrap_or_default());
+                    essence.push_str(corner);
+                    corners += 1;
+                }
+                if corners < 3 {
+                    return Err(
+                        line.wrong(&format!("a face has 3 corners or more, got {corners}"))
+                    );
                 }
                 essence.push('\n');
             }
             _ => {}
         }
     }
+    if let Some((line, vertex)) = last.filter(|(_, vertex)| *vertex > vertices) {
+        let problem = format!("a face names vertex {vertex}, and there are {vertices}");
+        return Err(line.wrong(&problem));
+    }
     for i in 1..=vertices {
         // Writing to a string does not fail.
         let _ = writeln!(essence, "f {i}");
     }
-    essence
+    Ok(essence)
+}
+
+/// A line of a file.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    text: &'a str,
+    number: usize,
+}
+
+impl Line<'_> {
+    /// Refuses what are no coordinates.
+    fn check_vertex(self, numbers: &[&str]) -> Result<(), ReadProblem> {
+        let is_good = |number: &&str| {
+            number.parse().is_ok_and(|x: f64| x.abs() <= palpate_field::LARGEST_LENGTH)
+        };
+        if let Some(wrong) = numbers.iter().take(3).find(|number| !is_good(number)) {
+            let rule = "a coordinate is a finite number of at most 1e15 in size";
+            return Err(self.wrong(&format!("{rule}, got {wrong:?}")));
+        }
+        if numbers.len() < 3 {
+            let count = numbers.len();
+            return Err(self.wrong(&format!("a vertex has 3 coordinates, got {count}")));
+        }
+        Ok(())
+    }
+
+    /// The vertex of a corner, counted from 1, where `vertices` come before the face.
+    fn corner(self, corner: &str, vertices: usize) -> Result<usize, ReadProblem> {
+        let index = corner.parse::<i64>().ok().filter(|index| *index != 0);
+        let Some(index) = index else {
+            let rule = "a corner is the number of a vertex, counted from 1";
+            return Err(self.wrong(&format!("{rule}, got {corner:?}")));
+        };
+        let counted = if index > 0 { index } else { vertices as i64 + 1 + index };
+        usize::try_from(counted).ok().filter(|counted| *counted > 0).ok_or_else(|| {
+            let problem = format!("a face names vertex {index}, and {vertices} are before it");
+            self.wrong(&problem)
+        })
+    }
+
+    /// The complaint about this line.
+    fn wrong(self, problem: &str) -> ReadProblem {
+        let cut = cut_off(self.text, self.number);
+        Format::Obj.malformed(format_args!("line {}: {problem}{cut}", self.number))
+    }
 }

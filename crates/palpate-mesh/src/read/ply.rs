@@ -3,7 +3,7 @@
 
 //! PLY, with ply-rs-bw.
 
-use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 use palpate_field::{Point, Vector};
@@ -50,10 +50,10 @@ impl PropertyAccess for Row {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
-    let malformed = |error: ply_rs_bw::parser::ParseError| Format::Ply.malformed(error);
     let parser = Parser::<Row>::new();
     let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(malformed)?;
+    let header = parser.read_header(&mut reader);
+    let header = header.map_err(|error| malformed(&error, bytes, &reader))?;
     for element in header.elements.values() {
         // Every row takes a byte at least, so that the file bounds what is read.
         if element.properties.is_empty() || element.count > bytes.len() {
@@ -64,9 +64,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     }
     let (mut vertices, mut sizes, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
-        let rows = parser
-            .read_payload_for_element(&mut reader, element, &header)
-            .map_err(malformed)?;
+        let rows = parser.read_payload_for_element(&mut reader, element, &header);
+        let rows = rows.map_err(|error| malformed(&error, bytes, &reader))?;
         match element.name.as_str() {
             "vertex" => vertices.extend(rows.iter().map(|row| row.position)),
             "face" => {
@@ -89,6 +88,24 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
         }
     }
     of_polygons(vertices, &sizes, &corners, Format::Ply)
+}
+
+/// An error of the parser with the line of a text, or the byte of a binary file at which it
+/// stopped.
+fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadProblem {
+    let byte = bytes.len() - reader.get_ref().len();
+    let message = error.to_string().replace("\n\t", " ");
+    let numbered = message.strip_prefix("Line ").and_then(|rest| rest.split_once(": "));
+    let is_binary = bytes.windows(13).take(1000).any(|window| window == b"format binary");
+    let (place, problem) = match numbered {
+        Some((_, problem)) if is_binary => (format!("byte {byte}"), problem),
+        Some((line, problem)) => (format!("line {line}"), problem),
+        None => (format!("byte {byte}"), message.as_str()),
+    };
+    let is_end = error.kind() == std::io::ErrorKind::UnexpectedEof
+        || byte == bytes.len() && !bytes.ends_with(b"\n");
+    let cut = if is_end { "; the file ends there: it is cut off" } else { "" };
+    Format::Ply.malformed(format_args!("{place}: {problem}{cut}"))
 }
 
 fn number(property: &Property) -> Option<f64> {

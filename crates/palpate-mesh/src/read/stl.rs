@@ -22,18 +22,49 @@ const TRIANGLE: usize = 50;
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     let mut vertices = Vec::new();
     if is_binary(bytes) {
+        check_length(bytes)?;
         let mut copy = bytes.to_vec();
         copy[..HEADER].fill(0);
-        append(&copy, &mut vertices)?;
+        append(&copy, &mut vertices, |i| format!("byte {}", HEADER + COUNT + i * TRIANGLE))?;
     } else {
         let text = String::from_utf8_lossy(bytes);
         for solid in solids(&text) {
-            append(solid.as_bytes(), &mut vertices)?;
+            append(solid.as_bytes(), &mut vertices, |i| line_of_facet(&text, i))?;
         }
     }
     let corners = (0..vertices.len() as u32).collect::<Vec<_>>();
     let (triangles, _) = corners.as_chunks::<3>();
     Ok(TriangleMesh::new(vertices, triangles.to_vec())?.welded())
+}
+
+/// Refuses a binary file that is shorter than its count of triangles says.
+fn check_length(bytes: &[u8]) -> Result<(), ReadProblem> {
+    match binary_length(bytes) {
+        Some(length) if length > bytes.len() => {
+            let triangles = (length - HEADER - COUNT) / TRIANGLE;
+            let found = bytes.len();
+            Err(Format::Stl.malformed(format_args!(
+                "byte {HEADER}: {triangles} triangles are counted, which take {length} bytes, and \
+                 the file ends at byte {found}: it is cut off"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Where the `i`-th facet of a text is: "line 12", and that the text is cut off if it ends there.
+fn line_of_facet(text: &str, i: usize) -> String {
+    let is_facet = |(_, line): &(usize, &str)| line.trim_start().starts_with("facet");
+    let mut facets = text.lines().enumerate().filter(is_facet);
+    let Some((line, _)) = facets.nth(i) else {
+        return format!(
+            "line {}, where the file ends: it may be cut off",
+            text.lines().count()
+        );
+    };
+    let is_cut = facets.next().is_none() && !text.contains("endsolid");
+    let cut = if is_cut { ", the last: the file is cut off" } else { "" };
+    format!("line {}{cut}", line + 1)
 }
 
 /// `true` if a file has the length of a binary one, or begins as a text does and goes on with a
@@ -88,13 +119,21 @@ fn solids(text: &str) -> Vec<String> {
     solids
 }
 
-fn append(file: &[u8], vertices: &mut Vec<Vector<f64, 3>>) -> Result<(), ReadProblem> {
+/// Appends the vertices of a file; `place` says where its `i`-th triangle is, all solids counted.
+fn append(
+    file: &[u8],
+    vertices: &mut Vec<Vector<f64, 3>>,
+    place: impl Fn(usize) -> String,
+) -> Result<(), ReadProblem> {
+    let wrong = |i: usize, error: std::io::Error| {
+        Format::Stl.malformed(format_args!("{}: {error}", place(i)))
+    };
+    let known = vertices.len() / 3;
     let mut file = Cursor::new(file);
     let triangles =
-        stl_io::create_stl_reader(&mut file).map_err(|error| Format::Stl.malformed(error))?;
+        stl_io::create_stl_reader(&mut file).map_err(|error| wrong(known, error))?;
     for (i, triangle) in triangles.enumerate() {
-        let triangle = triangle
-            .map_err(|error| Format::Stl.malformed(format_args!("triangle {i}: {error}")))?;
+        let triangle = triangle.map_err(|error| wrong(known + i, error))?;
         vertices.extend(triangle.vertices.map(|vertex| Vector(vertex.0.map(f64::from))));
     }
     Ok(())

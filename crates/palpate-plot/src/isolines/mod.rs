@@ -62,7 +62,7 @@ pub struct Isolines {
     pub(crate) pixels: Pixels,
     pub(crate) ground: Ground,
     title: String,
-    overlays: Vec<Overlay>,
+    pub(crate) overlays: Vec<Overlay>,
 }
 
 /// The ground below the lines.

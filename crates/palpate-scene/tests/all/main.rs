@@ -13,6 +13,7 @@ mod generated;
 mod hostile;
 mod materials;
 mod motions;
+mod origins;
 mod random;
 mod refusal;
 mod round_trip;

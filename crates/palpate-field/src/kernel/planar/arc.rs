@@ -5,6 +5,7 @@
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::ShapeError;
+use crate::kernel::mark::sets;
 use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
@@ -91,10 +92,14 @@ impl Kernel<2> for Arc {
 primitive! {
     Arc, arc, 2,
     about: "All points within a radius of an arc of a circle, open downwards.",
+    origin: "at the centre of its circle; open downwards",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         angle: Angle = "how much of the circle, about the +y axis",
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
+    },
+    marks: |kernel| {
+        sets::arc(Vector::ZERO, kernel.ring_radius(), kernel.angle(), kernel.radius())
     },
     example: (0.7, 4.0, 0.12),
 }

@@ -6,6 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{at, sets};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Scalar};
@@ -148,11 +149,16 @@ impl Kernel<2> for CircleWave {
 primitive! {
     CircleWave, circle_wave, 2,
     about: "All points within a radius of an endless line of arcs, up and down in turn.",
+    origin: "endless along x; a crest at x = 0, arcs that meet at y = 0",
     parameters: {
         ring_radius: Length = "the radius of the arcs",
         angle: Angle = "how much of a circle each arc is, at most 300°"
             => |kernel| 2.0 * kernel.half_angle,
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
+    },
+    marks: |kernel| {
+        let centre = at(0.0, -kernel.ring_radius() * kernel.end[1]);
+        sets::arc(centre, kernel.ring_radius(), kernel.angle(), kernel.radius())
     },
     example: (0.31, 4.0, 0.08),
 }

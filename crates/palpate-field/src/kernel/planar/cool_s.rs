@@ -6,6 +6,7 @@
 use super::line::Edge;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -106,8 +107,10 @@ impl Kernel<2> for CoolS {
 primitive! {
     CoolS, cool_s, 2,
     about: "The S that every pupil draws, two fifths as wide as high.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| vec![Mark::height(kernel.height(), 0.0, 0.0)],
     example: (1.8),
 }

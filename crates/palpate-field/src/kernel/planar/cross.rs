@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at, diagonal};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -90,9 +91,17 @@ impl Kernel<2> for Cross {
 primitive! {
     Cross, cross, 2,
     about: "A bar along x and one along y, crossed at the origin.",
+    origin: "centred; bars along the axes",
     parameters: {
         length: Length = "the full length of a bar" => |kernel| 2.0 * kernel.half_length,
         width: Length = "the full width of a bar" => |kernel| 2.0 * kernel.half_width,
+    },
+    marks: |kernel| {
+        let (length, width) = (0.5 * kernel.length(), 0.5 * kernel.width());
+        vec![
+            Mark::length_between("length", at(-length, width), at(length, width)).above(),
+            Mark::width("width", width, -length),
+        ]
     },
     example: (1.7, 0.5),
 }
@@ -200,9 +209,18 @@ impl Kernel<2> for RoundedX {
 primitive! {
     RoundedX, rounded_x, 2,
     about: "Two crossed diagonal strokes with round ends.",
+    origin: "centred; strokes along the diagonals",
     parameters: {
         size: Length = "the full width and height",
         radius: Length = "half the width of a stroke",
+    },
+    marks: |kernel| {
+        let (half, radius) = (0.5 * kernel.size(), kernel.radius());
+        let end = half - radius;
+        vec![
+            Mark::width("size", half, -end),
+            Mark::length_between("radius", at(end, end), at(end, end) + diagonal() * radius),
+        ]
     },
     example: (1.7, 0.22),
 }

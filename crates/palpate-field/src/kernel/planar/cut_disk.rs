@@ -6,6 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, finite, positive};
+use crate::kernel::mark::sets;
 use crate::kernel::profile::{self, CutDiskProfile};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
@@ -89,10 +90,12 @@ impl Kernel<2> for CutDisk {
 primitive! {
     CutDisk, cut_disk, 2,
     about: "What is above a line of a disc.",
+    origin: "at the centre of its disc; a flat side down",
     parameters: {
         radius: Length = "the radius of the disc",
         cut_height: Coordinate = "how far above the centre the cut is",
     },
+    marks: |kernel| sets::cut(kernel.radius(), kernel.cut_height()),
     example: (0.9, -0.3),
 }
 
@@ -177,6 +180,7 @@ impl Kernel<2> for Moon {
 primitive! {
     Moon, moon, 2,
     about: "A disc without a second one above it: a crescent with its horns up.",
+    origin: "at the centre of its disc; hollow upwards",
     parameters: {
         radius: Length = "the radius of the disc",
         cut_radius: Length = "the radius of the disc that is taken off"
@@ -184,5 +188,6 @@ primitive! {
         distance: Length = "how far above the disc's centre the other's is"
             => |kernel| kernel.half.distance,
     },
+    marks: |kernel| sets::bite(kernel.radius(), kernel.cut_radius(), kernel.distance()),
     example: (0.9, 0.7, 0.45),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -110,9 +111,17 @@ impl Kernel<2> for Egg {
 primitive! {
     Egg, egg, 2,
     about: "An egg of four arcs, its thin end up.",
+    origin: "at the centre of its bottom circle; the thin end up",
     parameters: {
         bottom_radius: Length = "the radius of the bottom, half the width",
         top_radius: Length = "the radius of the top, at most that of the bottom",
+    },
+    marks: |kernel| {
+        let (bottom, top) = (kernel.bottom_radius, kernel.top_radius);
+        vec![
+            Mark::from_origin("bottom_radius", at(-0.8 * bottom, -0.6 * bottom)),
+            Mark::length_between("top_radius", at(0.0, kernel.top), at(0.0, kernel.top + top)),
+        ]
     },
     example: (0.7, 0.25),
 }

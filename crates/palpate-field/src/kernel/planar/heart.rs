@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -101,6 +102,11 @@ impl Kernel<2> for Heart {
 primitive! {
     Heart, heart, 2,
     about: "A heart, its tip down: a square on its corner with half a disc on each upper edge.",
+    origin: "centred, at half its height; a tip down",
     parameters: { height: Length = "the full height" },
+    marks: |kernel| {
+        let lobe = 0.5 * FRAC_1_SQRT_2 * kernel.edge;
+        vec![Mark::height(kernel.height, 0.0, lobe)]
+    },
     example: (1.7),
 }

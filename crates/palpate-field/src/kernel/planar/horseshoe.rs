@@ -4,8 +4,11 @@
 //! The horseshoe.
 
 use super::outline::bounds_about;
+use std::f64::consts::FRAC_PI_2;
+
 use crate::bounds::Aabb;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, turned};
 use crate::kernel::profile::half_of_less_than_a_turn;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
@@ -134,11 +137,25 @@ impl Kernel<2> for Horseshoe {
 primitive! {
     Horseshoe, horseshoe, 2,
     about: "A band along an arc and its tangents at both ends, open downwards.",
+    origin: "at the centre of its arc; open downwards",
     parameters: {
         ring_radius: Length = "the radius of the arc, to the middle of the band",
         angle: Angle = "how much of the circle, about the +y axis",
         length: LengthOrZero = "the length of each straight leg",
         width: Length = "the full width of the band" => |kernel| 2.0 * kernel.half_width,
+    },
+    marks: |kernel| {
+        let (ring, half) = (kernel.ring_radius(), 0.5 * kernel.width());
+        let place = |share: f64, radius: f64| turned(share * kernel.angle(), radius);
+        let start: Vector<f64, 2> = place(0.5, ring + half);
+        let along = turned(0.5 * kernel.angle() + FRAC_PI_2, kernel.length());
+        vec![
+            Mark::from_origin("ring_radius", place(0.2, ring)),
+            Mark::angle("angle", |share| place(share, 0.4 * ring)),
+            Mark::length_between("length", start, start + along)
+                .beside(place(0.5, 1.0)),
+            Mark::length_between("width", place(-0.2, ring - half), place(-0.2, ring + half)),
+        ]
     },
     example: (0.7, 3.7, 0.55, 0.3),
 }

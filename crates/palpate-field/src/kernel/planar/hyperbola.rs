@@ -4,6 +4,7 @@
 //! Hyperbolas.
 
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -161,8 +162,10 @@ impl Kernel<2> for Hyperbola {
 primitive! {
     Hyperbola, hyperbola, 2,
     about: "What is beyond the upper branch of a hyperbola.",
+    origin: "endless; at the middle of both vertices, the branch above",
     parameters: {
         radii: Vector = "the semi-axes along x and y" => |kernel| Vector(kernel.radii),
     },
+    marks: |kernel| Mark::radii(kernel.radii()),
     example: (Vector([0.45, 0.31])),
 }

@@ -6,6 +6,7 @@
 use super::parabola_foot::Quadratic;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -92,7 +93,9 @@ fn unfolded<T: Float>(x: T, [across, up]: [T; 2]) -> Vector<T, 2> {
 primitive! {
     Parabola, parabola, 2,
     about: "What is above a parabola.",
+    origin: "endless; at its vertex, opening upwards",
     parameters: { focal_length: Length = "from the vertex to the focus" },
+    marks: |kernel| vec![Mark::from_origin("focal_length", at(0.0, kernel.focal_length()))],
     example: (0.2),
 }
 
@@ -213,9 +216,11 @@ impl Kernel<2> for ParabolaSegment {
 primitive! {
     ParabolaSegment, parabola_segment, 2,
     about: "What is under a parabolic arch and above its chord.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         width: Length = "the length of the chord" => |kernel| 2.0 * kernel.half_width,
         height: Length = "the full height",
     },
+    marks: |kernel| sets::arch("width", kernel.width(), kernel.height()),
     example: (1.3, 1.7),
 }

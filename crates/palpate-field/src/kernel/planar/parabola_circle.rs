@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use super::parabola_foot::Quadratic;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, diagonal};
 use crate::kernel::{Kernel, lipschitz_model, primitive, tangent_model};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -123,7 +124,9 @@ impl Kernel<2> for QuadraticCircle {
 primitive! {
     QuadraticCircle, quadratic_circle, 2,
     about: "A round shape whose outline is four arcs of parabolas.",
+    origin: "centred; radii along the axes",
     parameters: { radius: Length = "from the centre to where it meets the axes" },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.8),
 }
 
@@ -245,10 +248,20 @@ impl Kernel<2> for BobblyCross {
 primitive! {
     BobblyCross, bobbly_cross, 2,
     about: "A cross with four tips on the axes between hollow arcs of parabolas, rounded.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         width: Length = "the full width and height",
         dip: Length = "how far the sides are drawn in from the line between two tips",
         rounding: LengthOrZero = "the radius of the tips, zero for sharp ones",
+    },
+    marks: |kernel| {
+        let chord: Vector<f64, 2> =
+            diagonal() * (FRAC_1_SQRT_2 * kernel.tip + kernel.rounding);
+        vec![
+            Mark::width("width", 0.5 * kernel.width, 0.0),
+            Mark::length_between("dip", chord, chord - diagonal() * kernel.dip),
+            Mark::length_between("rounding", at(0.0, kernel.tip), at(0.0, 0.5 * kernel.width)),
+        ]
     },
     example: (1.9, 0.2, 0.15),
 }

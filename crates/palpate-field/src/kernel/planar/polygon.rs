@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::line::Edge;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite};
+use crate::kernel::mark::Mark;
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Dual, Float, Scalar};
@@ -286,7 +287,14 @@ impl Kernel<2> for Polygon {
 primitive! {
     Polygon, polygon, 2,
     about: "The inside of closed rings by the even-odd rule: rings in rings are holes.",
+    origin: "given by its points",
     parameters: { rings: Rings = "lists of at least 3 points, each closed by itself" },
+    marks: |kernel| {
+        let ring = |(i, ring): (usize, &Vec<Vector<f64, 2>>)| {
+            Mark::positions("rings", ring).into_iter().map(move |mark| mark.of(i))
+        };
+        kernel.rings().iter().enumerate().flat_map(ring).collect()
+    },
     example: (vec![
         vec![
             Vector([-0.8, -0.5]),

@@ -6,6 +6,7 @@
 use super::parabola_foot::Quadratic;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative};
+use crate::kernel::mark::{Mark, across};
 use crate::kernel::{Kernel, lipschitz_model, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::{AffineModel, Float, Scalar};
@@ -289,11 +290,21 @@ impl Kernel<2> for QuadraticBezier {
 primitive! {
     QuadraticBezier, quadratic_bezier, 2,
     about: "All points within a radius of a quadratic Bézier curve.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "one end" => |kernel| Vector(kernel.from),
         control: Vector = "where the tangents of both ends meet",
         to: Vector = "the other end",
         radius: LengthOrZero = "the radius, zero for a curve without inside",
+    },
+    marks: |kernel| {
+        let (control, to) = (kernel.control(), kernel.to());
+        vec![
+            Mark::position("from", kernel.from()),
+            Mark::position("control", control),
+            Mark::position("to", to),
+            Mark::length_between("radius", to, to + across(to - control) * kernel.radius()),
+        ]
     },
     example: (Vector([-0.8, -0.6]), Vector([0.5, 1.1]), Vector([0.9, -0.4]), 0.12),
 }

@@ -7,6 +7,7 @@ use super::line::Edge;
 use super::outline::bounds_about;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::profile::{self, beside, intersection};
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
@@ -73,9 +74,17 @@ impl Kernel<2> for Rhombus {
 primitive! {
     Rhombus, rhombus, 2,
     about: "A rhombus, its diagonals along the axes.",
+    origin: "centred; diagonals along the axes",
     parameters: {
         size: Vector = "the full diagonals along x and y"
             => |kernel| Vector(kernel.0.corners()) * 2.0,
+    },
+    marks: |kernel| {
+        let [x, y] = kernel.size().0.map(|size| 0.5 * size);
+        vec![
+            Mark::width("size", x, 0.0).of(0),
+            Mark::length_between("size", at(0.0, -y), at(0.0, y)).of(1).left(),
+        ]
     },
     example: (Vector([1.8, 1.1])),
 }
@@ -166,10 +175,19 @@ impl Kernel<2> for Parallelogram {
 primitive! {
     Parallelogram, parallelogram, 2,
     about: "A parallelogram, two of its edges along x.",
+    origin: "centred; two edges along x",
     parameters: {
         width: Length = "the length of the top and of the bottom",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_extents[1],
         skew: Coordinate = "how much further right the top is than the bottom",
+    },
+    marks: |kernel| {
+        let [w, h, s] = [kernel.width, kernel.height(), kernel.skew].map(|length| 0.5 * length);
+        vec![
+            Mark::length_between("width", at(-w - s, -h), at(w - s, -h)).below(),
+            Mark::length_between("height", at(-w - s, -h), at(s - w, h)).left(),
+            Mark::length_between("skew", at(w - s, -h), at(w + s, h)).above(),
+        ]
     },
     example: (1.1, 0.9, 0.5),
 }
@@ -260,11 +278,22 @@ impl Kernel<2> for IsoscelesTrapezoid {
 primitive! {
     IsoscelesTrapezoid, isosceles_trapezoid, 2,
     about: "A trapezoid about the y axis.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         bottom_width: LengthOrZero = "the full width at the bottom"
             => |kernel| 2.0 * kernel.bottom,
         top_width: LengthOrZero = "the full width at the top" => |kernel| 2.0 * kernel.top,
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
+    marks: |kernel| {
+        let (height, bottom, top) =
+            (kernel.height(), 0.5 * kernel.bottom_width(), 0.5 * kernel.top_width());
+        let y = 0.5 * height;
+        vec![
+            Mark::width("bottom_width", bottom, -y),
+            Mark::length_between("top_width", at(-top, y), at(top, y)).above(),
+            Mark::height(height, bottom, top),
+        ]
     },
     example: (1.6, 0.7, 0.9),
 }
@@ -304,9 +333,11 @@ answered_by_inner!(IsoscelesTriangle.0, 2);
 primitive! {
     IsoscelesTriangle, isosceles_triangle, 2,
     about: "A triangle about the y axis, its tip up.",
+    origin: "centred, at half its height; a tip up, a flat side down",
     parameters: {
         base: Length = "the length of the base" => |kernel| kernel.0.bottom_width(),
         height: Length = "the full height" => |kernel| kernel.0.height(),
     },
+    marks: |kernel| sets::arch("base", kernel.base(), kernel.height()),
     example: (1.1, 1.3),
 }

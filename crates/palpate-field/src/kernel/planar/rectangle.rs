@@ -4,8 +4,11 @@
 //! Rectangles: with rounded corners, with cut corners, between two points.
 
 use super::outline::frame_between;
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Cuboid, Kernel, primitive, tangent_model};
 use crate::pose::Placement;
@@ -116,6 +119,7 @@ impl Kernel<2> for RoundedRectangle {
 primitive! {
     RoundedRectangle, rounded_rectangle, 2,
     about: "A rectangle along the axes, each corner rounded inwards with its own radius.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths before rounding"
             => |kernel| Vector(kernel.half_extents) * 2.0,
@@ -127,6 +131,27 @@ primitive! {
             => |kernel| kernel.radii[2],
         bottom_left_radius: LengthOrZero = "the radius at the bottom left"
             => |kernel| kernel.radii[3],
+    },
+    marks: |kernel| {
+        let size = kernel.size();
+        let radius = |name, [right, up]: [f64; 2], radius: f64| {
+            let out = Vector([right, up]);
+            let half = size * 0.5 - Vector([radius; 2]);
+            let centre = Vector([right * half[0], up * half[1]]);
+            Mark::length_between(name, centre, centre + out * (FRAC_1_SQRT_2 * radius))
+        };
+        let ([top_left, _, bottom_right, bottom_left], [x, y]) =
+            (kernel.radii, kernel.half_extents);
+        let width = [at(-x, bottom_left - y), at(x, bottom_right - y)];
+        let height = [at(bottom_left - x, -y), at(top_left - x, y)];
+        vec![
+            Mark::length_between("size", width[0], width[1]).of(0).below(),
+            Mark::length_between("size", height[0], height[1]).of(1).left(),
+            radius("top_left_radius", [-1.0, 1.0], kernel.top_left_radius()),
+            radius("top_right_radius", [1.0, 1.0], kernel.top_right_radius()),
+            radius("bottom_right_radius", [1.0, -1.0], kernel.bottom_right_radius()),
+            radius("bottom_left_radius", [-1.0, -1.0], kernel.bottom_left_radius()),
+        ]
     },
     example: (Vector([1.6, 1.0]), 0.6, 0.2, 0.0, 0.35),
 }
@@ -218,10 +243,19 @@ impl Kernel<2> for ChamferedRectangle {
 primitive! {
     ChamferedRectangle, chamfered_rectangle, 2,
     about: "A rectangle along the axes with its corners cut off at 45°.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths before cutting"
             => |kernel| Vector(kernel.half_extents) * 2.0,
         chamfer: LengthOrZero = "what a cut takes from each edge",
+    },
+    marks: |kernel| {
+        let (size, chamfer) = (kernel.size(), kernel.chamfer());
+        let [x, y] = [0.5 * size[0], 0.5 * size[1]];
+        let mut marks = Mark::edges(size, chamfer);
+        let cut = Mark::length_between("chamfer", at(x - chamfer, y), at(x, y - chamfer));
+        marks.push(cut.above());
+        marks
     },
     example: (Vector([1.6, 1.1]), 0.35),
 }
@@ -280,10 +314,12 @@ impl Kernel<2> for OrientedRectangle {
 primitive! {
     OrientedRectangle, oriented_rectangle, 2,
     about: "The rectangle around the line between two points.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "the middle of one end",
         to: Vector = "the middle of the other end",
         width: Length = "the full width across" => |kernel| kernel.rectangle.size()[0],
     },
+    marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.5]), Vector([0.6, 0.4]), 0.5),
 }

@@ -4,8 +4,11 @@
 //! Regular polygons and stars.
 
 use super::line::Edge;
+use std::f64::consts::PI;
+
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at, turned};
 use crate::kernel::{Kernel, face_if_on_it, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -140,10 +143,12 @@ impl Kernel<2> for RegularPolygon {
 primitive! {
     RegularPolygon, regular_polygon, 2,
     about: "A regular polygon, one corner up.",
+    origin: "at the centre of its circle; a tip up",
     parameters: {
         sides: Count = "how many sides, 3 to 256",
         radius: Length = "from the centre to a corner",
     },
+    marks: |kernel| vec![Mark::from_origin("radius", at(0.0, kernel.radius()))],
     example: (5, 0.8),
 }
 
@@ -275,10 +280,18 @@ impl Kernel<2> for RegularStar {
 primitive! {
     RegularStar, regular_star, 2,
     about: "A regular star, one tip up.",
+    origin: "at the centre of its circle; a tip up",
     parameters: {
         branches: Count = "how many branches, 3 to 256",
         outer_radius: Length = "from the centre to a tip",
         inner_radius: Length = "from the centre to an inner corner",
+    },
+    marks: |kernel| {
+        let inner = turned(PI / f64::from(kernel.branches()), kernel.inner_radius());
+        vec![
+            Mark::from_origin("outer_radius", at(0.0, kernel.outer_radius())),
+            Mark::from_origin("inner_radius", inner),
+        ]
     },
     example: (7, 0.9, 0.5),
 }

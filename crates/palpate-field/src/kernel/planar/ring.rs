@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -79,9 +80,17 @@ impl Kernel<2> for Ring {
 primitive! {
     Ring, ring, 2,
     about: "All points between two circles.",
+    origin: "centred",
     parameters: {
         inner_radius: Length = "the radius of the hole",
         outer_radius: Length = "the radius of the outer circle",
+    },
+    marks: |kernel| {
+        let (inner, outer) = (kernel.inner_radius(), kernel.outer_radius());
+        vec![
+            Mark::from_origin("inner_radius", at(-0.6 * inner, -0.8 * inner)),
+            Mark::from_origin("outer_radius", at(0.8 * outer, 0.6 * outer)),
+        ]
     },
     example: (0.4, 0.8),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -107,9 +108,20 @@ impl Kernel<2> for RoundedCross {
 primitive! {
     RoundedCross, rounded_cross, 2,
     about: "A cross with four tips on the axes between arcs that are hollow.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         size: Vector = "from tip to tip along x and y" => |kernel| Vector(kernel.half) * 2.0,
         arc_radius: Length = "the radius of the arcs",
+    },
+    marks: |kernel| {
+        let [x, y] = kernel.half;
+        let centre = Vector(kernel.centre);
+        let chord = Vector([y, x]) * (1.0 / Vector([x, y]).norm());
+        vec![
+            Mark::width("size", x, 0.0).of(0),
+            Mark::length_between("size", at(0.0, -y), at(0.0, y)).of(1).left(),
+            Mark::length_between("arc_radius", centre, centre - chord * kernel.arc_radius),
+        ]
     },
     example: (Vector([1.9, 1.5]), 1.1),
 }

@@ -6,6 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, sets, turned};
 use crate::kernel::profile::Wedge;
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
@@ -92,10 +93,12 @@ impl Kernel<2> for Pie {
 primitive! {
     Pie, pie, 2,
     about: "A sector of a disc, spread about the +y axis.",
+    origin: "at the centre of its disc; spread about +y",
     parameters: {
         radius: Length = "the radius of the disc" => |kernel| kernel.0.outer(),
         angle: Angle = "how much of the disc, about the +y axis" => |kernel| kernel.0.angle(),
     },
+    marks: |kernel| sets::sector(kernel.radius(), kernel.angle()),
     example: (0.9, 1.9),
 }
 
@@ -173,12 +176,22 @@ impl Kernel<2> for RingSector {
 primitive! {
     RingSector, ring_sector, 2,
     about: "A sector of a ring with flat ends, spread about the +y axis.",
+    origin: "at the centre of its ring; open downwards",
     parameters: {
         inner_radius: Length = "the radius of the hole" => |kernel| kernel.wedge.inner(),
         outer_radius: Length = "the radius of the outer circle"
             => |kernel| kernel.wedge.outer(),
         angle: Angle = "how much of the ring, about the +y axis"
             => |kernel| kernel.wedge.angle(),
+    },
+    marks: |kernel| {
+        let (inner, outer) = (kernel.inner_radius(), kernel.outer_radius());
+        let place = |share: f64, radius: f64| turned(share * kernel.angle(), radius);
+        vec![
+            Mark::from_origin("inner_radius", place(-0.2, inner)),
+            Mark::from_origin("outer_radius", place(0.2, outer)),
+            Mark::angle("angle", |share| place(share, 0.75 * inner)),
+        ]
     },
     example: (0.5, 0.9, 4.2),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, lipschitz_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -171,10 +172,19 @@ impl Kernel<2> for Stairs {
 primitive! {
     Stairs, stairs, 2,
     about: "A solid staircase that rises to the right.",
+    origin: "centred; rising to the right",
     parameters: {
         step_width: Length = "the depth of a step" => |kernel| kernel.step[0],
         step_height: Length = "the height of a step" => |kernel| kernel.step[1],
         steps: Count = "how many steps, 1 to 256",
+    },
+    marks: |kernel| {
+        let [width, height] = kernel.step;
+        let [x, y] = kernel.half_extents;
+        vec![
+            Mark::length_between("step_width", at(x - width, y), at(x, y)).above(),
+            Mark::length_between("step_height", at(-x, -y), at(-x, height - y)).left(),
+        ]
     },
     example: (0.42, 0.3, 4),
 }

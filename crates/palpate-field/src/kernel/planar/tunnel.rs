@@ -6,6 +6,7 @@
 use super::outline::bounds_about;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::sets;
 use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -78,11 +79,13 @@ impl Kernel<2> for Tunnel {
 primitive! {
     Tunnel, tunnel, 2,
     about: "A rectangle below and half a disc on top.",
+    origin: "centred, at half its height; a flat side down",
     parameters: {
         width: Length = "the full width" => |kernel| 2.0 * kernel.radius,
         height: Length = "the full height, the half disc included"
             => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::arch("width", kernel.width(), kernel.height()),
     example: (1.1, 1.5),
 }
 
@@ -172,10 +175,14 @@ impl Kernel<2> for UnevenCapsule {
 primitive! {
     UnevenCapsule, uneven_capsule, 2,
     about: "Two discs on the y axis and all between their common tangents.",
+    origin: "midway between its centres; the bottom disc down",
     parameters: {
         bottom_radius: Length = "the radius of the lower disc",
         top_radius: Length = "the radius of the upper disc",
         height: Length = "between the centres of the discs",
+    },
+    marks: |kernel| {
+        sets::two_balls(kernel.bottom_radius(), kernel.top_radius(), kernel.height())
     },
     example: (0.5, 0.25, 0.8),
 }

@@ -6,6 +6,7 @@
 use super::outline::frame_between;
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, sets};
 use crate::kernel::profile::Lens;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::pose::Placement;
@@ -78,11 +79,16 @@ impl Kernel<2> for Vesica {
 primitive! {
     Vesica, vesica, 2,
     about: "A lens of two equal arcs that meet on the y axis.",
+    origin: "centred; a tip up, a tip down",
     parameters: {
         width: Length = "the full width" => |kernel| 2.0 * kernel.half_extents[0],
         height: Length = "from tip to tip, at least the width"
             => |kernel| 2.0 * kernel.half_extents[1],
     },
+    marks: |kernel| vec![
+        Mark::width("width", 0.5 * kernel.width(), 0.0),
+        Mark::height(kernel.height(), 0.0, 0.0),
+    ],
     example: (0.9, 1.7),
 }
 
@@ -142,11 +148,13 @@ impl Kernel<2> for OrientedVesica {
 primitive! {
     OrientedVesica, oriented_vesica, 2,
     about: "A lens of two equal arcs between two points.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "one tip",
         to: Vector = "the other tip",
         width: Length = "the full width across, at most the distance of the tips"
             => |kernel| kernel.lens.width(),
     },
+    marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.4]), Vector([0.6, 0.5]), 0.6),
 }

@@ -11,6 +11,7 @@
 use super::cylinder::{from_axis, turned_bounds};
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, sets};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::{Promise, Quality};
 use crate::scalar::Scalar;
@@ -72,8 +73,13 @@ impl Kernel<3> for CubeApproximation {
 primitive! {
     CubeApproximation, cube_approximation, 3,
     about: "The article's approximate cube: a bound with sharp isolines.",
+    origin: "centred; edges along the axes",
     parameters: {
         side: Length = "the edge length" => |kernel| 2.0 * kernel.half_side,
+    },
+    marks: |kernel| {
+        let half = 0.5 * kernel.side();
+        vec![Mark::width("side", half, -half)]
     },
     example: (0.9),
 }
@@ -127,10 +133,12 @@ impl Kernel<3> for CylinderApproximation {
 primitive! {
     CylinderApproximation, cylinder_approximation, 3,
     about: "The article's approximate cylinder: a bound with sharp isolines.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::cylinder(kernel.radius(), kernel.height()),
     example: (0.4, 1.0),
 }
 
@@ -204,10 +212,12 @@ impl Kernel<3> for ConeApproximation {
 primitive! {
     ConeApproximation, cone_approximation, 3,
     about: "The article's approximate cone, corrected to be a bound.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
     },
+    marks: |kernel| sets::cone(kernel.radius(), kernel.height()),
     example: (0.6, 1.0),
 }
 
@@ -258,9 +268,11 @@ impl Kernel<3> for PyramidApproximation {
 primitive! {
     PyramidApproximation, pyramid_approximation, 3,
     about: "The article's approximate pyramid, corrected to be a bound.",
+    origin: "centred, at half its height; a tip up, a base with edges along x and z",
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.0.half_width,
         height: Length = "the full height" => |kernel| kernel.0.height,
     },
+    marks: |kernel| sets::arch("side", kernel.side(), kernel.height()),
     example: (1.0, 0.9),
 }

@@ -6,6 +6,7 @@
 use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::profile::{Curve, CutDiskProfile, Moon, Wedge, bounds_of_zone};
 use crate::kernel::{Kernel, formula_model, primitive, tangent_model};
 use crate::promise::Promise;
@@ -92,11 +93,13 @@ impl Kernel<3> for SolidAngle {
 primitive! {
     SolidAngle, solid_angle, 3,
     about: "The part of a ball in a cone about the +y axis, its tip at the origin.",
+    origin: "at its tip; spread about +y",
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.outer(),
         angle: Angle = "the opening from side to side, less than a full turn"
             => |kernel| kernel.0.angle(),
     },
+    marks: |kernel| sets::sector(kernel.radius(), kernel.angle()),
     example: (0.9, 1.2),
 }
 
@@ -170,10 +173,12 @@ impl Kernel<3> for CutBall {
 primitive! {
     CutBall, cut_ball, 3,
     about: "A ball about the origin, cut off below a height.",
+    origin: "at the centre of its ball; a flat side down",
     parameters: {
         radius: Length = "the radius of the ball",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
     },
+    marks: |kernel| sets::cut(kernel.radius(), kernel.cut_height()),
     example: (0.8, -0.3),
 }
 
@@ -252,11 +257,25 @@ impl Kernel<3> for CutHollowSphere {
 primitive! {
     CutHollowSphere, cut_hollow_sphere, 3,
     about: "A bowl: a hollow sphere about the origin, cut off above a height, its rim round.",
+    origin: "at the centre of its sphere; hollow upwards",
     parameters: {
         radius: Length = "from the origin to the middle of the wall",
         cut_height: Coordinate = "where it is cut, between minus and plus the radius",
         thickness: LengthOrZero = "the thickness of the wall, zero for a sheet without inside"
             => |kernel| 2.0 * kernel.half_thickness,
+    },
+    marks: |kernel| {
+        let (radius, half) = (kernel.radius(), 0.5 * kernel.thickness());
+        let place = |x: f64, radius: f64| at(x * radius, -0.8 * radius);
+        let cut = kernel.cut_height();
+        let rim = ((radius - cut) * (radius + cut)).max(0.0).sqrt();
+        vec![
+            Mark::from_origin("radius", place(0.6, radius)),
+            Mark::from_origin("cut_height", at(rim, cut)).right(),
+            Mark::length_between(
+                "thickness", place(-0.6, radius - half), place(-0.6, radius + half),
+            ),
+        ]
     },
     example: (0.8, 0.2, 0.15),
 }
@@ -325,11 +344,13 @@ impl Kernel<3> for DeathStar {
 primitive! {
     DeathStar, death_star, 3,
     about: "A ball about the origin with a ball-shaped bite from above.",
+    origin: "at the centre of its ball; hollow upwards",
     parameters: {
         radius: Length = "the radius of the ball" => |kernel| kernel.0.radius,
         cut_radius: Length = "the radius of the bite" => |kernel| kernel.0.cut_radius,
         distance: Length = "from centre to centre, so that the spheres cross"
             => |kernel| kernel.0.distance,
     },
+    marks: |kernel| sets::bite(kernel.radius(), kernel.cut_radius(), kernel.distance()),
     example: (0.9, 0.6, 1.1),
 }

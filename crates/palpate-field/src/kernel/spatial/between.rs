@@ -7,6 +7,7 @@ use super::{CappedCone, Cylinder};
 use crate::bounds::{Aabb, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
 use crate::kernel::between::Between;
+use crate::kernel::mark::{Mark, across};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -81,10 +82,21 @@ impl Kernel<3> for CylinderBetween {
 primitive! {
     CylinderBetween, cylinder_between, 3,
     about: "A cylinder with flat ends between two points.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
         to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),
         radius: Length = "the radius",
+    },
+    marks: |kernel| {
+        let (from, to) = (kernel.from(), kernel.to());
+        let middle = (from + to) * 0.5;
+        let out = across(to - from) * kernel.radius;
+        vec![
+            Mark::position("from", from),
+            Mark::position("to", to),
+            Mark::length_between("radius", middle, middle + out),
+        ]
     },
     example: (Vector([-0.5, -0.4, 0.2]), Vector([0.6, 0.3, -0.1]), 0.35),
 }
@@ -154,11 +166,25 @@ impl Kernel<3> for CappedConeBetween {
 primitive! {
     CappedConeBetween, capped_cone_between, 3,
     about: "A cone between two points, with a radius at each.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "the middle of one end" => |kernel| kernel.between.from(),
         to: Vector = "the middle of the other end" => |kernel| kernel.between.to(),
         from_radius: LengthOrZero = "the radius at one end" => |kernel| kernel.radii[0],
         to_radius: LengthOrZero = "the radius at the other end" => |kernel| kernel.radii[1],
+    },
+    marks: |kernel| {
+        let (from, to) = (kernel.from(), kernel.to());
+        let (out, along) = (across(to - from), (to - from).normalized().unwrap_or(Vector::ZERO));
+        let radius = |name, at: Vector<f64, 3>, radius: f64| {
+            Mark::length_between(name, at, at + out * radius)
+        };
+        vec![
+            Mark::position("from", from),
+            Mark::position("to", to),
+            radius("from_radius", from, kernel.from_radius()).beside(-along),
+            radius("to_radius", to, kernel.to_radius()).beside(along),
+        ]
     },
     example: (Vector([-0.5, -0.4, 0.2]), Vector([0.6, 0.5, -0.1]), 0.45, 0.15),
 }

@@ -4,7 +4,10 @@
 //! Cones about the y axis: whole, capped and without a base.
 
 use super::cylinder::{from_axis, in_profile, turned_bounds};
+use std::f64::consts::PI;
+
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets, turned};
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
@@ -116,10 +119,21 @@ impl Kernel<3> for CappedCone {
 primitive! {
     CappedCone, capped_cone, 3,
     about: "A cone about the y axis with its tip cut off.",
+    origin: "centred, at half its height; axis along y, `bottom_radius` below",
     parameters: {
         bottom_radius: LengthOrZero = "the radius at the bottom",
         top_radius: LengthOrZero = "the radius at the top",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
+    },
+    marks: |kernel| {
+        let (bottom, top) = (kernel.bottom_radius, kernel.top_radius);
+        let height = kernel.height();
+        let y = 0.5 * height;
+        vec![
+            Mark::length_between("bottom_radius", at(0.0, -y), at(bottom, -y)).below(),
+            Mark::length_between("top_radius", at(0.0, y), at(top, y)).above(),
+            Mark::height(height, bottom, top),
+        ]
     },
     example: (0.6, 0.25, 0.9),
 }
@@ -158,10 +172,12 @@ answered_by_inner!(Cone.0, 3);
 primitive! {
     Cone, cone, 3,
     about: "A cone about the y axis, its tip up.",
+    origin: "centred, at half its height; axis along y, a tip up, a flat side down",
     parameters: {
         radius: Length = "the radius of the base" => |kernel| kernel.0.bottom_radius,
         height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
     },
+    marks: |kernel| sets::cone(kernel.radius(), kernel.height()),
     example: (0.6, 1.0),
 }
 
@@ -235,6 +251,8 @@ impl Kernel<3> for InfiniteCone {
 primitive! {
     InfiniteCone, infinite_cone, 3,
     about: "A cone without a base, its tip at the origin, opening downwards.",
+    origin: "endless; at its tip, opening downwards",
     parameters: { angle: Angle = "the opening from side to side, less than half a turn" },
+    marks: |kernel| vec![Mark::angle("angle", |share| turned(PI + share * kernel.angle(), 0.5))],
     example: (0.9),
 }

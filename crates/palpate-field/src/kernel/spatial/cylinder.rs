@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets};
 use crate::kernel::{Kernel, primitive};
 use crate::promise::Promise;
 use crate::scalar::Scalar;
@@ -83,10 +84,12 @@ impl Kernel<3> for Cylinder {
 primitive! {
     Cylinder, cylinder, 3,
     about: "A cylinder about the y axis.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::cylinder(kernel.radius(), kernel.height()),
     example: (0.4, 1.0),
 }
 
@@ -151,10 +154,20 @@ impl Kernel<3> for RoundedCylinder {
 primitive! {
     RoundedCylinder, rounded_cylinder, 3,
     about: "A cylinder about the y axis, its rims rounded inwards.",
+    origin: "centred; axis along y",
     parameters: {
         radius: Length = "the radius",
         height: Length = "the full height",
         rounding: LengthOrZero = "the radius of the rims",
+    },
+    marks: |kernel| {
+        let [radius, height, rounding] = [kernel.radius(), kernel.height(), kernel.rounding()];
+        let flat = radius - rounding;
+        vec![
+            Mark::from_origin("radius", at(radius, 0.0)),
+            Mark::height(height, flat, flat),
+            Mark::rounding(Vector([2.0 * radius, height, 0.0]), rounding),
+        ]
     },
     example: (0.4, 1.0, 0.1),
 }
@@ -200,6 +213,8 @@ impl Kernel<3> for InfiniteCylinder {
 primitive! {
     InfiniteCylinder, infinite_cylinder, 3,
     about: "A cylinder without ends about the y axis.",
+    origin: "endless along y; about the y axis",
     parameters: { radius: Length = "the radius" },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.3),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -102,9 +103,18 @@ impl Kernel<3> for CuboidFrame {
 primitive! {
     CuboidFrame, cuboid_frame, 3,
     about: "The twelve edges of a box as square bars.",
+    origin: "centred; edges along the axes",
     parameters: {
         size: Vector = "the edge lengths" => |kernel| Vector(kernel.half_extents) * 2.0,
         thickness: Length = "the thickness of the bars, less than half the shortest edge",
+    },
+    marks: |kernel| {
+        let (size, thickness) = (kernel.size(), kernel.thickness());
+        let corner = size * 0.5;
+        let [from, to] = [corner[0] - thickness, corner[0]].map(|x| at(x, corner[1]));
+        let mut marks = Mark::edges(size, 0.0);
+        marks.push(Mark::length_between("thickness", from, to).above());
+        marks
     },
     example: (Vector([1.4, 1.1, 0.8]), 0.2),
 }

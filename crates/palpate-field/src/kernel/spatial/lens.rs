@@ -6,6 +6,7 @@
 use super::cylinder::in_profile;
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::between::Between;
+use crate::kernel::mark::sets;
 use crate::kernel::profile::Lens;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -102,10 +103,12 @@ impl Kernel<3> for Spindle {
 primitive! {
     VesicaSegment, vesica_segment, 3,
     about: "A spindle between two points: an arc turned about the line between them.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "one tip" => |kernel| kernel.between.from(),
         to: Vector = "the other tip" => |kernel| kernel.between.to(),
         width: Length = "the full width in the middle, at most the distance of the tips",
     },
+    marks: |kernel| sets::between(kernel.from(), kernel.to(), kernel.width()),
     example: (Vector([-0.7, -0.5, 0.2]), Vector([0.8, 0.6, -0.1]), 0.7),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -83,6 +84,8 @@ impl Kernel<3> for Octahedron {
 primitive! {
     Octahedron, octahedron, 3,
     about: "A regular octahedron with corners on the axes.",
+    origin: "centred; corners on the axes",
     parameters: { radius: Length = "from the centre to a corner" },
+    marks: |kernel| vec![Mark::from_origin("radius", at(kernel.radius(), 0.0))],
     example: (0.8),
 }

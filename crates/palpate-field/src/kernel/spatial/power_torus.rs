@@ -7,6 +7,7 @@ use super::torus::Torus;
 use crate::bounds::Bounds;
 use crate::error::ShapeError;
 use crate::kernel::exponent::{Exponent, in_another_norm};
+use crate::kernel::mark::sets;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::Promise;
 use crate::scalar::{AffineModel, Scalar};
@@ -106,6 +107,7 @@ impl Kernel<3> for PowerTorus {
 primitive! {
     PowerTorus, power_torus, 3,
     about: "A torus about the y axis, its ring and its tube circles in norms of higher powers.",
+    origin: "centred; axis along y",
     parameters: {
         ring_radius: Length = "the radius of the ring along the axes"
             => |kernel| kernel.round.ring_radius,
@@ -116,5 +118,6 @@ primitive! {
         tube_exponent: Count = "the power that the tube's norm adds up, 2, 4, 6 or 8"
             => |kernel| kernel.tube.map_or(2, Exponent::number),
     },
+    marks: |kernel| sets::ring(kernel.ring_radius(), kernel.radius()),
     example: (0.6, 0.25, 4, 8),
 }

@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::Mark;
 use crate::kernel::planar::RegularPolygon;
 use crate::kernel::{Kernel, answered_by_inner, primitive, tangent_model};
 use crate::promise::Promise;
@@ -91,10 +92,20 @@ answered_by_inner!(HexagonalPrism.0, 3);
 primitive! {
     HexagonalPrism, hexagonal_prism, 3,
     about: "A prism along y on a regular hexagon.",
+    origin: "centred; axis along y, two corners on z",
     parameters: {
         radius: Length = "from the axis to a corner of the hexagon"
             => |kernel| kernel.0.polygon.radius(),
         height: Length = "the full height" => |kernel| 2.0 * kernel.0.half_height,
+    },
+    marks: |kernel| {
+        let (radius, height) = (kernel.radius(), kernel.height());
+        // From the axis to a side.
+        let flat = 0.5 * 3.0_f64.sqrt() * radius;
+        vec![
+            Mark::from_origin("radius", Vector([0.0, 0.0, radius])),
+            Mark::height(height, flat, flat),
+        ]
     },
     example: (0.6, 0.5),
 }
@@ -135,9 +146,19 @@ answered_by_inner!(TriangularPrism.prism, 3);
 primitive! {
     TriangularPrism, triangular_prism, 3,
     about: "A prism along y on a regular triangle.",
+    origin: "at the centre of its triangle, at half its height; axis along y, a corner towards +z",
     parameters: {
         side: Length = "the edge of the triangle",
         height: Length = "the full height" => |kernel| 2.0 * kernel.prism.half_height,
+    },
+    marks: |kernel| {
+        let (side, height) = (kernel.side(), kernel.height());
+        let back = -side / 12.0_f64.sqrt();
+        vec![
+            Mark::length_between("side", Vector([-0.5 * side, 0.0, back]), Vector([0.5 * side, 0.0, back]))
+                .beside(-Vector::unit(2)),
+            Mark::height(height, side / 3.0, side / 3.0),
+        ]
     },
     example: (1.0, 0.6),
 }

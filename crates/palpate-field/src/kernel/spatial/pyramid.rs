@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, positive};
+use crate::kernel::mark::sets;
 use crate::kernel::profile::{beside, intersection};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -124,9 +125,11 @@ impl Kernel<3> for Pyramid {
 primitive! {
     Pyramid, pyramid, 3,
     about: "A pyramid on a square, its tip up along y.",
+    origin: "centred, at half its height; a tip up, a base with edges along x and z",
     parameters: {
         side: Length = "the edge of the base" => |kernel| 2.0 * kernel.half_side,
         height: Length = "the full height" => |kernel| 2.0 * kernel.half_height,
     },
+    marks: |kernel| sets::arch("side", kernel.side(), kernel.height()),
     example: (1.0, 0.9),
 }

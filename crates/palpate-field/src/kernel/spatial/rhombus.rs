@@ -5,6 +5,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at};
 use crate::kernel::profile::{Rhombus, inner_radius};
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -102,9 +103,22 @@ impl Kernel<3> for RhombusPrism {
 primitive! {
     RhombusPrism, rhombus_prism, 3,
     about: "A prism along y on a rhombus, its edges rounded inwards.",
+    origin: "centred; axis along y, diagonals along x and z",
     parameters: {
-        size: Vector = "the diagonals along x and z, and the height along y",
+        size: Vector = "the diagonal along x, the height along y and the diagonal along z, before rounding",
         rounding: LengthOrZero = "the radius of the edges",
+    },
+    marks: |kernel| {
+        let (size, rounding) = (kernel.size(), kernel.rounding());
+        let [x, y, z] = size.0.map(|size| 0.5 * size);
+        let deep = Mark::length_between("size", Vector([0.0, 0.0, -z]), Vector([0.0, 0.0, z]));
+        let inner = at(kernel.rhombus.corners()[0], kernel.half_height);
+        vec![
+            Mark::width("size", x, 0.0).of(0),
+            Mark::length_between("size", at(0.0, -y), at(0.0, y)).of(1).left(),
+            deep.of(2).left(),
+            Mark::length_between("rounding", inner, inner + at(0.0, rounding)),
+        ]
     },
     example: (Vector([1.6, 0.6, 1.0]), 0.08),
 }

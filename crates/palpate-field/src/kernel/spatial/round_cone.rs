@@ -7,6 +7,7 @@ use super::cylinder::in_profile;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, positive};
 use crate::kernel::between::Between;
+use crate::kernel::mark::{Mark, across, sets};
 use crate::kernel::profile::TwoDiscs;
 use crate::kernel::{Kernel, primitive, tangent_model};
 use crate::promise::Promise;
@@ -108,11 +109,15 @@ impl Kernel<3> for RoundCone {
 primitive! {
     RoundCone, round_cone, 3,
     about: "Two balls above each other and all that is between them.",
+    origin: "midway between its centres; the bottom ball down",
     parameters: {
         bottom_radius: Length = "the radius of the lower ball" => |kernel| kernel.0.radii()[0],
         top_radius: Length = "the radius of the upper ball" => |kernel| kernel.0.radii()[1],
         height: Length = "from centre to centre, more than the radii differ"
             => |kernel| 2.0 * kernel.0.half_distance(),
+    },
+    marks: |kernel| {
+        sets::two_balls(kernel.bottom_radius(), kernel.top_radius(), kernel.height())
     },
     example: (0.45, 0.2, 0.8),
 }
@@ -192,11 +197,23 @@ impl Kernel<3> for RoundConeBetween {
 primitive! {
     RoundConeBetween, round_cone_between, 3,
     about: "Balls about two points and all that is between them.",
+    origin: "given by its points",
     parameters: {
         from: Vector = "the centre of one ball" => |kernel| kernel.between.from(),
         to: Vector = "the centre of the other ball" => |kernel| kernel.between.to(),
         from_radius: Length = "the radius of one ball" => |kernel| kernel.cone.0.radii()[0],
         to_radius: Length = "the radius of the other ball" => |kernel| kernel.cone.0.radii()[1],
+    },
+    marks: |kernel| {
+        let (from, to) = (kernel.from(), kernel.to());
+        let (out, along) = (across(to - from), (to - from).normalized().unwrap_or(Vector::ZERO));
+        let away = |along: Vector<f64, 3>, radius: f64| (along * 0.6 - out * 0.8) * radius;
+        vec![
+            Mark::position("from", from),
+            Mark::position("to", to),
+            Mark::length_between("from_radius", from, from + away(-along, kernel.from_radius())),
+            Mark::length_between("to_radius", to, to + away(along, kernel.to_radius())),
+        ]
     },
     example: (Vector([-0.4, -0.3, 0.2]), Vector([0.5, 0.4, -0.1]), 0.4, 0.2),
 }

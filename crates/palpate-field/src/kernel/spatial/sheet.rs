@@ -5,6 +5,7 @@
 
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, finite, not_negative};
+use crate::kernel::mark::sets;
 use crate::kernel::planar::line::Edge;
 use crate::kernel::{Kernel, face_if_on_it, primitive, tangent_model};
 use crate::pose::Placement;
@@ -226,10 +227,12 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
 primitive! {
     Sheet<3>, triangle_sheet, 3,
     about: "All points within a radius of a triangle in space.",
+    origin: "given by its points",
     parameters: {
         points: Points = "the three corners",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",
     },
+    marks: |kernel| sets::sheet(kernel.points(), kernel.radius()),
     example: (
         vec![Vector([-0.8, -0.5, 0.3]), Vector([0.7, -0.4, -0.2]), Vector([0.1, 0.8, 0.1])],
         0.15,
@@ -239,10 +242,12 @@ primitive! {
 primitive! {
     Sheet<4>, quad_sheet, 3,
     about: "All points within a radius of a flat convex quadrilateral in space.",
+    origin: "given by its points",
     parameters: {
         points: Points = "the four corners, in their order around it, in one plane",
         radius: LengthOrZero = "the radius, zero for a sheet without inside",
     },
+    marks: |kernel| sets::sheet(kernel.points(), kernel.radius()),
     example: (
         vec![
             Vector([-0.7, -0.5, -0.25]),

@@ -6,6 +6,7 @@
 use super::cylinder::from_axis;
 use crate::bounds::{Aabb, BoundingBall, Bounds};
 use crate::error::{ShapeError, Unit, not_negative, positive};
+use crate::kernel::mark::{Mark, at, sets, turned};
 use crate::kernel::profile::Curve;
 use crate::kernel::{Kernel, formula_model, primitive};
 use crate::promise::{Promise, Quality};
@@ -73,10 +74,12 @@ impl Kernel<3> for Torus {
 primitive! {
     Torus, torus, 3,
     about: "All points within a radius of a circle about the y axis.",
+    origin: "centred; axis along y",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: Length = "the radius of the tube",
     },
+    marks: |kernel| sets::ring(kernel.ring_radius(), kernel.radius()),
     example: (0.6, 0.2),
 }
 
@@ -164,10 +167,23 @@ impl Kernel<3> for CappedTorus {
 primitive! {
     CappedTorus, capped_torus, 3,
     about: "All points within a radius of an arc of a circle about the y axis, open towards -z.",
+    origin: "at the centre of its circle; axis along y, open towards -z",
     parameters: {
         ring_radius: Length = "the radius of the circle",
         radius: LengthOrZero = "the radius of the tube, zero for a curve without inside",
         angle: Angle = "how much of the circle, about the +z axis",
+    },
+    marks: |kernel| {
+        let (ring, radius) = (kernel.ring_radius(), kernel.radius());
+        let place = |share: f64, radius: f64| {
+            let [x, z] = turned::<2>(share * kernel.angle(), radius).0;
+            Vector([x, 0.0, z])
+        };
+        vec![
+            Mark::from_origin("ring_radius", place(0.2, ring)),
+            Mark::length_between("radius", place(-0.2, ring), place(-0.2, ring + radius)),
+            Mark::angle("angle", |share| place(share, 0.4 * ring)),
+        ]
     },
     example: (0.7, 0.15, 4.0),
 }
@@ -241,11 +257,23 @@ impl Kernel<3> for Link {
 primitive! {
     Link, link, 3,
     about: "A chain's link: a torus about the y axis with straight sides along z.",
+    origin: "centred; axis along y, straight sides along z",
     parameters: {
         ring_radius: Length = "the radius of the circle of each bow",
         radius: Length = "the radius of the tube",
         length: LengthOrZero = "the length of the straight sides"
             => |kernel| 2.0 * kernel.half_length,
+    },
+    marks: |kernel| {
+        let (ring, radius, half) = (kernel.ring_radius(), kernel.radius(), kernel.half_length);
+        let side = ring + radius;
+        vec![
+            Mark::length_between(
+                "ring_radius", Vector([0.0, 0.0, half]), Vector([0.6 * ring, 0.0, half + 0.8 * ring]),
+            ),
+            Mark::length_between("radius", at(-ring, 0.0), at(-ring, radius)),
+            Mark::length_between("length", Vector([side, 0.0, -half]), Vector([side, 0.0, half])).right(),
+        ]
     },
     example: (0.4, 0.15, 0.8),
 }
