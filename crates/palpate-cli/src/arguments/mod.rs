@@ -96,7 +96,7 @@ pub(crate) enum Command {
     /// Print the JSON schema of scene files.
     #[command(after_help = "Examples:\n  palpate schema > scene.schema.json")]
     Schema,
-    /// List the primitives: parameters, units, promises, how they bound cells.
+    /// List the primitives with parameters, origins and promises, or draw one.
     #[command(after_help = shapes::EXAMPLES)]
     Shapes(ShapesOptions),
     /// List the devices that can be simulated: limits, sources, assumed numbers.
