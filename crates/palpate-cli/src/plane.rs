@@ -23,12 +23,13 @@ pub(crate) fn named(
         "xz" => Slice::xz(at(1)),
         "yz" => Slice::yz(at(0)),
         free => {
-            let points: Vec<_> =
-                free.split(':').map(input::point::<3>).collect::<Result<_, _>>()?;
-            let [origin, right, up] = points.try_into().map_err(|_| {
+            let points: Vec<_> = free.split(':').collect();
+            let [origin, right, up] = points[..] else {
                 let rule = "xy, xz, yz, or origin:right:up, each of these three numbers joined by commas";
-                Failure::input(format!("{option} must be {rule}, got {free:?}"))
-            })?;
+                return Err(Failure::input(format!("{option} must be {rule}, got {free:?}")));
+            };
+            let [origin, right, up] =
+                [input::point::<3>(origin)?, input::point(right)?, input::point(up)?];
             Slice::free(origin.0, right.0, up.0)
         }
     }

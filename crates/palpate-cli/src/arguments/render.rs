@@ -94,10 +94,10 @@ pub(crate) struct RenderOptions {
     #[arg(long)]
     pub(crate) output: Option<PathBuf>,
     /// The width [pixels].
-    #[arg(long, default_value_t = 1200, allow_negative_numbers = true, value_parser = count(16, 16384_u32))]
+    #[arg(long, default_value_t = 1200, allow_negative_numbers = true, value_parser = count(1, 16384_u32))]
     pub(crate) width: u32,
     /// The height [pixels].
-    #[arg(long, default_value_t = 900, allow_negative_numbers = true, value_parser = count(16, 16384_u32))]
+    #[arg(long, default_value_t = 900, allow_negative_numbers = true, value_parser = count(1, 16384_u32))]
     pub(crate) height: u32,
     /// The number of threads; as many as the machine has if left out. The picture has the same
     /// bits.

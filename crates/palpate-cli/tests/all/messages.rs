@@ -375,9 +375,9 @@ fn numbers_of_pictures_keep_the_rules_of_render() {
         ("--turntable <PICTURES>", "0", whole("from 1 to 3600, got 0")),
         ("--turntable <PICTURES>", "3601", whole("from 1 to 3600, got 3601")),
         ("--turn-time <TURN_TIME>", "0", "must be positive and finite, got 0 s".into()),
-        ("--width <WIDTH>", "15", whole("from 16 to 16384, got 15")),
-        ("--width <WIDTH>", "-1", whole("from 16 to 16384, got -1")),
-        ("--height <HEIGHT>", "99999999999", whole("from 16 to 16384, got 99999999999")),
+        ("--width <WIDTH>", "0", whole("from 1 to 16384, got 0")),
+        ("--width <WIDTH>", "-1", whole("from 1 to 16384, got -1")),
+        ("--height <HEIGHT>", "99999999999", whole("from 1 to 16384, got 99999999999")),
         ("--threads <THREADS>", "0", whole("of at least 1, got 0")),
     ] {
         let name = option.split(' ').next().unwrap();

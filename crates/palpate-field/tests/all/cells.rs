@@ -5,7 +5,8 @@
 //! direction to the nearest point is rounding, and large ones.
 
 use arbitrary::{Result, Unstructured};
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::scalar::Model;
+use palpate_field::{BLOCK, Block, Column, Point, Shape, Vector};
 use palpate_testkit::arbitrary as draw;
 use palpate_testkit::cases;
 use palpate_testkit::kernels::{Dimension, Space};
@@ -132,4 +133,41 @@ fn models_of_planar_primitives_say_as_much_as_their_steepness() {
 #[test]
 fn models_of_spatial_primitives_say_as_much_as_their_steepness() {
     models_say_as_much_as_the_steepness::<3>();
+}
+
+/// The model of a shape over a box.
+fn model_over(shape: &Shape<2>, centre: [f64; 2], half: f64) -> Model {
+    let mut block = Block::<Model, 2, BLOCK>::zero();
+    let mut models = Column::<Model, BLOCK>::zero();
+    block.fill_boxes(1, None, |_| (Vector(centre), Vector::constant(half)));
+    shape.block_distances(&block, 1, &mut models);
+    models.get(0)
+}
+
+#[test]
+fn the_model_of_a_polygon_follows_its_nearest_edges() {
+    // A wheel of 96 edges with a wave, so that groups of edges are ruled out.
+    let corner = |i: u32| {
+        let angle = f64::from(i) / 96.0 * std::f64::consts::TAU;
+        let radius = 1.0 + 0.2 * libm::sin(5.0 * angle);
+        Vector([radius * libm::cos(angle), radius * libm::sin(angle)])
+    };
+    let wheel = Shape::polygon([(0..96).map(corner).collect::<Vec<_>>()]).unwrap();
+    for i in -13..=13 {
+        for j in -13..=13 {
+            let centre = [f64::from(i) * 0.1017, f64::from(j) * 0.0983];
+            let model = model_over(&wheel, centre, 1e-3);
+            assert_eq!(model.value, wheel.distance(centre), "{centre:?}");
+        }
+    }
+    // Across one edge, the distance is linear; next to a corner, it is bounded by a constant.
+    let square =
+        Shape::polygon([[[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]]).unwrap();
+    for (centre, half, slope) in
+        [([1.01, 0.3], 0.1, 0.1), ([0.99, 0.3], 0.1, 0.1), ([1.01, 0.95], 0.1, 0.0)]
+    {
+        let model = model_over(&square, centre, half);
+        assert!((model.gradient[0] - slope).abs() < 1e-15, "{model:?}");
+        assert_eq!(model.lower < 1e-12, slope > 0.0, "{model:?}");
+    }
 }

@@ -210,19 +210,25 @@ impl<'a> Tracer<'a> {
         is_due: impl Fn(&Lane) -> bool,
         place: impl Fn(&Lane) -> f64,
     ) {
-        let Self { lanes, shape, pieces, places, is_steep, work, .. } = self;
+        let Self { lanes, shape, pieces, places, block, values, work, .. } = self;
         let Some(shape) = &shape else { return };
-        // At points, a field that is not steep skips members of its unions by itself.
-        let whole = Pieces::whole(shape);
-        let pieces =
-            if *is_steep { pieces.get_or_insert_with(|| Pieces::of(shape)) } else { &whole };
         let due: Vec<usize> = (0..lanes.len()).filter(|i| is_due(&lanes[*i])).collect();
-        for lane in &due {
-            places.points[*lane] = beams[lanes[*lane].beam].at(place(&lanes[*lane]));
-        }
+        let point = |lane: usize| beams[lanes[lane].beam].at(place(&lanes[lane]));
         let mut shares = [1.0; BLOCK];
-        pieces.free(places, &due, &mut shares);
-        work.evaluations += std::mem::take(&mut places.evaluations);
+        if self.is_steep {
+            due.iter().for_each(|lane| places.points[*lane] = point(*lane));
+            pieces.get_or_insert_with(|| Pieces::of(shape)).free(places, &due, &mut shares);
+            work.evaluations += std::mem::take(&mut places.evaluations);
+        } else {
+            // A field that is not steep skips members of its unions by itself.
+            block.fill(due.len(), |i| point(due[i]));
+            shape.block_distances(block, due.len(), values);
+            work.evaluations += due.len() as u64;
+            let is_free = |i: usize| values.get(i) > self.limits.tolerance;
+            due.iter().enumerate().for_each(|(i, lane)| {
+                shares[*lane] = f64::from(u8::from(is_free(i)));
+            });
+        }
         let mut number = 0;
         lanes.retain(|lane| {
             let is_free = shares[number] > 0.0;

@@ -133,11 +133,6 @@ impl Pieces {
         Self::build(shape, false)
     }
 
-    /// A shape as one piece.
-    pub(super) fn whole(shape: &Shape<3>) -> Self {
-        Self::One(Piece::new(shape, false))
-    }
-
     fn build(shape: &Shape<3>, is_complement: bool) -> Self {
         let each =
             |of: &[Shape<3>]| of.iter().map(|of| Self::build(of, is_complement)).collect();
