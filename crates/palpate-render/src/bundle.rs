@@ -48,10 +48,11 @@ impl Bundle {
 
     /// `false` if no beam, with its cone, meets the ball.
     ///
-    /// A point P of a beam at the height z along the axis is at most `z + R` along the beam in
-    /// terms of the axis, R being the radius about the bundle's origin that holds the beam's. So
-    /// it is at most `R + r + (z + R) s` off the axis, with the cone's radius r at its origin and
-    /// the growth s of angle and cone together. The ball's centre is at most its radius off P.
+    /// Heights are along the axis, from the bundle's origin. Each beam begins within R of that
+    /// origin, so at a height of at least −R, and its cone has at most the radius r there. A point
+    /// P of the cone at the height z is then at most `R + r + (z + R) s` off the axis, where s is
+    /// the growth that the beam's angle and its cone add for each metre of height. A ball that
+    /// holds P has its centre within its radius of P.
     pub(crate) fn may_meet(&self, ball: &BoundingBall<3>) -> bool {
         let offset = ball.centre - self.origin;
         let height = offset.dot(self.axis);

@@ -221,8 +221,8 @@ impl Camera {
         Ok(Self { eye, sight, height, is_parallel: true, distance, middle: MIDDLE })
     }
 
-    /// What the camera sees, in the upper part of a higher picture: `share` of its height is
-    /// below.
+    /// What the camera sees, in the upper part of a higher picture: `share` of its height, from 0
+    /// to 0.9, is below. A share beyond these counts as the nearer of them.
     ///
     /// ```
     /// use palpate_field::Vector;

@@ -9,8 +9,8 @@ use crate::subject::Cut;
 /// The most pixels of a picture: their light fills a gigabyte of memory.
 pub(crate) const MOST_PIXELS: u64 = 40_000_000;
 
-/// The most samples along a pixel's side; at 8, one sample changes a channel by less than its
-/// last bit in places of even light.
+/// The most samples along a pixel's side: those of a pixel are painted together, so they must fit
+/// into a block of 64.
 pub(crate) const MOST_SAMPLES: u32 = 8;
 
 /// The shadows of the key light.
@@ -20,7 +20,7 @@ pub enum Shadows {
     None,
     /// Of a light as small as a point.
     Hard,
-    /// Of a light as wide as a window is to a table beside it.
+    /// Of a disc of 6°.
     Soft,
 }
 
@@ -54,7 +54,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The budget unless another is given: hundreds of times what a ray needs that grazes.
+    /// The budget unless another is given: hundreds of times what a grazing ray needs.
     pub const BUDGET: u32 = 50_000;
 
     /// A picture of this size [pixels], with soft shadows and edges of 4 × 4 samples, without

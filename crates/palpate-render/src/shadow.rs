@@ -4,10 +4,10 @@
 //! How much of the key light a place sees.
 //!
 //! A soft light is a disc. Where the cone from the place to the disc is proven free, the place is
-//! lit; elsewhere rays to 64 places of the disc, spread as seeds of a sunflower (Vogel 1979), are
-//! cast, each with its proof, and the free ones counted. Where the 16 to the rim are all blocked,
-//! or all free, the others are taken for the same. The places of a pixel at an edge share the 64 rays. A hard
-//! light is the middle of the disc.
+//! lit. Elsewhere rays are cast to 64 places of the disc, spread as seeds of a sunflower (Vogel
+//! 1979), each with its proof, and the free ones are counted. Where the 16 rays to the rim are all
+//! blocked, or all free, the others are taken for the same. The places of a pixel at an edge share
+//! the 64 rays. A hard light is the middle of the disc.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

@@ -5,8 +5,9 @@
 //!
 //! At the height h over a place without anything near, the field is h. The openness is one minus
 //! the mean of `1 − f/h` over heights from near to far (Evans 2006, "Fast Approximations for
-//! Global Illumination on Dynamic Scenes"). It is an estimate: bodies that are near count wherever
-//! they are, and where a field is less than the distance, the place is drawn darker.
+//! Global Illumination on Dynamic Scenes"), scaled so that a place without any sky keeps the share
+//! [`LEAST`]. It is an estimate: bodies that are near count wherever they are, and where a field
+//! is less than the distance, the place is drawn darker.
 
 use palpate_field::{BLOCK, Block, Column, Point};
 

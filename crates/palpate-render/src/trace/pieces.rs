@@ -157,7 +157,7 @@ impl Pieces {
             }
             _ => return Self::One(Piece::new(shape, is_complement)),
         };
-        // Flat pieces first: they are cheap, and rule out most.
+        // The least steep pieces first: they are cheap, and rule out most.
         let mut of: Vec<Self> = of;
         of.sort_by(|a, b| a.steepness().total_cmp(&b.steepness()));
         if any { Self::Any(of) } else { Self::All(of) }
