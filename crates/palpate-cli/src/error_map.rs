@@ -26,7 +26,7 @@ const SMALLEST: f64 = 1e-3;
 /// long as hundreds that compare values.
 const SEARCHED: usize = 280;
 
-/// Fewest pixels that share a workspace, whose memory is as dear as some searches.
+/// The fewest pixels that share a workspace: making one takes as long as some searches.
 const FEWEST: usize = 64;
 
 /// The tolerance of closest points in pictures, as a share of the longest edge of the scene's

@@ -78,14 +78,6 @@ pub(crate) fn bodies(asked: &[String], names: &[&str]) -> Result<Vec<usize>, Fai
     Ok(bodies)
 }
 
-/// The scene at a time [s].
-pub(crate) fn at<const D: usize>(
-    scene: &BuiltScene<D>,
-    time: f64,
-) -> Result<BuiltScene<D>, Failure> {
-    scene.at(time).map_err(Failure::input)
-}
-
 /// The point that `text` names: as many numbers as dimensions, joined by commas.
 pub(crate) fn point<const D: usize>(text: &str) -> Result<Vector<f64, D>, Failure> {
     let axes = AXES[..D].join(",");

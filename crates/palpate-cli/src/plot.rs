@@ -25,7 +25,7 @@ use crate::{plane, views};
 pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
     let mut files = Files::reading(inputs.into_iter().flatten());
-    let picture = Picture::new(&mut files, &output(options))?;
+    let picture = Picture::new(&mut files, &output_path(options))?;
     picture.check_width(options.width)?;
     check_contacts(options)?;
     let named = input::scene(Some(&options.scene))?;
@@ -301,11 +301,12 @@ struct Drawn {
     step: f64,
     /// The smallest and the largest value [m].
     range: (f64, f64),
-    /// The extremes of the value over the true distance.
+    /// The extremes of what the colours show, if they show numbers.
     measured: Option<Measured>,
 }
 
-fn output(options: &PlotOptions) -> PathBuf {
+/// The file of `--output`; the scene's name with .svg if left out.
+fn output_path(options: &PlotOptions) -> PathBuf {
     options.output.clone().unwrap_or_else(|| {
         let stem = options.scene.file_stem().unwrap_or_default();
         PathBuf::from(stem).with_extension("svg")

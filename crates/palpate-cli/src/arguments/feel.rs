@@ -47,8 +47,8 @@ pub(crate) struct FeelOptions {
     /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
     #[arg(long, alias = "contacts", conflicts_with = "path", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
     pub(crate) points: Option<usize>,
-    /// Refuse bodies that the device cannot render stably, instead of making them softer. Not for
-    /// a glove, which has no forces; nor are the next three.
+    /// Refuse bodies that the device cannot render stably, instead of making them softer. A
+    /// glove, which has no forces, takes neither this nor --stiffness, --damping and --max-force.
     #[arg(long)]
     pub(crate) strict: bool,
     /// Stiffness of the surface [N/m]; that of each body if left out.

@@ -36,7 +36,7 @@ pub(crate) struct GradientsOptions {
     #[arg(long)]
     pub(crate) single: bool,
     /// Draw the angle between the direction of each method and the exact one, a panel a method;
-    /// in space on the level plane through the point: .svg or .png.
+    /// in space on the plane xy through the point: .svg or .png.
     #[arg(long, value_name = "PICTURE")]
     pub(crate) plot: Option<PathBuf>,
     /// Width and height of the drawn window around the point [m]; the whole scene if left out.

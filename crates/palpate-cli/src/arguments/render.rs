@@ -111,7 +111,7 @@ pub(crate) struct RenderOptions {
 /// The shadows of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ShadowChoice {
-    /// Of a light as wide as a window.
+    /// Of a disc of 6°.
     Soft,
     /// Of a light as small as a point.
     Hard,

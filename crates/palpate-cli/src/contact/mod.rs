@@ -16,6 +16,7 @@ use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
+use crate::views;
 
 use question::{Asked, Question};
 
@@ -51,7 +52,7 @@ fn answer<const D: usize>(
     emptiness::warn(scene);
     let question = Question::of(&options.question, scene);
     let bodies = input::bodies(&options.body, &names)?;
-    let moved = options.time.map(|time| input::at(scene, time)).transpose()?;
+    let moved = options.time.map(|time| views::at(scene, time)).transpose()?;
     let scene = moved.as_ref().unwrap_or(scene);
     let count = pairs_of(names.len(), bodies.len());
     let asked = Asked { bodies: &bodies, is_every: options.every_pair || count <= FEW_PAIRS };

@@ -34,12 +34,13 @@ pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
     match &input::scene(Some(&options.scene))?.scene {
-        AnyScene::Planar(scene) => over_points(options, scene, picture.as_ref()),
-        AnyScene::Spatial(scene) => over_points(options, scene, picture.as_ref()),
+        AnyScene::Planar(scene) => descend(options, scene, picture.as_ref()),
+        AnyScene::Spatial(scene) => descend(options, scene, picture.as_ref()),
     }
 }
 
-fn over_points<const D: usize>(
+/// Searches over an element, or between two bodies, as the options ask.
+fn descend<const D: usize>(
     options: &DescendOptions,
     scene: &BuiltScene<D>,
     picture: Option<&Picture>,

@@ -104,8 +104,8 @@ impl<const D: usize> Answer<'_, D> {
         Ok(())
     }
 
-    /// The paths over the isolines; in space, on the level plane through the proven witness
-    /// points.
+    /// The paths over the isolines; in space, on the plane xy through the point at which the
+    /// separation is proven.
     fn figure(
         &self,
         scene: &BuiltScene<D>,

@@ -37,8 +37,9 @@ pub(super) enum Frames {
 pub(super) struct Drawn {
     /// The names of the files that were written.
     pub(super) files: Vec<PathBuf>,
-    /// How many pictures there are, and should be.
+    /// How many pictures there are.
     pub(super) pictures: u32,
+    /// How many there are to be.
     pub(super) asked: u32,
     /// What the first picture says of itself; `None` if there is none.
     pub(super) first: Option<Rendering>,

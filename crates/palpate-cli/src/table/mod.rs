@@ -58,7 +58,7 @@ impl Table {
         }
         match Kind::of(head) {
             None | Some(Kind::Table) => {}
-            Some(Kind::Empty) => return Err(wrong("it is an empty file".into())),
+            Some(kind @ Kind::Empty) => return Err(wrong(kind.to_string())),
             Some(kind) => {
                 let problem = format!("{kind}, not a table (CSV); {}", kind.advice(path));
                 return Err(wrong(problem));

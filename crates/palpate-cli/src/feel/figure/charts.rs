@@ -9,7 +9,7 @@ use palpate::plot::{Chart, Color, Dash, Figure, PlotError, Quantity, Series};
 use palpate::servo_loop::TraceRow;
 use palpate::vibration::Tones;
 
-use super::points::{MOST_POINTS, Points};
+use super::points::{Points, every};
 use crate::feel::vibration::Vibration;
 use crate::outcome::Failure;
 
@@ -91,7 +91,7 @@ pub(super) fn with_levels<const D: usize>(
 
 /// The largest levels of some actuators at `times` [s].
 fn levels(times: &[f64], actuators: &[&[Tones]], color: Color) -> Result<Chart, PlotError> {
-    let every = times.len().div_ceil(MOST_POINTS).max(1);
+    let every = every(times.len());
     let mut chart = over_time("level", "1 = largest");
     for (name, dash, level) in KINDS {
         // The largest until the next place, so that no tap is left out.
@@ -113,7 +113,7 @@ fn levels(times: &[f64], actuators: &[&[Tones]], color: Color) -> Result<Chart, 
 pub(super) fn torques<const D: usize>(
     rows: &[TraceRow<D>],
 ) -> Result<Option<Chart>, PlotError> {
-    let every = rows.len().div_ceil(MOST_POINTS).max(1);
+    let every = every(rows.len());
     let of = |torque: fn(&HeldTool<D>) -> Option<Vector<f64, 3>>| {
         let torque = |row: &TraceRow<D>| {
             Some([row.time_s, 1e3 * row.tool.as_ref().and_then(torque)?.norm()])
@@ -143,7 +143,7 @@ pub(super) fn energies<const D: usize>(
     let names = ["taken from the hand", "given to it", "kept back"];
     let dashes = [Dash::Solid, Dash::Dashed, Dash::Dotted];
     let ticks: Vec<&[TraceRow<D>]> = rows.chunks_exact(points.max(1)).collect();
-    let every = ticks.len().div_ceil(MOST_POINTS).max(1);
+    let every = every(ticks.len());
     let mut chart = over_time("energy", "mJ");
     for (curve, (name, dash)) in names.into_iter().zip(dashes).enumerate() {
         let points = ticks.iter().step_by(every).map(|tick| {

@@ -11,10 +11,15 @@ use crate::feel::nearness::{Seen, taken_apart};
 use crate::feel::slices::FeltSlice;
 
 /// The most points of a line: more than a picture has columns.
-pub(super) const MOST_POINTS: usize = 2000;
+const MOST_POINTS: usize = 2000;
 
 /// Up to so many contact points have colours of their own. More are drawn alike.
 const MOST_COLOURS: usize = 10;
+
+/// Of how many places in a row a line shows one, so that `count` places become few enough points.
+pub(super) fn every(count: usize) -> usize {
+    count.div_ceil(MOST_POINTS).max(1)
+}
 
 /// The rows of each contact point.
 pub(super) struct Points<'a, const D: usize> {
@@ -65,7 +70,7 @@ impl<'a, const D: usize> Points<'a, D> {
         place: fn(&TraceRow<D>) -> Point<D>,
     ) -> Seen {
         let rows = self.rows(number);
-        let every = rows.len().div_ceil(MOST_POINTS).max(1);
+        let every = every(rows.len());
         let line: Vec<_> = rows.iter().step_by(every).map(|row| place(row)).collect();
         taken_apart::<D>(&slice.plane, slice.near, line)
     }
@@ -73,7 +78,7 @@ impl<'a, const D: usize> Points<'a, D> {
     /// The force on a point over time: the largest until the next place [N].
     pub(super) fn force(&self, number: usize) -> Vec<[f64; 2]> {
         let rows = self.rows(number);
-        let every = rows.len().div_ceil(MOST_POINTS).max(1);
+        let every = every(rows.len());
         let largest = |rows: &[&TraceRow<D>]| {
             [rows[0].time_s, rows.iter().map(|row| row.force.norm()).fold(0.0, f64::max)]
         };
