@@ -10,20 +10,21 @@ use crate::Descent;
 /// The last steps of a path that are looked at.
 const LAST: usize = 8;
 
-/// How long the later half of these steps is beside the earlier one at least, if they do not
-/// shrink: a path that converges to and fro by less than 3 % a step counts as oscillating.
+/// Steps do not shrink if the longest of the later half has at least this share of the longest of
+/// the earlier half: a path that converges to and fro by less than 3 % a step counts as
+/// oscillating.
 const KEPT: f64 = 0.9;
 
 /// Steps below so many roundings of the coordinates are rounding.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 impl<const D: usize> Descent<D> {
-    /// The amplitude of the oscillation that the path ends in, from one turn to the next [m]; `None`
-    /// if it ends in none.
+    /// The peak-to-peak amplitude of the oscillation that the path ends in [m]; `None` if it ends in
+    /// none.
     ///
     /// A path oscillates if of its last 8 steps at least every other one turns back, by more than
-    /// a right angle, and the later four are not shorter than the earlier. The amplitude is the
-    /// longest of the 8.
+    /// a right angle, and the longest of the later four has at least 0.9 of the length of the
+    /// longest of the earlier four. The amplitude is the longest of the 8.
     ///
     /// Above the centre of a disc, steps of a constant length go to and fro across its deepest
     /// point:

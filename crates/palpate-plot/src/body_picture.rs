@@ -43,7 +43,7 @@ pub(crate) fn shared_stroke() -> Stroke {
 #[derive(Debug, Default)]
 pub(crate) struct Bodies<'a> {
     bodies: Vec<Seen<'a>>,
-    /// Whether the scene has others, which may be out of view.
+    /// Whether the scene has several bodies, of which some may be out of view.
     are_several: bool,
     /// Whether they have colours of their own.
     are_coloured: bool,

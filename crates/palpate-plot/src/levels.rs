@@ -6,8 +6,8 @@
 use crate::error::PlotError;
 use crate::numbers::{multiples, round_up};
 
-/// The desired number of isolines if no step is given: enough to show slopes, few enough to
-/// label.
+/// The isolines are at most about so many if no step is given: enough to show slopes, few enough
+/// to label.
 const AIM: f64 = 14.0;
 /// Most isolines of a figure. At 800 px they are then about 4 px apart.
 const MOST: usize = 200;

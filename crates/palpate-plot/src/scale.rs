@@ -170,7 +170,7 @@ impl Ramp {
         }
     }
 
-    /// Draws the bar with its labels from `x`, centred on `y` [px].
+    /// Draws the bar with its labels: to the right of `at`, and centred on its height [px].
     pub(crate) fn draw(self, drawing: &mut Drawing, at: Point) {
         let [x, y] = at;
         let place = [x + ROOM, y];

@@ -206,8 +206,8 @@ impl Trust {
 /// Size of a scale [px].
 pub(crate) const SCALE: [f64; 2] = [132.0, 40.0];
 
-/// Draws the colours between two measured numbers with their labels from `x`, centred on `y`
-/// [px].
+/// Draws the colours between two measured numbers with their labels: to the right of `at`, and
+/// centred on its height [px].
 pub(crate) fn draw_scale(
     drawing: &mut Drawing,
     at: Point,

@@ -46,10 +46,11 @@ impl Bundle {
         (count > 0).then_some(Self { origin, axis, radius, cone, spread })
     }
 
-    /// `false` if no beam, with its cone, meets the ball.
+    /// `false` if no beam, with its cone, meets the ball from its origin on. A ball behind all
+    /// origins counts as not met, even where a beam begins before its origin.
     ///
-    /// Heights are along the axis, from the bundle's origin. Each beam begins within R of that
-    /// origin, so at a height of at least −R, and its cone has at most the radius r there. A point
+    /// Heights are along the axis, from the bundle's origin. Each beam has its origin within R of
+    /// that one, so at a height of at least −R, and its cone has at most the radius r there. A point
     /// P of the cone at the height z is then at most `R + r + (z + R) s` off the axis, where s is
     /// the growth that the beam's angle and its cone add for each metre of height. A ball that
     /// holds P has its centre within its radius of P.

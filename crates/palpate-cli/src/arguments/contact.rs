@@ -36,8 +36,8 @@ pub(crate) struct ContactOptions {
     /// Only pairs with this body; may be given more than once.
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Vec<String>,
-    /// The time at which the bodies are where their motions have taken them [s]; before all
-    /// motions if left out.
+    /// Ask about bodies where their motions have taken them at this time [s]; at their own poses
+    /// if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("s"))]
     pub(crate) time: Option<f64>,
     /// Print JSON.

@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use palpate::render::Settings;
 
 use super::ContactQuestion;
 use super::numbers::{at_least, coordinate, count, length, positive, within, zero_or_more};
@@ -79,7 +80,7 @@ pub(crate) struct RenderOptions {
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = count(1, 8_u32))]
     pub(crate) samples: u32,
     /// The most evaluations of the field for each ray.
-    #[arg(long = "ray-budget", default_value_t = 50_000, allow_negative_numbers = true, value_parser = at_least(1_u32))]
+    #[arg(long = "ray-budget", default_value_t = Settings::BUDGET, allow_negative_numbers = true, value_parser = at_least(1_u32))]
     pub(crate) ray_budget: u32,
     /// An animation of so many pictures from all around.
     #[arg(long, value_name = "PICTURES", allow_negative_numbers = true, value_parser = count(1, MOST_PICTURES))]

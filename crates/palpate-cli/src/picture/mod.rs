@@ -12,7 +12,6 @@ use std::path::Path;
 
 use palpate::field::{Aabb, Rotation, Shape, Vector};
 use palpate::plot::{Figure, Isolines, PlotError, Sampling, Slice, View};
-
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::{Format, Map};

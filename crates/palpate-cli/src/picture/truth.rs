@@ -61,7 +61,7 @@ pub(super) fn compare<const D: usize>(
     if quality == Quality::Exact {
         return Comparison { value, distance: [value.abs(); 2] };
     }
-    // A search that may be as wrong as it likes tells about how far the surface is.
+    // A search with the largest tolerance tells roughly how far the surface is.
     let mut search = |tolerance: f64, budget: u32| {
         let limits = Limits::new(tolerance).with_budget(budget);
         contact_ball(shape, point, 0.0, &limits, workspace)

@@ -89,8 +89,8 @@ impl Format {
         }
     }
 
-    /// The complaint that a file is not what this format asks for. Parsers may quote a line of
-    /// it, and of bytes that start like a text a line may be all.
+    /// The complaint that a file is not what this format asks for. Parsers may quote a line of the
+    /// file, which may be all of it where bytes only begin as a text does: long ones are cut.
     fn malformed(self, problem: impl std::fmt::Display) -> ReadProblem {
         let mut problem = problem.to_string();
         if let Some((end, _)) = problem.char_indices().nth(LONGEST_COMPLAINT) {

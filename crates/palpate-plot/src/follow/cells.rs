@@ -98,7 +98,8 @@ fn is_flat(cell: &Cell, bounds: [f64; 2]) -> bool {
     bounds.iter().all(|bound| bound.abs() < FLAT * cell.half)
 }
 
-/// Whether a cell with these bounds may hold a zero. Written so that bounds that are NaN rule nothing out.
+/// Whether a cell with these bounds may hold a zero. Written so that bounds that are NaN rule
+/// nothing out.
 pub(super) fn may_hold_zero([low, high]: [f64; 2]) -> bool {
     !(low > 0.0 || high < 0.0)
 }

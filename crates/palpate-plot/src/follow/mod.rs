@@ -84,7 +84,7 @@ pub struct Cell {
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 pub trait BoundedField {
-    /// Writes the value at each of `points` [m] \[m\].
+    /// Writes the value \[m\] at each of `points` \[m\].
     fn values(&mut self, points: &[[f64; 2]], values: &mut [f64]);
 
     /// Writes the value and the gradient at each of `points` \[m\], as many as `slopes`.
@@ -94,8 +94,7 @@ pub trait BoundedField {
     /// \[m\]; zero where none is known.
     fn safe_radii(&mut self, points: &[[f64; 2]], radii: &mut [f64]);
 
-    /// Writes for each of `cells` a number at most, and one at least, as large as every value
-    /// over the cell \[m\].
+    /// Writes a lower and an upper bound \[m\] of the values over each of `cells`.
     fn bounds(&mut self, cells: &[Cell], bounds: &mut [[f64; 2]]);
 }
 

@@ -16,8 +16,8 @@ struct Mark {
     is_crossing: bool,
 }
 
-/// Closes `walls`, lines between the changes of sign `zeros`, where they leave the lattice: along those
-/// parts of its edge that lie inside. Rings in plane coordinates [m].
+/// Closes `walls`, lines between the changes of sign `zeros`, where they leave the lattice: along
+/// those parts of its edge that lie inside. Rings in plane coordinates [m].
 pub(super) fn close(
     lattice: &Lattice,
     zeros: &Zeros,

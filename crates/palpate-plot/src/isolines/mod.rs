@@ -27,8 +27,9 @@ pub(crate) use draw::{ABOVE_LEGEND, MOST_HEIGHT};
 ///
 /// Blue bands are inside (negative values), orange ones outside, lighter with the value; the
 /// heavy line is the surface, where the field is zero. Thin isolines at round levels carry
-/// their value in metres. A surface without interior, such as a curve or a sheet, is also drawn
-/// as a line: where a field that is nowhere negative comes closer to zero than a sampling cell.
+/// their value in metres. A surface without interior, such as a curve or a sheet, is drawn too:
+/// if no sample is negative and one is within half a cell's diagonal of zero, the surface is what
+/// lies within a cell of zero.
 ///
 /// # Examples
 ///
@@ -210,8 +211,8 @@ impl Isolines {
 
     /// With `grid` pixels along the longer side for [gradients](Self::with_gradient),
     /// [directions](Self::with_directions) and [numbers](Self::with_values) that are drawn
-    /// afterwards, in place of five for two cells of the isolines: fewer for what takes long to
-    /// find.
+    /// afterwards, instead of 2.5 pixels for each cell of the isolines: fewer for what takes long
+    /// to find.
     #[must_use]
     pub fn with_pixels(self, grid: Sampling) -> Self {
         Self { pixels: self.compared(grid), ..self }
@@ -232,10 +233,10 @@ impl Isolines {
     /// With the promises in place of the bands, and the surface as the only line.
     ///
     /// Each side of the surface has the tint and hatching of what is `promised` outside and
-    /// inside. The tint itself means that the value is the true distance; darker is less, redder
-    /// is more, and grey is where the bounds of the distance leave that open: where those of the
-    /// ratio are more than 0.1 apart. Of the ratios that the bounds allow, the one nearest to one
-    /// is shown, so what has another colour than the tint is certain.
+    /// inside. The tint itself means that the value is the true distance. Darker means that the
+    /// value is less, redder that it is more. Grey means that this is open: the bounds of value
+    /// over distance are more than 0.1 apart. Of the ratios that the bounds allow, the one nearest
+    /// to one is shown, so what has another colour than the tint is certain.
     ///
     /// `comparisons` are those at the [`compared_places`](Self::compared_places) of `grid`.
     ///
