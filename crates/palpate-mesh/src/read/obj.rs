@@ -48,10 +48,8 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 
 /// The positions and faces of a file, with nothing that tobj would refuse without its line.
 fn essence(text: &str) -> Result<String, ReadProblem> {
-    let mut essence = String::with_capacity(text.len());
-    let mut vertices = 0_usize;
-    // The line that names the last vertex, which may come after it.
-    let mut last: Option<(Line<'_>, usize)> = None;
+    let mut essence =
+        Essence { text: String::with_capacity(text.len()), vertices: 0, last: None };
     let mut lines = text.lines().enumerate();
     while let Some((number, first)) = lines.next() {
         let mut whole = first.to_owned();
@@ -62,49 +60,71 @@ fn essence(text: &str) -> Result<String, ReadProblem> {
         let line = Line { text, number: number + 1 };
         let mut words = whole.split('#').next().unwrap_or_default().split_whitespace();
         match words.next() {
-            Some("v") => {
-                vertices += 1;
-                // Of what comes after the coordinates, one number is a weight and three
-                // are a colour.
-                let numbers: Vec<_> = words.collect();
-                let kept = if numbers.len() == 4 { 4 } else { numbers.len().min(3) };
-                line.check_vertex(&numbers)?;
-                essence.push_str("v ");
-                essence.push_str(&numbers[..kept].join(" "));
-                essence.push('\n');
-            }
-            Some("f") => {
-                essence.push('f');
-                let mut corners = 0;
-                for word in words {
-                    let corner = word.split('/').next().unwrap_or_default();
-                    let vertex = line.corner(corner, vertices)?;
-                    if last.is_none_or(|(_, last)| last < vertex) {
-                        last = Some((line, vertex));
-                    }
-                    essence.push(' ');
-                    essence.push_str(corner);
-                    corners += 1;
-                }
-                if corners < 3 {
-                    return Err(
-                        line.wrong(&format!("a face has 3 corners or more, got {corners}"))
-                    );
-                }
-                essence.push('\n');
-            }
+            Some("v") => essence.add_vertex(line, &words.collect::<Vec<_>>())?,
+            Some("f") => essence.add_face(line, words)?,
             _ => {}
         }
     }
-    if let Some((line, vertex)) = last.filter(|(_, vertex)| *vertex > vertices) {
-        let problem = format!("a face names vertex {vertex}, and there are {vertices}");
-        return Err(line.wrong(&problem));
+    essence.finished()
+}
+
+/// What is passed on of the lines so far.
+struct Essence<'a> {
+    text: String,
+    vertices: usize,
+    /// The line that names the last vertex, which may come after it.
+    last: Option<(Line<'a>, usize)>,
+}
+
+impl<'a> Essence<'a> {
+    fn add_vertex(&mut self, line: Line<'a>, numbers: &[&str]) -> Result<(), ReadProblem> {
+        self.vertices += 1;
+        line.check_vertex(numbers)?;
+        // Of what comes after the coordinates, one number is a weight and three are a colour.
+        let kept = if numbers.len() == 4 { 4 } else { numbers.len().min(3) };
+        self.text.push_str("v ");
+        self.text.push_str(&numbers[..kept].join(" "));
+        self.text.push('\n');
+        Ok(())
     }
-    for i in 1..=vertices {
-        // Writing to a string does not fail.
-        let _ = writeln!(essence, "f {i}");
+
+    fn add_face<'w>(
+        &mut self,
+        line: Line<'a>,
+        words: impl Iterator<Item = &'w str>,
+    ) -> Result<(), ReadProblem> {
+        self.text.push('f');
+        let mut corners = 0;
+        for word in words {
+            let corner = word.split('/').next().unwrap_or_default();
+            let vertex = line.corner(corner, self.vertices)?;
+            if self.last.is_none_or(|(_, last)| last < vertex) {
+                self.last = Some((line, vertex));
+            }
+            self.text.push(' ');
+            self.text.push_str(corner);
+            corners += 1;
+        }
+        if corners < 3 {
+            return Err(line.wrong(&format!("a face has 3 corners or more, got {corners}")));
+        }
+        self.text.push('\n');
+        Ok(())
     }
-    Ok(essence)
+
+    /// All of it, with a point for each vertex.
+    fn finished(mut self) -> Result<String, ReadProblem> {
+        let vertices = self.vertices;
+        if let Some((line, vertex)) = self.last.filter(|(_, vertex)| *vertex > vertices) {
+            let problem = format!("a face names vertex {vertex}, and there are {vertices}");
+            return Err(line.wrong(&problem));
+        }
+        for i in 1..=vertices {
+            // Writing to a string does not fail.
+            let _ = writeln!(self.text, "f {i}");
+        }
+        Ok(self.text)
+    }
 }
 
 /// A line of a file.
