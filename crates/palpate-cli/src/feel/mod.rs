@@ -76,13 +76,7 @@ where
 {
     emptiness::warn(scene);
     let name = named.name.as_str();
-    let choice = match (&options.device, &options.scene) {
-        (Some(choice), _) => choice.clone(),
-        (None, Some(_)) => DeviceChoice::Recorded,
-        (None, None) => {
-            DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
-        }
-    };
+    let choice = choice(options)?;
     check_forces(&choice, options)?;
     let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     // Checked before a path of that length is made.
@@ -111,16 +105,8 @@ where
 
     let ticks = ticks(duration, options.rate)?;
     let keeps_rows = outputs.keep_ticks();
-    let rows = ticks * contacts as f64;
-    if keeps_rows && rows > MOST_ROWS {
-        let problem = format!(
-            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {rows}; shorten --duration, \
-             lower --rate, or use fewer --points"
-        );
-        return Err(Failure::input(problem));
-    }
-    let mut recorder =
-        Recorder::new(if keeps_rows { rows.max(0.0).ceil() as usize } else { 0 });
+    let rows = if keeps_rows { rows(ticks * contacts as f64)? } else { 0 };
+    let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
     let mut run_options = RunOptions::new(duration)
@@ -174,6 +160,30 @@ where
         Ending::Interrupted => Outcome::Interrupted,
         _ => Outcome::No,
     })
+}
+
+/// What the hand holds: what `--device` says; if it is left out, a device that yields on the
+/// built-in gallery, and a recorded hand on other scenes.
+fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
+    Ok(match (&options.device, &options.scene) {
+        (Some(choice), _) => choice.clone(),
+        (None, Some(_)) => DeviceChoice::Recorded,
+        (None, None) => {
+            DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
+        }
+    })
+}
+
+/// The rows of a run that are kept, if they are not too many.
+fn rows(count: f64) -> Result<usize, Failure> {
+    if count > MOST_ROWS {
+        let problem = format!(
+            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; shorten --duration, \
+             lower --rate, or use fewer --points"
+        );
+        return Err(Failure::input(problem));
+    }
+    Ok(count.max(0.0).ceil() as usize)
 }
 
 /// The ticks of a run.

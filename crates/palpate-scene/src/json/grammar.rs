@@ -35,7 +35,8 @@ pub(super) enum Style {
     Key,
 }
 
-/// What is wrong with a text, in the order of the text; false if only until the last fault.
+/// What is wrong with a text, in the order of the text; `false` if what follows the last fault was
+/// not read.
 pub(super) fn faults(text: &str) -> (Vec<Fault>, bool) {
     let mut walk = Walk {
         text,
