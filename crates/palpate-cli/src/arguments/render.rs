@@ -21,8 +21,8 @@ Examples:
   palpate render scenes/peg_in_hole.json --azimuth 60 --elevation 40 --contacts
   palpate render scenes/article_gallery.json --turntable 48 --width 600 --height 450
 
-No surface is missed: each ray proves that nothing lies before what it meets. Rays that the
-budget leaves undecided are counted, their pixels are magenta, and the exit status is 1.";
+No surface is missed: each ray proves that nothing lies before what it meets. Rays of sight that
+the budget leaves undecided are counted, their pixels are magenta, and the exit status is 1.";
 
 /// The options of `palpate render`.
 #[derive(Args, Debug)]
