@@ -14,6 +14,8 @@ pub(crate) enum Kind {
     Mesh(Format),
     /// A picture in the format of that name.
     Picture(&'static str),
+    /// A recording, as `palpate feel --wav` writes one.
+    Recording,
     /// A CSV file.
     Table,
     Scene,
@@ -22,11 +24,10 @@ pub(crate) enum Kind {
 }
 
 /// How files of other formats begin.
-const BEGINNINGS: [(&[u8], Kind); 10] = [
+const BEGINNINGS: [(&[u8], Kind); 9] = [
     (b"\x89PNG", Kind::Picture("PNG")),
     (b"\xff\xd8\xff", Kind::Picture("JPEG")),
     (b"GIF8", Kind::Picture("GIF")),
-    (b"RIFF", Kind::Picture("WebP")),
     (b"%PDF", Kind::Picture("PDF")),
     (b"<svg", Kind::Picture("SVG")),
     (b"PK\x03\x04", Kind::Archive),
@@ -47,6 +48,10 @@ impl Kind {
         }
         if let Some((_, kind)) = BEGINNINGS.iter().find(|(begin, _)| text.starts_with(begin)) {
             return Some(*kind);
+        }
+        if let (Some(b"RIFF"), Some(of)) = (bytes.get(..4), bytes.get(8..12)) {
+            let is_recording = of == b"WAVE";
+            return Some(if is_recording { Self::Recording } else { Self::Picture("WebP") });
         }
         let line = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
         let line = String::from_utf8_lossy(line);
@@ -75,6 +80,7 @@ impl Kind {
                 "`palpate eval SCENE --points {path_name}` reads points, `palpate feel SCENE --path {path_name}` the path of a hand"
             ),
             Self::Picture(_) => "pictures are outputs alone".to_owned(),
+            Self::Recording => "recordings are outputs alone".to_owned(),
             Self::Archive => "unpack it".to_owned(),
             Self::Empty => "write it again".to_owned(),
         }
@@ -86,6 +92,7 @@ impl fmt::Display for Kind {
         match self {
             Self::Mesh(format) => write!(f, "it is a mesh ({})", format.name()),
             Self::Picture(format) => write!(f, "it is a picture ({format})"),
+            Self::Recording => write!(f, "it is a recording (WAV)"),
             Self::Table => write!(f, "it is a table (CSV)"),
             Self::Scene => write!(f, "it is a scene (JSON)"),
             Self::Archive => write!(f, "it is a compressed file"),
@@ -127,6 +134,8 @@ mod tests {
             (b"0.5\t-1e-3\n", Some(Kind::Table)),
             (b"\x89PNG\r\n", Some(Kind::Picture("PNG"))),
             (b"<?xml version=\"1.0\"?>\n<svg/>", Some(Kind::Picture("SVG"))),
+            (b"RIFF\x24\0\0\0WAVEfmt ", Some(Kind::Recording)),
+            (b"RIFF\x24\0\0\0WEBPVP8 ", Some(Kind::Picture("WebP"))),
             (b"PK\x03\x04", Some(Kind::Archive)),
             (b"ply\nformat ascii 1.0\n", Some(Kind::Mesh(Format::Ply))),
             (b"[1, 2]", None),

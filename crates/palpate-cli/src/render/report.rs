@@ -37,10 +37,8 @@ impl Report<'_> {
         writeln!(out, "{what}: {} rays, {}", rays, decided(sight, light))?;
         if sight.undecided + light.undecided > 0 {
             let budget = self.stage.settings.budget;
-            writeln!(
-                out,
-                "  after {budget} evaluations; undecided pixels are magenta; raise --ray-budget"
-            )?;
+            let magenta = if sight.undecided > 0 { "; their pixels are magenta" } else { "" };
+            writeln!(out, "  after {budget} evaluations{magenta}; raise --ray-budget")?;
         }
         Ok(())
     }

@@ -59,6 +59,11 @@ impl Header {
         Ok(Self { names, line })
     }
 
+    /// Its line in the file, from 1.
+    pub(super) fn line(&self) -> u64 {
+        self.line
+    }
+
     pub(super) fn len(&self) -> usize {
         self.names.len()
     }

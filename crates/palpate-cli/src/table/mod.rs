@@ -182,8 +182,9 @@ pub(crate) fn coordinates<const D: usize>(
     let places =
         table.header.columns(&names, what).map_err(|problem| table.failure(problem))?;
     if D == 2 && table.column("z_m").is_some() {
-        let line = "line 1: the column z_m is for 3D scenes, but this scene is 2D";
-        return Err(table.failure(line));
+        let line = table.header.line();
+        let problem = "the column z_m is for 3D scenes, but this scene is 2D";
+        return Err(table.failure(format!("line {line}: {problem}")));
     }
     Ok(places)
 }

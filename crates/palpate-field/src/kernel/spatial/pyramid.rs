@@ -92,10 +92,10 @@ impl Kernel<3> for Pyramid {
         let up_ridge = up.clamp(0.0, self.ridge_length);
         let on_ridge = Vector(array!(i < 3 => up_ridge.scale(self.ridge[i])));
         let ridge = (corner - on_ridge).norm();
-        // Where the point is past the corner on one edge, the other edge decides: next to the
-        // corner their distances differ by less than their rounding, but their directions do
-        // not.
-        let not_past = S::select_less(half, b, ridge, base_edge.min(ridge));
+        // Where the point is past the corner on the base's edge, or up the side, the ridge decides:
+        // where both edges are as near to within a rounding, their directions are not.
+        let beside_corner = S::select_less(along, zero, base_edge, ridge);
+        let not_past = S::select_less(half, b, ridge, beside_corner);
         let edges = S::select_less(up, zero, base_edge, not_past);
         // On the side: between base and tip, and no further across than the side
         // is wide there.

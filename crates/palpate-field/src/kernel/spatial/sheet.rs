@@ -17,6 +17,9 @@ use crate::vector::{Point, Vector};
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
+/// A factor by more than the rounding of a distance.
+const FARTHER: f64 = 1.0 + 8.0 * f64::EPSILON;
+
 /// A point that is no farther from the line of its neighbours than this share of the size is
 /// refused as a corner: the direction of the plane would be rounding.
 const FLAT: f64 = 1e-9;
@@ -198,17 +201,24 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
     fn distance<S: Scalar>(&self, p: Vector<S, 3>) -> S {
         let [x, y, z] = self.placement.to_body(p).0;
         let q = Vector([x, z]);
-        let [across, past] = self.edges[0].offsets(q);
-        let mut behind = across;
-        let mut beside = S::norm([y, across, past]);
-        for edge in &self.edges[1..] {
+        let zero = S::constant(0.0);
+        // An edge that the point is beside goes before one whose end is as near to within a
+        // rounding: next to a corner their distances differ by less, but their directions do not.
+        let of = |edge: &Edge| {
             let [across, past] = edge.offsets(q);
+            let distance = S::norm([y, across, past]);
+            (across, distance, S::select_less(zero, past, distance.scale(FARTHER), distance))
+        };
+        let (mut behind, mut beside, mut rank) = of(&self.edges[0]);
+        for edge in &self.edges[1..] {
+            let (across, distance, its_rank) = of(edge);
             behind = behind.max(across);
-            beside = beside.min(S::norm([y, across, past]));
+            beside = S::select_less(its_rank, rank, distance, beside);
+            rank = rank.min(its_rank);
         }
         let above = y.abs();
         let beside = face_if_on_it(beside, above, self.size);
-        S::select_less(behind, S::constant(0.0), above, beside) - S::constant(self.radius)
+        S::select_less(behind, zero, above, beside) - S::constant(self.radius)
     }
 
     #[inline(always)]
