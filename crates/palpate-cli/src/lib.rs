@@ -24,6 +24,7 @@ mod jitter;
 mod kind;
 mod mass;
 mod mesh;
+mod numbers;
 mod outcome;
 mod output;
 mod picture;

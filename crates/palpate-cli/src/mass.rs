@@ -68,6 +68,15 @@ fn report<const D: usize>(
         if is_open && is_empty(&body.shape).is_none() {
             writeln!(out, "  may be empty: no point was found in it")?;
         }
+        if is_open {
+            let (cells, asked) = (mass.cells, options.tolerance);
+            let share = mass.volume_error / mass.volume;
+            writeln!(
+                out,
+                "  open: after {cells} cells the error is {share:.1e} of the volume, and \
+                 --tolerance asks for {asked}; raise --cells"
+            )?;
+        }
         let line = |what: &str, value: f64, error: f64, unit: &str| {
             format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
         };

@@ -7,6 +7,7 @@ use palpate::field::Point;
 use palpate::plot::Slice;
 
 use crate::input;
+use crate::numbers::rounded;
 use crate::outcome::Failure;
 
 /// The plane that `text` names: one along two axes goes through the third coordinate `at`, or
@@ -34,4 +35,18 @@ pub(crate) fn named(
         }
     }
     .map_err(Failure::input)
+}
+
+/// Where a plane in space is: "slice at z = 0.02 m".
+pub(crate) fn in_words(plane: &Slice) -> String {
+    let (origin, normal) = (plane.point([0.0; 2]), plane.normal());
+    let axis = |(k, name): (usize, &'static str)| (normal[k].abs() == 1.0).then_some((k, name));
+    match input::AXES.into_iter().enumerate().find_map(axis) {
+        Some((k, name)) => format!("slice at {name} = {} m", rounded(origin[k])),
+        None => {
+            let [x, y, z] = origin.map(rounded);
+            let normal = normal.map(rounded).join(", ");
+            format!("slice through ({x}, {y}, {z}) m, across ({normal})")
+        }
+    }
 }

@@ -182,7 +182,7 @@ where
             None => isolines,
         };
         let figure = Figure::new(title(&options.scene))
-            .with_caption(self.caption())
+            .with_caption(self.caption(plane))
             .with_isolines(isolines);
         self.picture.save(&figure, options.width.unwrap_or(picture::WIDTH))?;
         if options.json {
@@ -225,10 +225,14 @@ where
         }
     }
 
-    /// The promise, and what the field is compared with.
-    fn caption(&self) -> String {
+    /// Where the plane is, the time, the promise, and what the field is compared with.
+    fn caption(&self, plane: &Slice) -> String {
+        let place = (D == 3).then(|| plane::in_words(plane));
+        let time =
+            (!self.scene.motions.is_empty()).then(|| format!("at {} s", self.options.time));
         let promise = promise_in_words(self.scene.whole.promise());
-        self.compared.in_words().map_or(promise.clone(), |words| format!("{promise}; {words}"))
+        let said = [place, time, Some(promise), self.compared.in_words()];
+        said.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 
     fn described(&self, drawn: &Drawn, plane: &Slice) -> Value {

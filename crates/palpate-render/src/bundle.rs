@@ -65,7 +65,8 @@ impl Bundle {
         let reach = self.radius + self.cone + ball.radius + along * self.spread;
         // Room for rounding. Of an infinite reach times zero, NaN, it may be met.
         let reach = reach + 1e-9 * (reach.abs() + offset.norm());
-        !(aside > reach) && (self.spread == f64::INFINITY || along >= 0.0)
+        let is_beside = aside > reach;
+        !is_beside && (self.spread == f64::INFINITY || along >= 0.0)
     }
 }
 

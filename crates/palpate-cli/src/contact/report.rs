@@ -36,13 +36,16 @@ impl<const D: usize> Report<'_, D> {
         for pair in self.pairs {
             writeln!(out, "{}", self.in_words(pair))?;
         }
-        let early = |pair: &&Pair<D>| pair.separation.is_some_and(|s| s.stop.is_early());
-        if self.pairs.iter().any(|pair| early(&pair)) {
-            let tolerance = millimetres(self.question.settings.limits.tolerance);
+        let tolerance = self.question.settings.limits.tolerance;
+        let is_open = |pair: &Pair<D>| {
+            pair.separation.is_some_and(|found| found.upper - found.lower > tolerance)
+        };
+        if self.pairs.iter().any(is_open) {
             writeln!(
                 out,
-                "Each separation lies between its bounds; of searches that ended early they are \
-                 farther apart than the tolerance, {tolerance} mm."
+                "Each separation lies between its bounds; of searches that ended early they may \
+                 be farther apart than the tolerance, {} mm.",
+                millimetres(tolerance)
             )?;
         }
         let count = |verdict| self.pairs.iter().filter(|pair| pair.verdict == verdict).count();
@@ -63,7 +66,7 @@ impl<const D: usize> Report<'_, D> {
         let mut words = format!("{a} – {b}: {}", pair.verdict);
         words += &match &pair.separation {
             Some(found) => format!(
-                ", separation {} to {} mm ({}, {} evaluations)",
+                ", separation {} to {} mm ({}; {} evaluations with its contacts)",
                 millimetres(found.lower),
                 millimetres(found.upper),
                 found.stop,
@@ -117,7 +120,8 @@ impl<const D: usize> Report<'_, D> {
         match stop {
             Stop::Converged | Stop::SignKnown => None,
             Stop::BudgetSpent => Some(format!(
-                "the budget of {budget} evaluations is spent; raise --budget or --spacing"
+                "the search for contacts spent its budget of {budget} evaluations; raise --budget \
+                 or --spacing"
             )),
             Stop::MemoryFull | Stop::RoundingReached => Some(
                 "the memory of the search is full, and a larger --budget does not help; raise \

@@ -15,6 +15,7 @@ use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Ending, RunReport, ToolReport};
 use serde_json::Value;
 
+use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, shown};
 use crate::times::{quantiles, write_histogram};
@@ -293,20 +294,5 @@ fn range(numbers: impl Iterator<Item = f64> + Clone) -> String {
         format!("{} to {}", rounded(least), rounded(largest))
     } else {
         rounded(least)
-    }
-}
-
-/// A number with four significant digits.
-fn rounded(number: f64) -> String {
-    if number.abs() < f64::MIN_POSITIVE {
-        return "0".to_owned();
-    }
-    let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
-    let unit = 10.0_f64.powi(-digits);
-    let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
     }
 }

@@ -78,7 +78,10 @@ fn what_the_budget_left_out_is_told() {
     let part = json(&[&options[..], &["--json"]].concat());
     assert_eq!(part["pairs"][0]["is_whole"], false);
     let told = text(&palpate(&options));
-    assert!(told.contains("the budget of 20000 evaluations is spent"), "{told}");
+    assert!(
+        told.contains("the search for contacts spent its budget of 20000 evaluations"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -244,7 +244,8 @@ impl Probe for Places {
         let Self { points, gap, block, values, evaluations } = self;
         // Written so that NaN meets.
         let meets = |ball: &BoundingBall<3>, lane: usize| {
-            !((points[lane] - ball.centre).norm() > ball.radius + *gap)
+            let is_outside = (points[lane] - ball.centre).norm() > ball.radius + *gap;
+            !is_outside
         };
         let near = piece.near(lanes, shares, meets);
         if near.is_empty() {
@@ -266,7 +267,8 @@ fn meets(ball: &BoundingBall<3>, cell: &Vector<Model, 3>) -> bool {
     let centre = Vector(cell.0.map(|x| x.value));
     // Room for the rounding of the distance; NaN meets.
     let apart = (centre - ball.centre).norm() * (1.0 - 1e-9);
-    !(apart > ball.radius + Model::radius(&cell.0))
+    let is_outside = apart > ball.radius + Model::radius(&cell.0);
+    !is_outside
 }
 
 /// The share of a cell from its beginning over which a model is positive.
