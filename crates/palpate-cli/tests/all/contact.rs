@@ -193,9 +193,9 @@ fn what_is_apart_is_proven_for_any_budget() {
 fn full_memory_is_told_apart_from_a_spent_budget() {
     let options = ["contact", "scenes/nut_on_bolt.json", "--budget", "20000000"];
     let said = text(&palpate(&options));
-    assert!(said.contains("(memory full, "), "{said}");
+    assert!(said.contains("(memory full; "), "{said}");
     let small = text(&palpate(&["contact", "scenes/nut_on_bolt.json", "--budget", "1000"]));
-    assert!(small.contains("(budget spent, "), "{small}");
+    assert!(small.contains("(budget spent; "), "{small}");
     assert!(small.contains("raise --budget"), "{small}");
 }
 
