@@ -3,8 +3,9 @@
 
 //! A legend, points and arrows, to be laid over a picture of pixels.
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, Path};
 use crate::error::{PlotError, finite_points};
+use crate::geometry::Rect;
 use crate::legend::{self, Entry, Key, Symbol, draw_arrow};
 use crate::palette::Color;
 use crate::png;
@@ -29,11 +30,14 @@ const BORDER: f64 = 14.0;
 /// assert_eq!(pixels.len(), 320 * 240);
 /// assert_eq!(pixels[0], [0, 0, 0, 0]); // nothing is drawn here
 /// assert_eq!(layer.legend_height(), 240.0 / 700.0 * 50.0);
+/// let pixels = layer.with_band(Color::rgb(255, 255, 255)).pixels()?;
+/// assert_eq!((pixels[0], pixels[320 * 239]), ([0, 0, 0, 0], [255, 255, 255, 255]));
 /// # Ok::<(), palpate_plot::PlotError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Layer {
     size: [u32; 2],
+    band: Option<Color>,
     entries: Vec<Entry>,
     points: Vec<([f64; 2], Color)>,
     arrows: Vec<([[f64; 2]; 2], Color)>,
@@ -44,7 +48,8 @@ impl Layer {
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let size = [width, height];
-        Self { size, entries: Vec::new(), points: Vec::new(), arrows: Vec::new() }
+        let (entries, points, arrows) = (Vec::new(), Vec::new(), Vec::new());
+        Self { size, band: None, entries, points, arrows }
     }
 
     /// With an entry of the legend: a colour and what has it.
@@ -52,6 +57,12 @@ impl Layer {
     pub fn with_entry(mut self, color: Color, text: impl Into<String>) -> Self {
         self.entries.push(Entry::new(Key::Swatch(color), text));
         self
+    }
+
+    /// With the legend on a band of this colour, as wide as the picture, which hides what is below.
+    #[must_use]
+    pub fn with_band(self, color: Color) -> Self {
+        Self { band: Some(color), ..self }
     }
 
     /// With words in the legend.
@@ -131,6 +142,11 @@ impl Layer {
         }
         for (point, color) in &self.points {
             Symbol::Disc.draw(&mut drawing, place(*point), *color);
+        }
+        let below = self.legend_height() / scale;
+        if let Some(color) = self.band {
+            let band = Rect::new(0.0, height - below, width, below);
+            drawing.fill(Path::rect(&band), color);
         }
         let corner = [BORDER, height - BORDER - self.rows()];
         legend::draw(&mut drawing, &self.entries, corner, self.room());

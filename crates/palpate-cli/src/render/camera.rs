@@ -45,15 +45,17 @@ pub(super) fn of(
         None => subject.corners().to_vec(),
     };
     let legend = legend.min(MOST_LEGEND);
-    let camera = Camera::fitting(&corners, sight, lens, aspect(options) / (1.0 - legend));
+    let camera = Camera::fitting(&corners, sight, lens, aspect(options, legend));
     Ok(camera.map_err(Failure::input)?.with_room_below(legend))
 }
 
-/// The camera in front of the plane of a view, and of all that has bounds.
+/// The camera in front of the plane of a view, and of all that has bounds, which shows the view
+/// above a legend with a share of the picture's height.
 pub(super) fn of_view(
     options: &RenderOptions,
     subject: &Subject,
     view: &View,
+    legend: f64,
 ) -> Result<Camera, Failure> {
     let plane = views::plane(view)?;
     let Aabb { min, max } = subject.bounds();
@@ -61,16 +63,19 @@ pub(super) fn of_view(
         Window::of_box(&plane, min.0, max.0, picture::MARGIN).map_err(Failure::input)?;
     let from_origin = |st| Vector(plane.point(st)) - Vector(plane.point([0.0; 2]));
     let sight = Sight::onto_plane(from_origin([1.0, 0.0]), from_origin([0.0, 1.0]));
+    let legend = legend.min(MOST_LEGEND);
     let width = view.width.unwrap_or(whole.width());
-    let height = view.height.unwrap_or(whole.height()).max(width / aspect(options));
+    let height = view.height.unwrap_or(whole.height()).max(width / aspect(options, legend));
     let centre = plane.point(view.center.unwrap_or(whole.center()));
     let reach = subject.corners().map(|corner| plane.elevation(corner.0));
     let distance = reach.into_iter().fold(0.0, f64::max) + height;
-    Camera::facing(sight, Vector(centre), height, distance).map_err(Failure::input)
+    let camera = Camera::facing(sight, Vector(centre), height, distance);
+    Ok(camera.map_err(Failure::input)?.with_room_below(legend))
 }
 
-fn aspect(options: &RenderOptions) -> f64 {
-    f64::from(options.width) / f64::from(options.height)
+/// How many times the part of a picture above a legend is as wide as high.
+fn aspect(options: &RenderOptions, legend: f64) -> f64 {
+    f64::from(options.width) / f64::from(options.height) / (1.0 - legend)
 }
 
 /// The corners of the scene's box, turned to all sides.

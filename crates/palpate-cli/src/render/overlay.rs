@@ -31,7 +31,12 @@ pub(super) fn legend(settings: &Settings, names: &[String], bodies: &[Body]) -> 
 impl Stage<'_> {
     /// Red, green, blue and opacity of each pixel of what lies over the picture.
     pub(super) fn overlay(&self, camera: &Camera) -> Result<Vec<[u8; 4]>, Failure> {
-        let layer = legend(&self.settings, &self.names, self.subject.bodies());
+        let mut layer = legend(&self.settings, &self.names, self.subject.bodies());
+        // The usual camera leaves room for the legend; other ones may see bodies there.
+        if self.options.view.is_some() || self.options.from.is_some() {
+            let BodyColor([red, green, blue]) = BodyColor::BACKGROUND;
+            layer = layer.with_band(Color::rgb(red, green, blue));
+        }
         self.with_contacts(layer, camera)?.pixels().map_err(Failure::input)
     }
 

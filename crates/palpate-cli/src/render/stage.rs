@@ -40,9 +40,10 @@ impl<'a> Stage<'a> {
         let settings = settings(options);
         settings.check().map_err(Failure::input)?;
         let legend = overlay::legend(&settings, &names, subject.bodies()).legend_height();
+        let legend = legend / f64::from(options.height);
         let camera = match view {
-            Some(view) => camera::of_view(options, &subject, view)?,
-            None => camera::of(options, &subject, legend / f64::from(options.height))?,
+            Some(view) => camera::of_view(options, &subject, view, legend)?,
+            None => camera::of(options, &subject, legend)?,
         };
         let find = || Touched::find(&options.question, scene, false);
         let touched = options.contacts.then(find).transpose()?;

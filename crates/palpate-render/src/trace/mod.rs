@@ -82,6 +82,8 @@ struct Lane {
     is_beside: bool,
     /// `true` where a step by a model is for the ray alone, without its cone.
     is_thin: bool,
+    /// A step for the ray alone that is so many times as long as the cone is wide ends these.
+    slender: f64,
     look: Look,
 }
 
@@ -213,6 +215,9 @@ impl<'a> Tracer<'a> {
         let Self { lanes, shape, pieces, places, block, values, work, .. } = self;
         let Some(shape) = &shape else { return };
         let due: Vec<usize> = (0..lanes.len()).filter(|i| is_due(&lanes[*i])).collect();
+        if due.is_empty() {
+            return;
+        }
         let point = |lane: usize| beams[lanes[lane].beam].at(place(&lanes[lane]));
         let mut shares = [1.0; BLOCK];
         if self.is_steep {
@@ -292,6 +297,9 @@ impl<'a> Tracer<'a> {
 
     /// Ends rays that are at a surface, and advances the others by models.
     fn round_by_models(&mut self, beams: &[Beam], met: &mut [Met]) {
+        if self.lanes.is_empty() {
+            return;
+        }
         self.look(beams, met, |lane| lane.look == Look::Due, |lane| lane.distance);
         let Self { lanes, shape, pieces, cells, work, .. } = self;
         let Some(shape) = shape.as_ref().filter(|_| !lanes.is_empty()) else { return };
@@ -362,6 +370,7 @@ impl Lane {
             is_near: false,
             is_beside: false,
             is_thin: false,
+            slender: models::SLENDER,
             look: Look::Due,
         }
     }

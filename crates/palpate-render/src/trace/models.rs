@@ -27,8 +27,9 @@ const BELOW: f64 = 0.8;
 const RELIEF: f64 = 1.2;
 
 /// A cell shorter than its cone is wide is not made shorter: the surface is in the cone. A ray
-/// that passes a cell so many times as long alone has left the surface.
-const SLENDER: f64 = 8.0;
+/// that passes a cell so many times as long alone has left the surface. If it has not, as along a
+/// wall, twice as many times the next time: few cells are spent on trying again.
+pub(super) const SLENDER: f64 = 8.0;
 
 /// The rounding of the middle of a cell and of its sides, in units of their sizes.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
@@ -80,9 +81,10 @@ impl Lane {
         let length = end - self.distance;
         if share >= 1.0 {
             self.distance = end;
-            if self.is_thin && length > SLENDER * cone {
+            if self.is_thin && length > self.slender * cone {
                 self.is_beside |= self.is_near;
                 self.is_thin = false;
+                self.slender *= 2.0;
             }
             self.step = (GROWTH * length).min(BELOW * self.too_long);
             self.too_long *= RELIEF;

@@ -184,6 +184,25 @@ fn sheets_and_curves_are_as_thick_as_the_picture_needs() {
 }
 
 #[test]
+fn a_ray_along_a_wall_is_decided_by_few_models() {
+    let wall = Shape::cuboid([60.0, 1.0, 1.0]).unwrap();
+    let studio = studio(wall, &Settings::new(SIZE[0], SIZE[1]));
+    let gap = studio.surfaces.gap;
+    for height in [1.000_001, 1.5, 4.0] {
+        let origin = Vector([-29.0, 0.5 + height * gap, 0.0]);
+        let ray = Beam::ray(origin, Vector::unit(0));
+        let beam = Beam { far: 58.0, radius: 6.0 * gap, ..ray };
+        let (mut tracer, mut met) = (studio.tracer(), Vec::new());
+        tracer.aim(&[beam]);
+        tracer.is_steep = true;
+        tracer.trace(Goal::First, &[beam], &mut met);
+        assert!(met[0].end == End::Free && met[0].is_beside, "{height} {met:?}");
+        let Work { grazing, evaluations, .. } = tracer.work;
+        assert!(grazing == 0 && evaluations < 1000, "{height} {:?}", tracer.work);
+    }
+}
+
+#[test]
 fn a_ray_without_budget_is_undecided() {
     let settings = Settings::new(SIZE[0], SIZE[1]).with_budget(2);
     let shape = Shape::torus(1.0, 0.3).unwrap();
