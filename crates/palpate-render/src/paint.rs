@@ -69,7 +69,13 @@ pub(crate) struct Painter<'a> {
 }
 
 impl<'a> Painter<'a> {
-    pub(crate) fn new(studio: &'a Studio) -> Self {
+    /// A painter on the heap; a function of its own, so that no caller's frame has room for one.
+    #[inline(never)]
+    pub(crate) fn boxed(studio: &'a Studio) -> Box<Self> {
+        Box::new(Self::new(studio))
+    }
+
+    fn new(studio: &'a Studio) -> Self {
         Self {
             studio,
             tracer: studio.tracer(),

@@ -103,7 +103,7 @@ impl Stage<'_> {
         paint: impl Fn(&mut Painter<'_>, usize) -> T + Sync,
     ) -> Option<Vec<T>> {
         let (ends, done) = (AtomicBool::new(false), AtomicUsize::new(0));
-        let part = |painter: &mut Painter<'_>, part| {
+        let part = |painter: &mut Box<Painter<'_>>, part| {
             if ends.load(Ordering::Relaxed) {
                 return None;
             }
@@ -116,7 +116,8 @@ impl Stage<'_> {
             }
             Some(painted)
         };
-        let painter = || Painter::new(self.studio);
+        // Not on the stack, on which a thread that waits for others begins more parts.
+        let painter = || Painter::boxed(self.studio);
         (0..parts).into_par_iter().map_init(painter, part).collect()
     }
 
