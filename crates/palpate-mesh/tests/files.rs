@@ -224,6 +224,7 @@ fn errors_say_which_file_and_what_to_do() {
 }
 
 /// What is wrong with a file, after "it is no good FORMAT: ".
+#[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 fn wrong(bytes: &[u8], format: Format) -> String {
     let wrong = read(bytes, format).unwrap_err().to_string();
     let wrong = wrong.strip_prefix(&format!("it is no good {}: ", format.name()));
