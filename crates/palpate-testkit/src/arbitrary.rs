@@ -270,17 +270,20 @@ fn copies(u: &mut Unstructured<'_>, width: f64) -> Result<Copies> {
     })
 }
 
+/// The profiles of smooth booleans.
+pub const PROFILES: [Profile; 7] = [
+    Profile::Quadratic,
+    Profile::Cubic,
+    Profile::Quartic,
+    Profile::Circular,
+    Profile::Root,
+    Profile::Exponential,
+    Profile::CircularGeometrical,
+];
+
 /// The profile of a smooth boolean.
 fn profile(u: &mut Unstructured<'_>) -> Result<Profile> {
-    Ok(*u.choose(&[
-        Profile::Quadratic,
-        Profile::Cubic,
-        Profile::Quartic,
-        Profile::Circular,
-        Profile::Root,
-        Profile::Exponential,
-        Profile::CircularGeometrical,
-    ])?)
+    Ok(*u.choose(&PROFILES)?)
 }
 
 fn operator<const D: usize>(u: &mut Unstructured<'_>, depth: usize) -> Result<Tree<D>>

@@ -6,20 +6,13 @@
 use palpate_field::kernel::{Ball, HalfSpace};
 use palpate_field::operator::Profile;
 use palpate_field::{Rotation, Shape, ShapeError, Vector};
+use palpate_testkit::arbitrary::PROFILES;
 
 #[test]
 fn every_profile_moves_a_right_angle_by_its_width() -> Result<(), ShapeError> {
     let floor = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), 0.0)?);
     let wall = Shape::from_kernel(HalfSpace::new(Vector([1.0, 0.0]), 0.0)?);
-    for profile in [
-        Profile::Quadratic,
-        Profile::Cubic,
-        Profile::Quartic,
-        Profile::Circular,
-        Profile::Root,
-        Profile::Exponential,
-        Profile::CircularGeometrical,
-    ] {
+    for profile in PROFILES {
         let pair = || [floor.clone(), wall.clone()];
         let passes = |shape: Shape<2>, p: [f64; 2]| {
             let distance = shape.distance(Vector(p));

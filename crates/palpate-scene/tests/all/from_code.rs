@@ -10,7 +10,7 @@ use palpate_field::scalar::{Dual, Scalar};
 use palpate_field::{Kernel, Point, Pose, Promise, Rotation, Shape, ShapeError, Vector};
 use palpate_haptics::Material;
 use palpate_scene::{AnyScene, BuiltScene, Dimension, Scene, SceneBody, WrittenShape};
-use palpate_testkit::arbitrary::{Turn, arguments, point, tree};
+use palpate_testkit::arbitrary::{PROFILES, Turn, arguments, point, tree};
 use palpate_testkit::cases;
 use palpate_testkit::kernels::Space;
 use palpate_testkit::tree::Solid;
@@ -148,15 +148,7 @@ fn operators_of_both<const D: usize>(turn: Rotation<D>) -> Result<Vec<Shape<D>>,
     grid[1] = row;
     shapes.push(c.clone().repeated(grid)?);
     shapes.push(c.clone().repeated([Copies::Endless { spacing: 2.5 }; D])?);
-    for profile in [
-        Profile::Quadratic,
-        Profile::Cubic,
-        Profile::Quartic,
-        Profile::Circular,
-        Profile::Root,
-        Profile::Exponential,
-        Profile::CircularGeometrical,
-    ] {
+    for profile in PROFILES {
         shapes.push(Shape::smooth_union(three(), profile, 0.03)?);
         shapes.push(Shape::smooth_intersection(three(), profile, 0.03)?);
         shapes.push(a.clone().smooth_difference([b.clone(), c.clone()], profile, 0.03)?);
