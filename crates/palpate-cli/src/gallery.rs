@@ -144,7 +144,10 @@ impl Work<'_> {
         }
         written.extend(single.into_iter().flatten());
         if !self.options.json {
-            self.bar.suspend(|| say(&written))?;
+            // A reader that closed the pipe, as `head` does, leaves no picture undone.
+            self.bar.suspend(|| say(&written)).or_else(|failure| {
+                if failure.is_closed_pipe() { Ok(()) } else { Err(failure) }
+            })?;
         }
         Ok(written)
     }

@@ -5,11 +5,11 @@
 
 use std::io::Write;
 
-use palpate::field::{Aabb, Point, Vector};
+use palpate::field::{Aabb, Point, Shape, Vector};
 use palpate::local::{
     FoundDirection, GradientMethod, GradientSampler, adaptive_offset, angle_between,
 };
-use palpate::plot::{Figure, PlotError, Sampling, Slice};
+use palpate::plot::{Figure, Markers, PlotError, Sampling, Slice};
 use palpate::query::{self, AtPoint};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
@@ -52,7 +52,9 @@ where
     let ways = GradientMethod::ALL
         .iter()
         .map(|method| Way { method: *method, found: sampler.find(*method, &scene.whole, p) });
-    let comparison = Comparison { options, sampler, at, ways: ways.collect() };
+    let ways = ways.collect();
+    let jumps = jumps(&scene.whole, &at, sampler.offset());
+    let comparison = Comparison { options, sampler, at, jumps, ways };
     if options.json {
         comparison.print_json()?;
     } else {
@@ -62,6 +64,21 @@ where
         picture.save(&comparison.figure(scene, &window)?, picture::WIDTH)?;
     }
     Ok(Outcome::Yes)
+}
+
+/// Gradients that differ by more than this meet at an edge of the field.
+const JUMP: f64 = 0.1;
+
+/// Whether the gradient jumps within `offset` of a point, as on the middle line of a slab, where
+/// the exact one is that of one side.
+fn jumps<const D: usize>(shape: &Shape<D>, at: &AtPoint<D>, offset: f64) -> bool {
+    (0..D).any(|axis| {
+        [-offset, offset].into_iter().any(|step| {
+            let mut beside = at.point;
+            beside[axis] += step;
+            (shape.distance_gradient(beside).1 - at.gradient).norm() > JUMP
+        })
+    })
 }
 
 /// The part of a scene to be drawn, with room around it: that about a point, or all of it.
@@ -110,6 +127,8 @@ struct Comparison<'a, const D: usize> {
     options: &'a GradientsOptions,
     sampler: GradientSampler,
     at: AtPoint<D>,
+    /// Whether gradients of several sides meet at the point.
+    jumps: bool,
     ways: Vec<Way<D>>,
 }
 
@@ -145,6 +164,7 @@ where
             "distance_m": self.at.distance,
             "gradient": self.at.gradient.0.to_vec(),
             "offset_m": self.sampler.offset(),
+            "gradient_jumps": self.jumps,
             "adaptive_offset_m": self.adaptive_offset(),
             "precision": self.precision(),
             "methods": ways,
@@ -161,6 +181,13 @@ where
         let (offset, adaptive) = (sampler.offset(), self.adaptive_offset());
         writeln!(out, "offset               {offset:.3e} m, adaptive {adaptive:.3e} m")?;
         writeln!(out, "values               in {} precision", self.precision())?;
+        if self.jumps {
+            writeln!(
+                out,
+                "note                 the gradient jumps within the offset of this point: there is \
+                 none here, and `exact` is that of one side"
+            )?;
+        }
         for way in &self.ways {
             write!(out, "{:<20} ", way.method.name())?;
             match way.obstacle() {
@@ -195,10 +222,12 @@ where
         let isolines = picture::isolines(&scene.whole, &plane, &view, sampling);
         let isolines = isolines.map_err(Failure::input)?;
         let bar = bar();
+        let here = plane.project(in_space(self.at.point));
         let methods = GradientMethod::ALL.iter().filter(|m| D < 3 || !m.is_planar());
         let panels = methods.map(|method| {
             let gradient = Gradient::of(scene, *method, self.sampler);
             let panel = gradient.draw_error(isolines.clone(), &plane, &bar)?;
+            let panel = panel.with_markers(Markers::new("the point", [here])?);
             Ok::<_, PlotError>(panel.with_title(method.name().replace('_', " ")))
         });
         let panels = panels.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;

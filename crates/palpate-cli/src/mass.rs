@@ -16,10 +16,12 @@ use crate::arguments::MassOptions;
 use crate::emptiness::is_empty;
 use crate::input;
 use crate::interrupt::Interrupt;
+use crate::numbers::measured;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
-/// Computes the mass of each body; the answer is no if an error is above the tolerance.
+/// Computes the mass of each body; the answer is no if an error is above the tolerance, or a body
+/// has none.
 pub(crate) fn run(options: &MassOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
@@ -48,7 +50,18 @@ fn report<const D: usize>(
             break;
         };
         let name = &body.name;
-        let mass = mass.map_err(|error| Failure::input(format!("body {name:?}: {error}")))?;
+        let mass = match mass {
+            Ok(mass) => mass,
+            Err(error) => {
+                outcome = Outcome::No;
+                if options.json {
+                    bodies.push(json!({ "name": name, "problem": error.to_string() }));
+                } else {
+                    writeln!(out, "{}: {error}", shown(name))?;
+                }
+                continue;
+            }
+        };
         let is_open = mass.volume_error > options.tolerance * mass.volume;
         if is_open {
             outcome = Outcome::No;
@@ -59,10 +72,12 @@ fn report<const D: usize>(
         }
         writeln!(out, "{}, at {} kg/m³ ({} cells)", shown(name), options.density, mass.cells)?;
         if mass.is_zero() {
-            writeln!(
-                out,
-                "  empty: no point is in it, its volume is proven to be 0 {volume_unit}"
-            )?;
+            let why = if body.shape.promise().has_interior {
+                "empty: no point is in it, its volume is proven to be 0"
+            } else {
+                "no inside: curves and sheets have a volume of 0"
+            };
+            writeln!(out, "  {why} {volume_unit}")?;
             continue;
         }
         if is_open && is_empty(&body.shape).is_none() {
@@ -78,21 +93,20 @@ fn report<const D: usize>(
             )?;
         }
         let line = |what: &str, value: f64, error: f64, unit: &str| {
-            format!("  {what:<15}{value:.6e} ± {error:.1e} {unit}")
+            format!("  {what:<15}{} ± {error:.1e} {unit}", measured(value, error))
         };
         writeln!(out, "{}", line("volume", mass.volume, mass.volume_error, volume_unit))?;
         writeln!(out, "{}", line("mass", mass.mass(), mass.mass_error(), mass_unit))?;
-        writeln!(
-            out,
-            "  centroid       {:.6?} ± {:.1e} m",
-            mass.centroid.0, mass.centroid_error
-        )?;
-        for (i, row) in mass.second_moments.iter().enumerate() {
+        let row = |numbers: &[f64], error: f64| {
+            let numbers: Vec<_> = numbers.iter().map(|x| measured(*x, error)).collect();
+            format!("[{}] ± {error:.1e}", numbers.join(", "))
+        };
+        let centroid = row(&mass.centroid.0, mass.centroid_error);
+        writeln!(out, "  {:<15}{centroid} m", "centroid")?;
+        for (i, moments) in mass.second_moments.iter().enumerate() {
             let what = if i == 0 { "second moments" } else { "" };
-            let error = mass.second_moments_error;
-            let row: Vec<_> = row.iter().map(|moment| format!("{moment:.6e}")).collect();
-            let row = row.join(", ");
-            writeln!(out, "  {what:<15}[{row}] ± {error:.1e} {moment_unit}")?;
+            let moments = row(moments, mass.second_moments_error);
+            writeln!(out, "  {what:<15}{moments} {moment_unit}")?;
         }
     }
     if options.json {

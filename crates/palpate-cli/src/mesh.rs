@@ -11,6 +11,7 @@ use serde_json::json;
 
 use crate::arguments::MeshOptions;
 use crate::kind::Kind;
+use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, shown};
 
@@ -26,7 +27,7 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
     let report = mesh.report();
     let is_good = report.is_watertight() && report.degenerate == 0;
     let mut out = output::answer();
-    let hint = if options.scale.is_none() { hint(&report) } else { None };
+    let hint = hint(&report, options.scale);
     if options.json {
         let mut answer = as_json(&report, is_good);
         answer["hint"] = hint.into();
@@ -45,16 +46,28 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
 /// Meshes larger than this are rarely touched, and often in millimetres [m].
 const LARGE: f64 = 2.0;
 
+/// Meshes smaller than this cannot be touched [m].
+const SMALL: f64 = 1e-5;
+
 /// What to do if the size of a mesh is that of another unit.
-fn hint(report: &Report<3>) -> Option<String> {
+fn hint(report: &Report<3>, scale: Option<f64>) -> Option<String> {
     let size =
         report.bounds.half_extents().0.into_iter().fold(0.0, |m, x| f64::max(m, 2.0 * x));
-    (size > LARGE).then(|| {
-        format!(
-            "it is {size:.3} m across: if the file is in millimetres, --scale 0.001 makes that \
-             {size:.3} mm"
-        )
-    })
+    let across = rounded(size);
+    match scale {
+        _ if (SMALL..=LARGE).contains(&size) || size <= 0.0 => None,
+        Some(_) => Some(format!(
+            "it is {across} m across: --scale says how many metres a unit of the file is, 0.001 of \
+             a file in millimetres"
+        )),
+        None if size > LARGE => Some(format!(
+            "it is {across} m across: if the file is in millimetres, --scale 0.001 makes that \
+             {across} mm"
+        )),
+        None => Some(format!(
+            "it is {across} m across: --scale enlarges it, if a unit of the file is more than a metre"
+        )),
+    }
 }
 
 /// Why a file is no mesh: what it is instead, or what is wrong with it.
@@ -98,7 +111,7 @@ fn as_json(report: &Report<3>, is_good: bool) -> serde_json::Value {
 }
 
 fn in_words(report: &Report<3>) -> String {
-    let size = (report.bounds.half_extents() * 2.0).0.map(|side| format!("{side:.4}"));
+    let size = (report.bounds.half_extents() * 2.0).0.map(rounded);
     let mut words = format!(
         "{} triangles, {} vertices\n  size     {} m\n  area     {:.6e} m²\n",
         report.elements,

@@ -3,17 +3,99 @@
 
 //! Numbers for readers.
 
+/// Numbers smaller than this are written with an exponent.
+const SMALL: f64 = 1e-6;
+
+/// Numbers of this size and larger ones are written with an exponent.
+const LARGE: f64 = 1e15;
+
+/// A number with all its digits, which are few even if it is very large or very small.
+pub(crate) fn plain(number: f64) -> String {
+    let size = number.abs();
+    let is_long = size >= LARGE && size.is_finite() || size > 0.0 && size < SMALL;
+    if is_long { format!("{number:e}") } else { number.to_string() }
+}
+
 /// A number with four significant digits.
 pub(crate) fn rounded(number: f64) -> String {
-    if number.abs() < f64::MIN_POSITIVE {
+    let size = number.abs();
+    if size < f64::MIN_POSITIVE {
         return "0".to_owned();
     }
-    let digits = 3 - number.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    if !number.is_finite() {
+        return number.to_string();
+    }
+    if !(SMALL..LARGE).contains(&size) {
+        let text = format!("{number:.3e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", without_zeros(digits));
+    }
+    let digits = 3 - size.log10().floor() as i32;
     let unit = 10.0_f64.powi(-digits);
     let text = format!("{:.*}", digits.max(0) as usize, (number / unit).round() * unit);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    without_zeros(&text).to_owned()
+}
+
+/// A decimal without the zeros at its end.
+fn without_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// A number with the digits that an error leaves: the last stands below the error's first, and
+/// there are seven at most.
+pub(crate) fn measured(number: f64, error: f64) -> String {
+    const MOST: i32 = 6;
+    let place = |x: f64| x.abs().log10().floor() as i32;
+    let first = place(number);
+    let digits = if error > 0.0 {
+        first.saturating_sub(place(error)).saturating_add(1).min(MOST)
     } else {
-        text
+        MOST
+    };
+    if digits < 0 || number.abs() < f64::MIN_POSITIVE {
+        return "0".to_owned();
+    }
+    match usize::try_from(digits - first) {
+        Ok(decimals) if (-3..6).contains(&first) => format!("{number:.decimals$}"),
+        _ => format!("{number:.*e}", digits as usize),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_a_reader_needs() {
+        for (number, all, four) in [
+            (0.0, "0", "0"),
+            (-0.25, "-0.25", "-0.25"),
+            (1234.5678, "1234.5678", "1235"),
+            (0.012_345, "0.012345", "0.01235"),
+            (2e15, "2e15", "2e15"),
+            (1.234_56e30, "1.23456e30", "1.235e30"),
+            (-1e-9, "-1e-9", "-1e-9"),
+            (f64::INFINITY, "inf", "inf"),
+        ] {
+            assert_eq!((plain(number), rounded(number)), (all.to_owned(), four.to_owned()));
+        }
+    }
+
+    #[test]
+    fn no_digit_stands_far_below_the_error() {
+        for (number, error, text) in [
+            (4.185_366e-6, 4.1e-9, "4.1854e-6"),
+            (0.5, 1e-5, "0.500000"),
+            (5994.08, 5.9, "5994.1"),
+            (5994.08, 590.0, "5.99e3"),
+            (4.4e-25, 4.6e-10, "0"),
+            (2.0, 3.0, "2.0"),
+            (1.0 / 3.0, 1e-30, "0.3333333"),
+            (1.0 / 3.0, 0.0, "0.3333333"),
+            (-0.0, 1e-3, "0"),
+            (1.5, f64::INFINITY, "0"),
+        ] {
+            assert_eq!(measured(number, error), text, "{number} ± {error}");
+        }
     }
 }

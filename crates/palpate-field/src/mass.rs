@@ -36,6 +36,10 @@ const FLATTEST: f64 = 1e-4;
 /// [`FLATTEST`]⁻² times as large as their sum.
 const CANCELLATION: f64 = 1e-7;
 
+/// Rounding of the middle of a cell, in units of the farthest coordinate's last place: a sum, and
+/// the halvings before it.
+const MIDDLE_ROUNDINGS: f64 = 4.0;
+
 /// The error at which [`Shape::mass`] stops, and the work after which it gives up.
 ///
 /// ```
@@ -294,7 +298,8 @@ struct Filling<const D: usize> {
 }
 
 impl<const D: usize> Filling<D> {
-    fn new(cell: MassCell<D>, model: &Model) -> Self {
+    /// The part that is inside, of a field whose values are off by at most `slack` [m].
+    fn new(cell: MassCell<D>, model: &Model, slack: f64) -> Self {
         let largest = (0..D).fold(0.0_f64, |most, i| most.max(model.gradient[i].abs()));
         let flattest = (FLATTEST * largest).max(f64::MIN_POSITIVE);
         let mut moved = 0.0;
@@ -307,7 +312,8 @@ impl<const D: usize> Filling<D> {
             flattest
         });
         // Rounding of the limits: a few units of the numbers in them.
-        let rounded = 8.0 * f64::EPSILON * (model.value.abs() + D as f64 * largest) + moved;
+        let limits = 8.0 * f64::EPSILON * (model.value.abs() + D as f64 * largest);
+        let rounded = limits + moved + slack;
         let sure = Moments::of_cube_below(&slopes, -model.value - model.upper - rounded);
         let possible = Moments::of_cube_below(&slopes, -model.value + model.lower + rounded);
         let mut moments = Moments::ZERO;
@@ -325,15 +331,17 @@ impl<const D: usize> Filling<D> {
     }
 }
 
-/// Fills cells, in blocks of models.
-fn fill<const D: usize>(
+/// Fills cells about `middle`, in blocks of models.
+fn filled<const D: usize>(
     shape: &Shape<D>,
     middle: &[f64; D],
+    slack: f64,
     cells: &[MassCell<D>],
-    fillings: &mut Vec<Filling<D>>,
-) where
+) -> Vec<Filling<D>>
+where
     dyn Field<D>: EvaluateBlock<Model, D, BLOCK>,
 {
+    let mut fillings = Vec::with_capacity(cells.len());
     let mut block = Block::<Model, D, BLOCK>::zero();
     let mut values = Column::<Model, BLOCK>::zero();
     for cells in cells.chunks(BLOCK) {
@@ -343,9 +351,13 @@ fn fill<const D: usize>(
         }
         shape.block_distances(&block, cells.len(), &mut values);
         fillings.extend(
-            cells.iter().enumerate().map(|(i, cell)| Filling::new(*cell, &values.get(i))),
+            cells
+                .iter()
+                .enumerate()
+                .map(|(i, cell)| Filling::new(*cell, &values.get(i), slack)),
         );
     }
+    fillings
 }
 
 impl<const D: usize> Shape<D> {
@@ -353,7 +365,8 @@ impl<const D: usize> Shape<D> {
     /// bounds on their errors.
     ///
     /// Cells are cut until the error of the volume is below the tolerance or the limit
-    /// of cells is reached: then the errors are larger, and say so.
+    /// of cells is reached: then the errors are larger, and say so. Curves and sheets have no
+    /// inside, and a volume of zero.
     ///
     /// ```
     /// use palpate_field::{MassLimits, Shape, Vector, kernel::Ball};
@@ -387,12 +400,19 @@ impl<const D: usize> Shape<D> {
         if self.promise().region.is_some() {
             return Err(needs("a shape whose steepness is known everywhere"));
         }
-        let middle = bounds.aabb.centre().0;
-        let mut total = Total::new(&bounds.aabb);
-        let mut cells = vec![MassCell { centre: [0.0; D], half: bounds.aabb.half_extents().0 }];
+        if !self.promise().has_interior {
+            return Ok(Total::new(&bounds.aabb).mass(density, &bounds.aabb.centre().0));
+        }
+        // Far from the origin a box may be smaller than the last place of its coordinates.
+        let far = bounds.aabb.radius_about_origin();
+        let moved = MIDDLE_ROUNDINGS * f64::EPSILON * far * D as f64;
+        let slack = self.promise().rounding.within(far) + self.promise().lipschitz * moved;
+        let aabb = bounds.aabb.grown(slack.max(moved));
+        let middle = aabb.centre().0;
+        let mut total = Total::new(&aabb);
+        let mut cells = vec![MassCell { centre: [0.0; D], half: aabb.half_extents().0 }];
         loop {
-            let mut fillings = Vec::with_capacity(cells.len());
-            fill(self, &middle, &cells, &mut fillings);
+            let fillings = filled(self, &middle, slack, &cells);
             total.cells += cells.len();
             let unsure: f64 = fillings.iter().map(|filling| filling.unsure).sum();
             let volume: f64 = fillings.iter().map(|filling| filling.moments.volume).sum();

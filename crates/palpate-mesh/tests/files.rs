@@ -274,6 +274,13 @@ fn errors_of_text_name_their_line() {
                element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 oops\n0 1 0\n3 0 1 2\n";
     let said = wrong(ply.as_bytes(), Format::Ply);
     assert!(said.starts_with("line 11: "), "{said}");
+    // The parser keeps one of two properties of a name, and drops rows that are not counted.
+    let twice = ply.replace("property float y\n", "property float x\nproperty float y\n");
+    let said = wrong(twice.as_bytes(), Format::Ply);
+    assert_eq!(said, "line 5: a second property \"x\"");
+    let more = format!("{}1 0 0\n3 2 1 0\n", ply.replace("oops", "0"));
+    let said = wrong(more.as_bytes(), Format::Ply);
+    assert_eq!(said, "byte 180: 13 bytes follow the last row that its header counts");
     let cut = ply.replace("oops\n0 1 0\n3 0 1 2\n", "0\n");
     let said = wrong(cut.as_bytes(), Format::Ply);
     assert!(said.ends_with("; the file ends there: it is cut off"), "{said}");

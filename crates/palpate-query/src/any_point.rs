@@ -45,7 +45,9 @@ pub fn any_point<const D: usize>(
 ) -> Result<Certified<Point<D>>, QueryError> {
     let Some(bounds) = shape.promise().bounds else { return Err(QueryError::Unbounded) };
     let size = bounds.aabb.half_extents().norm();
-    let aabb = bounds.aabb.grown(GROWN * size);
+    // Far from the origin, rounding may leave the box itself without a volume.
+    let rounding = shape.promise().rounding.within(bounds.aabb.radius_about_origin());
+    let aabb = bounds.aabb.grown((GROWN * size).max(rounding));
     let around = Shape::cuboid(aabb.half_extents() * 2.0);
     let around = around.map_err(|_| QueryError::Length { value: size })?;
     let around = Placed::new(&around, Pose::translation(aabb.centre()));

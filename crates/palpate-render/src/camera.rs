@@ -67,11 +67,31 @@ impl Sight {
         Ok(Self { right, up: back.cross(right), back })
     }
 
-    /// Perpendicular to a plane with these directions to the right and up, which are unit
-    /// vectors at a right angle.
-    #[must_use]
-    pub fn onto_plane(right: Vector<f64, 3>, up: Vector<f64, 3>) -> Self {
-        Self { right, up, back: right.cross(up) }
+    /// Perpendicular to a plane with this direction to the right, and with one that goes up,
+    /// perhaps askew.
+    ///
+    /// ```
+    /// use palpate_render::Sight;
+    ///
+    /// let sight = Sight::onto_plane([2.0, 0.0, 0.0], [1.0, 1.0, 0.0])?;
+    /// assert_eq!(sight, Sight::from_angles(0.0, 0.0)?);
+    /// # Ok::<(), palpate_render::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If a direction has no length, or both lie on one line.
+    pub fn onto_plane(
+        right: impl Into<Vector<f64, 3>>,
+        up: impl Into<Vector<f64, 3>>,
+    ) -> Result<Self, RenderError> {
+        let (right, up) = (right.into(), up.into());
+        let wrong = |what, got: Vector<f64, 3>| RenderError::NoPlane { what, got: got.0 };
+        let right =
+            right.normalized().ok_or(wrong("what is to the right of a camera", right))?;
+        let back = up.normalized().and_then(|up| right.cross(up).normalized());
+        let back = back.ok_or(wrong("what is up for a camera", up))?;
+        Ok(Self { right, up: back.cross(right), back })
     }
 
     /// The unit vector towards the viewer.
@@ -204,6 +224,15 @@ impl Camera {
 
     /// Perpendicular to the plane of `sight`, so that the picture shows `height` [m] around
     /// `centre`; from `distance` in front of it [m].
+    ///
+    /// ```
+    /// use palpate_render::{Camera, Sight};
+    ///
+    /// let front = Sight::from_angles(0.0, 0.0)?;
+    /// let camera = Camera::facing(front, [0.0, 0.1, 0.0].into(), 0.3, 2.0)?;
+    /// assert_eq!((camera.eye().0, camera.is_orthographic()), ([0.0, 0.1, 2.0], true));
+    /// # Ok::<(), palpate_render::RenderError>(())
+    /// ```
     ///
     /// # Errors
     ///

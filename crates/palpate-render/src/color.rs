@@ -14,7 +14,7 @@ impl Color {
     ///
     /// Those of Okabe and Ito ("Color Universal Design", 2008), ordered so that neighbours
     /// differ most, and lightened where shading would make them black.
-    pub const BODIES: [Self; 8] = [
+    pub const BODIES: [Self; 12] = [
         Self([0x4A, 0x9B, 0xD4]),
         Self([0xE8, 0xA3, 0x1E]),
         Self([0x1F, 0xA5, 0x7E]),
@@ -23,6 +23,10 @@ impl Color {
         Self([0xDC, 0x67, 0x2A]),
         Self([0x33, 0x62, 0xA8]),
         Self([0xA4, 0xA7, 0xAB]),
+        Self([0x7A, 0x4F, 0x9E]),
+        Self([0x9C, 0xC9, 0x5A]),
+        Self([0x8F, 0x5B, 0x3A]),
+        Self([0x6F, 0xD0, 0xD2]),
     ];
 
     /// What lies behind the bodies.

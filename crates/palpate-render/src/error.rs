@@ -33,6 +33,14 @@ pub enum RenderError {
         /// The point [m].
         at: [f64; 3],
     },
+    /// A direction that has no length, or two that lie on one line.
+    #[error("{what} must have a direction of its own, got {got:?}")]
+    NoPlane {
+        /// What the direction was for.
+        what: &'static str,
+        /// The direction.
+        got: [f64; 3],
+    },
     /// A camera within a body, which sees nothing else.
     #[error("the camera at {from:?} m is inside body {body}: move it out")]
     Inside {

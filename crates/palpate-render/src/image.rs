@@ -48,6 +48,22 @@ impl Image {
 
     /// Lays pixels over the picture: red, green, blue and opacity of each, in the same order.
     /// Pixels past the last of either are left out.
+    ///
+    /// ```
+    /// use palpate_field::Shape;
+    /// use palpate_render::{Camera, Color, Lens, Settings, Sight, Subject, render};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let subject = Subject::of_shapes([Shape::ball(0.05)?])?;
+    /// let sight = Sight::from_angles(0.6, 0.4)?;
+    /// let camera = Camera::fitting(&subject.corners(), sight, Lens::USUAL, 1.0)?;
+    /// let drawn = render(&subject, &camera, &Settings::new(8, 8), &|_| true)?;
+    /// let mut image = drawn.ok_or("the watch ended it")?.image;
+    /// image.lay_over(&[[255, 0, 0, 255]]);
+    /// assert_eq!(image.pixels()[0], Color([255, 0, 0]));
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn lay_over(&mut self, layer: &[[u8; 4]]) {
         for (Color(below), [red, green, blue, opacity]) in self.pixels.iter_mut().zip(layer) {
             let share = f64::from(*opacity) / 255.0;
@@ -70,6 +86,27 @@ impl Image {
 
 /// Writes pictures of one size as an animated PNG that repeats without end, each shown for
 /// `delay_ms` [ms]; programs that know no animations show the first.
+///
+/// ```
+/// use palpate_field::{Shape, Vector};
+/// use palpate_render::{Camera, Lens, Settings, Sight, Subject, render, write_animation};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let subject = Subject::of_shapes([Shape::cuboid([0.1; 3])?])?;
+/// let sight = Sight::from_angles(0.6, 0.4)?;
+/// let camera = Camera::fitting(&subject.corners(), sight, Lens::USUAL, 1.0)?;
+/// let mut frames = Vec::new();
+/// for angle in [0.0, 0.5] {
+///     let camera = camera.turned(angle, Vector::ZERO);
+///     let drawn = render(&subject, &camera, &Settings::new(8, 8), &|_| true)?;
+///     frames.push(drawn.ok_or("the watch ended it")?.image);
+/// }
+/// let mut file = Vec::new();
+/// write_animation(&frames, 100, &mut file)?;
+/// assert!(file.starts_with(b"\x89PNG"));
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 ///

@@ -4,6 +4,7 @@
 //! What a picture shows: bodies with their colours.
 
 use palpate_field::{Aabb, BoundingBall, Point, Shape, Vector};
+use palpate_query::QueryError;
 
 use crate::color::Color;
 use crate::error::RenderError;
@@ -27,12 +28,37 @@ pub struct Body {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
     /// A point of the plane [m].
-    pub point: Point<3>,
+    pub(crate) point: Point<3>,
     /// The unit normal.
-    pub normal: Vector<f64, 3>,
+    pub(crate) normal: Vector<f64, 3>,
 }
 
 impl Cut {
+    /// The plane through `point` [m] that is perpendicular to `normal`.
+    ///
+    /// ```
+    /// use palpate_render::{Cut, Settings};
+    ///
+    /// let cut = Cut::new([0.0, 0.0, 0.01], [0.0, 0.0, 2.0])?;
+    /// let settings = Settings::new(64, 48).with_cut(Some(cut));
+    /// assert!(Cut::new([0.0; 3], [0.0; 3]).is_err());
+    /// # Ok::<(), palpate_render::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If the point is not finite or beyond 1e15, or the normal has no direction.
+    pub fn new(
+        point: impl Into<Point<3>>,
+        normal: impl Into<Vector<f64, 3>>,
+    ) -> Result<Self, RenderError> {
+        let (point, normal) = (point.into(), normal.into());
+        QueryError::check_point("a point of a cut", point)?;
+        let wrong = RenderError::NoPlane { what: "the normal of a cut", got: normal.0 };
+        let normal = normal.normalized().ok_or(wrong)?;
+        Ok(Self { point, normal })
+    }
+
     /// The distance of a point from the plane, positive where bodies are cut away [m].
     pub(crate) fn elevation(&self, point: Point<3>) -> f64 {
         (point - self.point).dot(self.normal)

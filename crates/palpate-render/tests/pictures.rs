@@ -67,7 +67,7 @@ fn letters(image: &Image) -> String {
 fn a_small_picture_is_as_it_was() {
     let settings = Settings::new(32, 24).with_ground(Some(-0.01));
     insta::assert_snapshot!("whole", letters(&rendered(&settings).image));
-    let cut = Cut { point: Vector([0.0, 0.0, 0.01]), normal: Vector([0.0, 0.0, 1.0]) };
+    let cut = Cut::new([0.0, 0.0, 0.01], [0.0, 0.0, 1.0]).unwrap();
     let settings = settings.with_cut(Some(cut)).with_shadows(Shadows::None);
     insta::assert_snapshot!("cut", letters(&rendered(&settings).image));
 }
@@ -131,7 +131,7 @@ fn a_cut_shows_what_is_behind_it() {
     };
     let [whole, none, ..] = shares(&image(&settings));
     assert!(whole > 0.3 && none == 0.0, "{whole} {none}");
-    let cut = Cut { point: Vector([0.0, 0.0, 0.2]), normal: Vector([0.0, 0.0, 1.0]) };
+    let cut = Cut::new([0.0, 0.0, 0.2], [0.0, 0.0, 1.0]).unwrap();
     let [_, inner, ..] = shares(&image(&settings.with_cut(Some(cut))));
     // A disc of √(0.5² − 0.2²) m in a picture of 3.2 m by 2.4 m, pale, but for its outline.
     let expected = std::f64::consts::PI * (0.25 - 0.04) / (3.2 * 2.4);
@@ -232,6 +232,14 @@ fn wrong_input_says_what_is_wrong() {
     assert_eq!(
         Sight::from_angles(0.0, 2.0).unwrap_err().to_string(),
         "elevation must be from -pi/2 to pi/2, got 2.0 rad"
+    );
+    assert_eq!(
+        Sight::onto_plane([1.0, 0.0, 0.0], [-2.0, 0.0, 0.0]).unwrap_err().to_string(),
+        "what is up for a camera must have a direction of its own, got [-2.0, 0.0, 0.0]"
+    );
+    assert_eq!(
+        Cut::new([0.0; 3], [f64::NAN; 3]).unwrap_err().to_string(),
+        "the normal of a cut must have a direction of its own, got [NaN, NaN, NaN]"
     );
     assert_eq!(
         Subject::new(Vec::new()).unwrap_err().to_string(),

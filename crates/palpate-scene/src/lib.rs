@@ -69,7 +69,7 @@ pub use encoding::{NotUtf8, utf8};
 pub use error::{SceneCause, SceneError, SceneProblem};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use motion::{Motion, Repeat};
-pub use names::{near as near_names, unknown as unknown_name};
+pub use names::{near as near_names, shortened, unknown as unknown_name};
 pub use pose::{AxisAngle, WrittenPose, WrittenRotation};
 pub use scene::{Dimension, Scene, WrittenBody};
 pub use schema::{schema, schema_text};

@@ -12,8 +12,14 @@ const LONGEST_LIST: usize = 16;
 /// The most names that a message proposes.
 const MOST_GUESSES: usize = 8;
 
-/// The beginning of `text`, fit for a message: on one line.
-pub(crate) fn shortened(text: &str) -> String {
+/// The beginning of `text`, fit for a message: 60 characters at most, on one line.
+///
+/// ```
+/// assert_eq!(palpate_scene::shortened("two\nlines"), r"two\nlines");
+/// assert_eq!(palpate_scene::shortened(&"9".repeat(1000)).chars().count(), 61);
+/// ```
+#[must_use]
+pub fn shortened(text: &str) -> String {
     let mut shown = String::new();
     for c in text.chars().take(LONGEST_QUOTE) {
         if c.is_control() { shown.extend(c.escape_default()) } else { shown.push(c) }

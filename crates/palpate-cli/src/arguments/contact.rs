@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::{at_least, length, length_or_zero, zero_or_more};
+use super::numbers::{count, length, length_or_zero, zero_or_more};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -61,6 +61,6 @@ pub(crate) struct ContactQuestion {
     pub(crate) tolerance: Option<f64>,
     /// The budget: the most evaluations of fields for each pair; 200000 if left out. The round
     /// that reaches it is finished.
-    #[arg(long, allow_negative_numbers = true, value_parser = at_least(1_u32))]
+    #[arg(long, allow_negative_numbers = true, value_parser = count(1, u32::MAX))]
     pub(crate) budget: Option<u32>,
 }

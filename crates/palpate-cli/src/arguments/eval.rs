@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::at_least;
+use super::numbers::count;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -38,7 +38,7 @@ pub(crate) struct EvalOptions {
     pub(crate) output: Option<PathBuf>,
     /// The number of threads; as many as the machine has if left out. Answers have the same
     /// bits for any number.
-    #[arg(long, requires = "points", allow_negative_numbers = true, value_parser = at_least(1_usize))]
+    #[arg(long, requires = "points", allow_negative_numbers = true, value_parser = count(1, 1_000_000_usize))]
     pub(crate) threads: Option<usize>,
     /// Print JSON: one object, or one per line for many points.
     #[arg(long)]

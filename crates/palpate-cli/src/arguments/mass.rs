@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::{at_least, positive};
+use super::numbers::{count, positive};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -16,7 +16,8 @@ Examples:
 
 Second moments are the integrals of density times products of coordinates about the
 centroid; the inertia tensor is their trace times the identity, minus the second moments.
-In 2D a body is one metre thick. Status 1 if the error of a volume stays above the tolerance.";
+In 2D a body is one metre thick. Status 1 if the error of a volume stays above the tolerance,
+or a body has none because it is endless.";
 
 /// The options of `palpate mass`.
 #[derive(Args, Debug)]
@@ -29,8 +30,8 @@ pub(crate) struct MassOptions {
     /// The relative error of the volume at which to stop.
     #[arg(long, allow_negative_numbers = true, default_value = "0.001", value_parser = positive(""))]
     pub(crate) tolerance: f64,
-    /// The budget: the most cells; a million take 160 MB.
-    #[arg(long, allow_negative_numbers = true, default_value = "3000000", value_parser = at_least(1_usize))]
+    /// The budget: the most cells, up to 100 million; a million take 160 MB.
+    #[arg(long, allow_negative_numbers = true, default_value = "3000000", value_parser = count(1, 100_000_000_usize))]
     pub(crate) cells: usize,
     /// Print JSON.
     #[arg(long)]

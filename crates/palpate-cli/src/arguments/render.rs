@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use palpate::render::Settings;
 
 use super::ContactQuestion;
-use super::numbers::{at_least, coordinate, count, length, positive, within, zero_or_more};
+use super::numbers::{coordinate, count, length, positive, within, zero_or_more};
 
 /// The most pictures of a turntable.
 const MOST_PICTURES: u32 = 3600;
@@ -80,7 +80,7 @@ pub(crate) struct RenderOptions {
     #[arg(long, default_value_t = 4, allow_negative_numbers = true, value_parser = count(1, 8_u32))]
     pub(crate) samples: u32,
     /// The most evaluations of the field for each ray.
-    #[arg(long = "ray-budget", default_value_t = Settings::BUDGET, allow_negative_numbers = true, value_parser = at_least(1_u32))]
+    #[arg(long = "ray-budget", default_value_t = Settings::BUDGET, allow_negative_numbers = true, value_parser = count(1, u32::MAX))]
     pub(crate) ray_budget: u32,
     /// An animation of so many pictures from all around.
     #[arg(long, value_name = "PICTURES", allow_negative_numbers = true, value_parser = count(1, MOST_PICTURES))]
@@ -102,7 +102,7 @@ pub(crate) struct RenderOptions {
     pub(crate) height: u32,
     /// The number of threads; as many as the machine has if left out. The picture has the same
     /// bits.
-    #[arg(long, allow_negative_numbers = true, value_parser = at_least(1_usize))]
+    #[arg(long, allow_negative_numbers = true, value_parser = count(1, 1_000_000_usize))]
     pub(crate) threads: Option<usize>,
     /// Print what was drawn as JSON.
     #[arg(long)]

@@ -6,12 +6,13 @@
 use std::collections::BTreeSet;
 
 use palpate::query::{
-    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, QueryError,
-    Stop, Verdict, WorldSettings, proof, separation,
+    Certified, Contact, Limits, Nearest, Neighbours, PairWorkspace, Placed, Proof, Stop,
+    Verdict, WorldSettings, proof, separation,
 };
 use palpate::scene::{BuiltBody, BuiltScene};
 
 use crate::arguments::ContactQuestion;
+use crate::emptiness::empty_bodies;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 
@@ -25,7 +26,9 @@ pub(crate) struct Question {
 pub(crate) struct Pair<const D: usize> {
     pub(crate) bodies: [usize; 2],
     pub(crate) verdict: Verdict,
-    /// `None` if neither body has bounds.
+    /// One of the bodies that is proven to have no point: nothing touches it.
+    pub(crate) empty: Option<usize>,
+    /// `None` if neither body has bounds, or one has no point.
     pub(crate) separation: Option<Certified<Nearest<D>>>,
     /// Where the bodies touch; for bodies that are apart, the witness points.
     pub(crate) contacts: Vec<Contact<D>>,
@@ -74,13 +77,16 @@ impl Question {
     ) -> Result<Vec<Pair<D>>, Failure> {
         let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
         let ids = world.bodies().collect::<Vec<_>>();
-        if !asked.bodies.is_empty() {
-            for (i, id) in ids.iter().enumerate() {
-                // Bodies of the second group touch those of the first alone.
-                let (groups, mask) =
-                    if asked.bodies.contains(&i) { (1, u32::MAX) } else { (2, 1) };
-                world.set_groups(*id, groups, mask).map_err(Failure::input)?;
-            }
+        let empty = empty_bodies(scene);
+        for (i, id) in ids.iter().enumerate() {
+            // Bodies of the second group touch those of the first alone, empty ones none.
+            let is_asked = asked.bodies.is_empty() || asked.bodies.contains(&i);
+            let (groups, mask) = match (empty[i], is_asked) {
+                (true, _) => (0, 0),
+                (false, true) => (1, u32::MAX),
+                (false, false) => (2, 1),
+            };
+            world.set_groups(*id, groups, mask).map_err(Failure::input)?;
         }
         let margin = self.settings.manifold.margin;
         let mut pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
@@ -89,44 +95,46 @@ impl Question {
             let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
             let is_left = |bodies: &[usize; 2]| asked.has(*bodies) && !known.contains(bodies);
             let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
-            pairs.extend(self.apart(scene, is_left, lower, interrupt)?);
+            let all = (0..empty.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
+            for bodies in all.filter(is_left) {
+                if interrupt.is_asked() {
+                    break;
+                }
+                pairs.push(match bodies.into_iter().find(|body| empty[*body]) {
+                    Some(body) => without_points(bodies, body),
+                    None => {
+                        self.apart(scene, bodies, lower(bodies).map_err(Failure::input)?)?
+                    }
+                });
+            }
         }
         Ok(pairs)
     }
 
-    /// The pairs that are left, each with its separation and a `lower` bound of it that is known;
-    /// fewer if interrupted.
+    /// A pair that the world did not find near, and a `lower` bound of its separation that is
+    /// known.
     fn apart<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
-        is_left: impl Fn(&[usize; 2]) -> bool,
-        lower: impl Fn([usize; 2]) -> Result<f64, QueryError>,
-        interrupt: &Interrupt,
-    ) -> Result<Vec<Pair<D>>, Failure> {
-        let mut workspace = PairWorkspace::new();
-        let mut pairs = Vec::new();
-        let all = (0..scene.bodies.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
-        for bodies in all.filter(is_left) {
-            if interrupt.is_asked() {
-                return Ok(pairs);
-            }
-            let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
-            let mut found = separation(a, b, &self.settings.limits, &mut workspace)
-                .map_err(Failure::input)?;
-            // What is proven stays proven, whatever the budget allowed now.
-            found.lower = found.lower.max(lower(bodies).map_err(Failure::input)?);
-            let margin = self.settings.manifold.margin;
-            pairs.push(Pair {
-                bodies,
-                verdict: Verdict::of_bounds([found.lower, found.upper], margin),
-                contacts: found.best.contact(a, b).into_iter().collect(),
-                separation: Some(found),
-                groups: Vec::new(),
-                dropped: 0,
-                region_stop: Stop::Converged,
-            });
-        }
-        Ok(pairs)
+        bodies: [usize; 2],
+        lower: f64,
+    ) -> Result<Pair<D>, Failure> {
+        let [a, b] = bodies.map(|i| placed(&scene.bodies[i]));
+        let mut found = separation(a, b, &self.settings.limits, &mut PairWorkspace::new())
+            .map_err(Failure::input)?;
+        // What is proven stays proven, whatever the budget allowed now.
+        found.lower = found.lower.max(lower);
+        let margin = self.settings.manifold.margin;
+        Ok(Pair {
+            bodies,
+            verdict: Verdict::of_bounds([found.lower, found.upper], margin),
+            empty: None,
+            contacts: found.best.contact(a, b).into_iter().collect(),
+            separation: Some(found),
+            groups: Vec::new(),
+            dropped: 0,
+            region_stop: Stop::Converged,
+        })
     }
 
     /// The separation of two bodies with its proof.
@@ -140,12 +148,27 @@ impl Question {
     }
 }
 
+/// A pair of which `empty` has no point.
+fn without_points<const D: usize>(bodies: [usize; 2], empty: usize) -> Pair<D> {
+    Pair {
+        bodies,
+        verdict: Verdict::Apart,
+        empty: Some(empty),
+        separation: None,
+        contacts: Vec::new(),
+        groups: Vec::new(),
+        dropped: 0,
+        region_stop: Stop::Converged,
+    }
+}
+
 /// A pair that the world found.
 fn near<const D: usize>(found: &Neighbours<D>, margin: f64) -> Pair<D> {
     let manifold = found.manifold.as_ref();
     Pair {
         bodies: found.bodies.map(|body| body.index()),
         verdict: found.verdict(margin),
+        empty: None,
         separation: manifold.map(|manifold| manifold.separation),
         contacts: found.contacts().to_vec(),
         groups: manifold.map_or_else(Vec::new, |manifold| manifold.groups.clone()),

@@ -72,7 +72,10 @@ impl<const D: usize> Report<'_, D> {
                 found.stop,
                 found.evaluations
             ),
-            None => ", neither has bounds".to_owned(),
+            None => match pair.empty {
+                Some(empty) => format!(", {} has no point", shown(self.names[empty])),
+                None => ", neither has bounds".to_owned(),
+            },
         };
         if let (Verdict::Undecided, Some(why)) = (pair.verdict, self.undecided(pair)) {
             words += &format!("\n       undecided: {why}");
@@ -173,6 +176,9 @@ impl<const D: usize> Report<'_, D> {
         });
         let key = if pair.verdict == Verdict::Apart { "witnesses" } else { "contacts" };
         said[key] = json!(contacts);
+        if let Some(empty) = pair.empty {
+            said["empty"] = json!(self.names[empty]);
+        }
         if let Some(found) = &pair.separation {
             said["separation_m"] = json!({ "lower": found.lower, "upper": found.upper });
             said["stop"] = json!(found.stop.to_string());
@@ -194,10 +200,18 @@ fn contact_in_words<const D: usize>(contact: &Contact<D>) -> String {
 }
 
 fn millimetres(length: f64) -> String {
-    format!("{:.4}", 1e3 * length)
+    decimal(1e3 * length, 4)
 }
 
 fn joined<const D: usize>(numbers: [f64; D], digits: usize) -> String {
-    // Adding zero turns −0 into 0.
-    numbers.map(|x| format!("{:.digits$}", x + 0.0)).join(", ")
+    numbers.map(|x| decimal(x, digits)).join(", ")
+}
+
+/// A number with so many decimals, without a sign if they are all zero.
+fn decimal(number: f64, digits: usize) -> String {
+    let text = format!("{number:.digits$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
+        _ => text,
+    }
 }

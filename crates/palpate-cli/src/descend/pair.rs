@@ -94,7 +94,13 @@ impl<const D: usize> Answer<'_, D> {
             let kind = if found.value <= 0.0 { "a point in both" } else { "no point in both" };
             writeln!(out, "from         {start} m: {kind}")?;
             writeln!(out, "  best point {} m", joined(&found.best.0))?;
-            writeln!(out, "  value      {} m", found.value)?;
+            writeln!(
+                out,
+                "  value      {} m, the larger of both fields; twice it, {} m, compares with a \
+                 separation",
+                found.value,
+                2.0 * found.value
+            )?;
             writeln!(out, "  steps      {} ({} evaluations)", found.steps, found.evaluations)?;
         }
         let bounds = joined(&[certified.lower, certified.upper]);
@@ -132,10 +138,11 @@ impl<const D: usize> Answer<'_, D> {
             .with_markers(Markers::new("start", starts.map(on_plane))?)
             .with_markers(Markers::new("best found", best)?)
             .with_markers(Markers::new("proven", proven)?);
-        let found: Vec<_> = self.found.iter().map(|found| written(found.value)).collect();
+        // The value at a point half way between two bodies is half their separation.
+        let found: Vec<_> = self.found.iter().map(|found| written(2.0 * found.value)).collect();
         let [lower, upper] = [self.certified.lower, self.certified.upper].map(written);
         let caption =
-            format!("Found: {}; proven separation: {lower} to {upper}.", found.join(", "));
+            format!("Separation found: {}; proven: {lower} to {upper}.", found.join(", "));
         Ok(Figure::new(title(name)).with_caption(caption).with_isolines(isolines))
     }
 }

@@ -63,6 +63,7 @@ pub(super) fn of_view(
         Window::of_box(&plane, min.0, max.0, picture::MARGIN).map_err(Failure::input)?;
     let from_origin = |st| Vector(plane.point(st)) - Vector(plane.point([0.0; 2]));
     let sight = Sight::onto_plane(from_origin([1.0, 0.0]), from_origin([0.0, 1.0]));
+    let sight = sight.map_err(Failure::input)?;
     let legend = legend.min(MOST_LEGEND);
     let width = view.width.unwrap_or(whole.width());
     let height = view.height.unwrap_or(whole.height()).max(width / aspect(options, legend));

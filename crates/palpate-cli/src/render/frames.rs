@@ -231,8 +231,13 @@ fn said(stage: &Stage<'_>, error: RenderError) -> Failure {
     match error {
         RenderError::Inside { body, from } => {
             let name = &stage.names[body];
+            let advice = if stage.options.from.is_some() {
+                "move it out"
+            } else {
+                "say with --from where it is, or give another --azimuth and --elevation"
+            };
             Failure::input(format!(
-                "the camera at {from:?} m is inside the body {name:?}: move it out"
+                "the camera at {from:?} m is inside the body {name:?}: {advice}"
             ))
         }
         other => Failure::input(other),

@@ -76,7 +76,7 @@ impl<'a> Stage<'a> {
             plane.elevation(self.camera.eye().0)
         };
         let normal = if side < 0.0 { -normal } else { normal };
-        Ok(Some(Cut { point, normal }))
+        Cut::new(point, normal).map(Some).map_err(Failure::input)
     }
 }
 

@@ -77,7 +77,20 @@ impl Header {
     }
 
     /// The places of columns that `what` has.
+    ///
+    /// # Errors
+    ///
+    /// If one is missing, or is there more than once.
     pub(super) fn columns(&self, names: &[&str], what: &str) -> Result<Vec<usize>, String> {
+        for name in names {
+            let count = self.names.iter().filter(|known| known == name).count();
+            if count > 1 {
+                let line = self.line;
+                return Err(format!(
+                    "line {line}: the column {name} is there {count} times; keep the one that is meant"
+                ));
+            }
+        }
         let missing = names.iter().filter(|name| self.place(name).is_none());
         let missing: Vec<_> = missing.map(|name| self.missing(name, names)).collect();
         if missing.is_empty() {
@@ -145,12 +158,14 @@ enum Written {
 }
 
 impl Written {
-    /// The quantity and the unit of a column: `x_mm`, `X [mm]`, `x (mm)`, `x`.
+    /// The quantity and the unit of a column: `x_mm`, `X [mm]`, `x (mm)`, `x`. Of several units, as
+    /// in `x_m [mm]`, the last is taken.
     fn of(column: &str) -> (String, Self) {
         let name = column.trim().to_lowercase();
         let end = name.find(|c: char| !c.is_alphanumeric()).unwrap_or(name.len());
         let (quantity, rest) = name.split_at(end);
-        let unit = rest.trim_matches(|c: char| !c.is_alphanumeric());
+        let mut words = rest.split(|c: char| !c.is_alphanumeric());
+        let unit = words.rfind(|word| !word.is_empty()).unwrap_or_default();
         let unit = UNITS.iter().find(|(symbol, ..)| *symbol == unit);
         let written = unit.map_or(Self::None, |(symbol, measured, parts)| {
             Self::Unit(symbol, measured, *parts)
@@ -178,6 +193,7 @@ mod tests {
             ),
             (&["x [cm]", "y_m"], "`x [cm]` is in cm: divide by 100, and call it x_m"),
             (&["X (in)", "y_m"], "`X (in)` is in in: multiply by 0.0254, and call it x_m"),
+            (&["x_m [mm]", "y_m"], "`x_m [mm]` is in mm: divide by 1000, and call it x_m"),
             (&["X [m]", "y_m"], "rename `X [m]` to x_m"),
             (&["x", "y_m"], "`x` says no unit: if it is in m, call it x_m"),
             (&["x_m", "yy_m"], "there is no y_m, did you mean `yy_m`?"),
@@ -188,6 +204,12 @@ mod tests {
             let has = "line 1: a point has the columns x_m,y_m, the file has";
             assert_eq!(columns(header), format!("{has} {}: {expected}", header.join(",")));
         }
+    }
+
+    #[test]
+    fn a_column_is_there_once() {
+        let expected = "line 1: the column y_m is there 2 times; keep the one that is meant";
+        assert_eq!(columns(&["x_m", "y_m", "y_m"]), expected);
     }
 
     #[test]

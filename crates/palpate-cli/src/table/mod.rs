@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use csv::{ErrorKind, StringRecord};
 use palpate::field::LARGEST_LENGTH;
-use palpate::scene::{NotUtf8, utf8};
+use palpate::scene::{NotUtf8, shortened, utf8};
 
 use crate::input::AXES;
 use crate::kind::Kind;
@@ -196,9 +196,9 @@ fn why_no_number(field: &str) -> String {
     if field.is_empty() {
         format!("{rule}, got nothing")
     } else if field.contains(',') && point.parse::<f64>().is_ok() {
-        format!("{rule}, got {field:?}; a decimal comma is written {point}")
+        format!("{rule}, got \"{field}\"; a decimal comma is written {point}")
     } else {
-        format!("{rule}, got {field:?}")
+        format!("{rule}, got \"{}\"", shortened(field))
     }
 }
 

@@ -49,6 +49,23 @@ fn the_gradients_of_a_disc_are_those_of_its_closed_form() {
     assert!(centre.contains(flat), "{centre}");
 }
 
+/// On the diagonal of a square two sides are equally near, and the gradient is that of one.
+#[test]
+fn where_the_gradient_jumps_none_is_called_exact() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 2, "bodies":
+        [{ "name": "a", "shape": { "rectangle": { "size": [2, 2] } } }] }"#;
+    let scene = folder.write("square.json", scene);
+    let note = "note                 the gradient jumps within the offset of this point: there is \
+                none here, and `exact` is that of one side\n";
+    for (at, jumps) in [("0.5,0.5", true), ("0.5,0.2", false), ("1.5,0.2", false)] {
+        let said = text(&palpate(&["gradients", &scene, "--at", at]));
+        assert_eq!(said.contains(note), jumps, "{at}: {said}");
+        let answer = json(&["gradients", &scene, "--at", at, "--json"]);
+        assert_eq!(answer["gradient_jumps"], jumps);
+    }
+}
+
 #[test]
 fn single_precision_is_what_spoils_the_memoirs_gradients() {
     let star = [

@@ -207,6 +207,49 @@ fn a_body_without_any_point_is_told_of() {
     }
 }
 
+/// A floor without end, a curve, and a ball.
+const ENDLESS: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [
+  { "name": "floor", "shape": { "half_space": { "normal": [0, 1, 0], "offset": 0 } } },
+  { "name": "wire", "shape": { "segment": { "from": [0, 0, 0], "to": [1, 0, 0], "radius": 0 } } },
+  { "name": "box", "shape": { "box": { "size": [0.5, 0.5, 0.5] } } } ] }"#;
+
+#[test]
+fn mass_says_of_each_body_what_it_is() {
+    let folder = Folder::new();
+    folder.write("endless.json", ENDLESS);
+    let mass = folder.run(&["mass", "endless.json", "--tolerance", "0.01"]);
+    let said = text(&mass);
+    let first = "floor: mass needs a shape with bounds\n\
+                 wire, at 1000 kg/m³ (0 cells)\n  \
+                 no inside: curves and sheets have a volume of 0 m³\n\
+                 box, at 1000 kg/m³ (";
+    assert!(said.starts_with(first), "{said}");
+    // Digits below the error say nothing.
+    assert!(said.contains("\n  centroid       [0, 0, 0] ± "), "{said}");
+    assert_eq!((status(&mass), errors(&mass)), (1, String::new()));
+    let answer = folder.run(&["mass", "endless.json", "--tolerance", "0.01", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let floor = json!({ "name": "floor", "problem": "mass needs a shape with bounds" });
+    assert_eq!(answer["bodies"][0], floor);
+    assert_eq!(answer["bodies"][1]["volume"], 0.0);
+}
+
+/// The search for contacts took the surface of an empty body for one that can be touched.
+#[test]
+fn nothing_touches_an_empty_body() {
+    let folder = Folder::new();
+    folder.write("hollow.json", HOLLOW);
+    let said = text(&folder.run(&["contact", "hollow.json", "--body", "none"]));
+    let expected = "none – skin: apart, none has no point\nnone – ball: apart, none has no point\n\
+                    3 bodies: 0 pairs touch (gap up to 0.0800 mm), 2 are apart, 0 undecided\n";
+    assert_eq!(said, expected);
+    let answer = folder.run(&["contact", "hollow.json", "--body", "none", "--json"]);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
+    let pair = &answer["pairs"][1];
+    assert_eq!((&pair["empty"], &pair["verdict"]), (&json!("none"), &json!("apart")));
+    assert_eq!(pair.get("separation_m"), None);
+}
+
 /// What clap says of a value that breaks the rule of its option.
 fn invalid(value: &str, option: &str, rule: &str) -> String {
     format!(
@@ -262,12 +305,7 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
             "must be recorded, simulated:NAME or glove".into(),
         ),
         ("contact", "--margin <MARGIN>", "-1", format!("{length_or_zero}, got -1 m")),
-        (
-            "contact",
-            "--margin <MARGIN>",
-            "1e99",
-            format!("{length_or_zero}, got 1{} m", "0".repeat(99)),
-        ),
+        ("contact", "--margin <MARGIN>", "1e99", format!("{length_or_zero}, got 1e99 m")),
         ("contact", "--spacing <SPACING>", "0", format!("{length}, got 0 m")),
         ("contact", "--tolerance <TOLERANCE>", "nan", format!("{length_or_zero}, got NaN m")),
         (
@@ -280,13 +318,13 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
             "contact",
             "--budget <BUDGET>",
             "0",
-            "must be a whole number of at least 1, got 0".into(),
+            "must be a whole number from 1 to 4294967295, got 0".into(),
         ),
         (
             "contact",
             "--budget <BUDGET>",
             "1e6",
-            "must be a whole number of at least 1, got 1e6".into(),
+            "must be a whole number from 1 to 4294967295, got 1e6".into(),
         ),
         ("contact", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
         ("plot", "--time <TIME>", "-1", format!("{zero_or_more}, got -1 s")),
@@ -295,12 +333,7 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
         ("gradients", "--offset <OFFSET>", "0", format!("{length}, got 0 m")),
         ("gradients", "--offset <OFFSET>", "-1", format!("{length}, got -1 m")),
         ("gradients", "--offset <OFFSET>", "nan", format!("{length}, got NaN m")),
-        (
-            "gradients",
-            "--offset <OFFSET>",
-            "1e16",
-            format!("{length}, got 1{} m", "0".repeat(16)),
-        ),
+        ("gradients", "--offset <OFFSET>", "1e16", format!("{length}, got 1e16 m")),
         ("gradients", "--size <SIZE>", "-1", format!("{length}, got -1 m")),
         ("plot", "--step <STEP>", "0", format!("{length}, got 0 m")),
         (
@@ -318,13 +351,18 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
         ),
         ("mass", "--density <DENSITY>", "-1", format!("{positive}, got -1 kg/m³")),
         ("mass", "--tolerance <TOLERANCE>", "0", format!("{positive}, got 0")),
-        ("mass", "--cells <CELLS>", "0", "must be a whole number of at least 1, got 0".into()),
+        (
+            "mass",
+            "--cells <CELLS>",
+            "0",
+            "must be a whole number from 1 to 100000000, got 0".into(),
+        ),
         ("mesh", "--scale <METRES>", "-1", format!("{length}, got -1 m")),
         (
             "eval",
             "--threads <THREADS>",
             "0",
-            "must be a whole number of at least 1, got 0".into(),
+            "must be a whole number from 1 to 1000000, got 0".into(),
         ),
         ("descend", "--tolerance <TOLERANCE>", "-1", format!("{length_or_zero}, got -1 m")),
     ] {
@@ -371,14 +409,14 @@ fn numbers_of_pictures_keep_the_rules_of_render() {
         ("--step <STEP>", "0", format!("{length}, got 0 m")),
         ("--samples <SAMPLES>", "0", whole("from 1 to 8, got 0")),
         ("--samples <SAMPLES>", "9", whole("from 1 to 8, got 9")),
-        ("--ray-budget <RAY_BUDGET>", "0", whole("of at least 1, got 0")),
+        ("--ray-budget <RAY_BUDGET>", "0", whole("from 1 to 4294967295, got 0")),
         ("--turntable <PICTURES>", "0", whole("from 1 to 3600, got 0")),
         ("--turntable <PICTURES>", "3601", whole("from 1 to 3600, got 3601")),
         ("--turn-time <TURN_TIME>", "0", "must be positive and finite, got 0 s".into()),
         ("--width <WIDTH>", "0", whole("from 1 to 16384, got 0")),
         ("--width <WIDTH>", "-1", whole("from 1 to 16384, got -1")),
         ("--height <HEIGHT>", "99999999999", whole("from 1 to 16384, got 99999999999")),
-        ("--threads <THREADS>", "0", whole("of at least 1, got 0")),
+        ("--threads <THREADS>", "0", whole("from 1 to 1000000, got 0")),
     ] {
         let name = option.split(' ').next().unwrap();
         let said = refused(&folder, &["render", "ball.json", name, value]);
@@ -495,14 +533,14 @@ fn what_a_command_needs_is_said_with_an_example_of_the_scene() {
 fn a_mesh_in_another_unit_gets_a_hint() {
     let nut = ["mesh", "testdata/meshes/nut.ply"];
     let said = text(&palpate(&nut));
-    let hint = "  hint     it is 46.037 m across: if the file is in millimetres, --scale 0.001 makes \
-                that 46.037 mm\n";
+    let hint = "  hint     it is 46.04 m across: if the file is in millimetres, --scale 0.001 makes \
+                that 46.04 mm\n";
     assert!(said.ends_with(hint), "{said}");
     let scaled = [&nut[..], &["--scale", "0.001"]].concat();
     assert!(!text(&palpate(&scaled)).contains("hint"));
     let answer = palpate(&[&nut[..], &["--json"]].concat());
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
-    assert!(answer["hint"].as_str().unwrap().starts_with("it is 46.037 m across"));
+    assert!(answer["hint"].as_str().unwrap().starts_with("it is 46.04 m across"));
     let answer = palpate(&[&scaled[..], &["--json"]].concat());
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
     assert_eq!(answer["hint"], Value::Null);

@@ -143,6 +143,21 @@ fn an_empty_shape_weighs_nothing_and_is_proven_to() -> Result<(), ShapeError> {
     Ok(())
 }
 
+/// A ball of 1 cm at 1e15 m was proven to be empty: its box has no volume there, and its field
+/// rounds to whole decimetres.
+#[test]
+fn what_is_smaller_than_rounding_is_not_proven_to_be_empty() -> Result<(), ShapeError> {
+    let limits = MassLimits::default().with_cells(10_000);
+    let ball = Shape::sphere(0.01)?;
+    for far in [1e9, 1e12, 1e15] {
+        let mass = ball.clone().translated(Vector([far, -far, 0.0]))?.mass(1.0, limits)?;
+        assert!(!mass.is_zero(), "{far}: {mass:?}");
+        let error = (mass.volume - 4e-6 / 3.0 * PI).abs();
+        assert!(error <= mass.volume_error, "{far}: {mass:?}");
+    }
+    Ok(())
+}
+
 #[test]
 fn a_curve_weighs_nothing() -> Result<(), ShapeError> {
     let curve = Segment::<2>::new(Vector([0.0, 0.0]), Vector([1.0, 0.5]), 0.0)?;

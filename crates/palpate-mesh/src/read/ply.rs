@@ -54,6 +54,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     let mut reader = Reader::new(bytes);
     let header = parser.read_header(&mut reader);
     let header = header.map_err(|error| malformed(&error, bytes, &reader))?;
+    if let Some(problem) = doubled_property(bytes) {
+        return Err(Format::Ply.malformed(problem));
+    }
     for element in header.elements.values() {
         // Every row takes a byte at least, so that the file bounds what is read.
         if element.properties.is_empty() || element.count > bytes.len() {
@@ -87,7 +90,39 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
             _ => {}
         }
     }
+    let rest = reader.get_ref().trim_ascii();
+    if !rest.is_empty() {
+        let byte = bytes.len() - reader.get_ref().len();
+        return Err(Format::Ply.malformed(format_args!(
+            "byte {byte}: {} bytes follow the last row that its header counts",
+            rest.len()
+        )));
+    }
     of_polygons(vertices, &sizes, &corners, Format::Ply)
+}
+
+/// A complaint about an element that has two properties of one name, of which a reader would lose
+/// one and misread all others.
+fn doubled_property(bytes: &[u8]) -> Option<String> {
+    let header = bytes.split(|byte| *byte == b'\n').map(|line| line.trim_ascii());
+    let header = header.take_while(|line| *line != b"end_header");
+    let mut names = Vec::new();
+    for (line, text) in (1..).zip(header) {
+        let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        match words.next() {
+            Some(b"element") => names.clear(),
+            Some(b"property") => {
+                let name = words.next_back().unwrap_or_default();
+                if names.contains(&name) {
+                    let name = String::from_utf8_lossy(name);
+                    return Some(format!("line {line}: a second property {name:?}"));
+                }
+                names.push(name);
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 /// An error of the parser with the line of a text, or the byte of a binary file at which it

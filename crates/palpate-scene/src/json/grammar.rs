@@ -402,7 +402,11 @@ impl<'a> Walk<'a> {
     }
 
     fn after_end(&mut self, token: Token<'_>) -> Option<()> {
-        let message = "there is more after the end of the scene; is there a closing bracket too many before it?";
+        let message = if token.text.starts_with('\0') {
+            "zero bytes follow the end of the scene: the file is damaged; save it anew"
+        } else {
+            "there is more after the end of the scene; is there a closing bracket too many before it?"
+        };
         self.stop(token.start, message)
     }
 
@@ -553,6 +557,10 @@ mod tests {
             (
                 "{} |{}",
                 "there is more after the end of the scene; is there a closing bracket too many before it?",
+            ),
+            (
+                "{} |\0\0",
+                "zero bytes follow the end of the scene: the file is damaged; save it anew",
             ),
             (
                 "{\n\"a\": [1|",
