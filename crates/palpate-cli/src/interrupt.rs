@@ -5,6 +5,12 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// How often the program looks whether it is asked to end while a thread works.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// A request to end a run early.
 ///
@@ -62,6 +68,29 @@ impl Interrupt {
         self.asked.load(Ordering::Relaxed)
     }
 
+    /// The result of work that does not look at the flag itself; `None` if the program is asked to
+    /// end before it is known. The thread that works ends with the program.
+    pub(crate) fn unless_asked<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Option<T> {
+        self.heed();
+        let (sender, done) = mpsc::channel();
+        let worker = thread::spawn(move || sender.send(work()));
+        loop {
+            match done.recv_timeout(LOOK) {
+                _ if self.is_asked() => return None,
+                Ok(result) => return Some(result),
+                Err(RecvTimeoutError::Timeout) => {}
+                // The worker panicked, and so does the program.
+                Err(RecvTimeoutError::Disconnected) => match worker.join() {
+                    Ok(_) => return None,
+                    Err(panic) => std::panic::resume_unwind(panic),
+                },
+            }
+        }
+    }
+
     /// The flag, for loops that read it themselves.
     pub(crate) fn flag(&self) -> &AtomicBool {
         &self.asked
@@ -71,5 +100,31 @@ impl Interrupt {
 impl Default for Interrupt {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_left_alone_once_the_program_is_asked_to_end() {
+        let interrupt = Interrupt::new();
+        assert_eq!(interrupt.unless_asked(|| 6 * 7), Some(42));
+        let (hold, held) = mpsc::channel::<()>();
+        let asked = interrupt.asked();
+        let work = move || {
+            asked.store(true, Ordering::Relaxed);
+            // Without end, as the sender is kept.
+            held.recv().is_ok()
+        };
+        assert_eq!(interrupt.unless_asked(work), None);
+        drop(hold);
+    }
+
+    #[test]
+    #[should_panic(expected = "a body without a side")]
+    fn the_program_panics_as_its_work_does() {
+        Interrupt::new().unless_asked(|| panic!("a body without a side"));
     }
 }

@@ -4,11 +4,8 @@
 //! `palpate mass`: computes volume, mass and moments of the bodies of a scene.
 
 use std::io::Write;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
 
-use palpate::field::{Mass, MassLimits, Shape, ShapeError};
+use palpate::field::{Mass, MassLimits};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde_json::{Value, json};
 
@@ -41,9 +38,11 @@ fn report<const D: usize>(
     let mut out = output::answer();
     let mut bodies = Vec::new();
     let mut outcome = Outcome::Yes;
-    interrupt.heed();
     for (done, body) in scene.bodies.iter().enumerate() {
-        let Some(mass) = weighed(&body.shape, options.density, limits, interrupt) else {
+        // A single body may take half a minute.
+        let (shape, density) = (body.shape.clone(), options.density);
+        let mass = interrupt.unless_asked(move || shape.mass(density, limits));
+        let Some(mass) = mass else {
             let all = scene.bodies.len();
             output::remark(format_args!("interrupted after {done} of {all} bodies"));
             outcome = Outcome::Interrupted;
@@ -113,34 +112,6 @@ fn report<const D: usize>(
         out.json(&json!({ "density_kg_per_m3": options.density, "bodies": bodies }))?;
     }
     Ok(outcome)
-}
-
-/// How often the program looks whether it is asked to end while a body is weighed.
-const LOOK: Duration = Duration::from_millis(50);
-
-/// The mass of a shape; `None` if the program is asked to end before it is known. A single body
-/// may take half a minute, so a thread weighs it; the thread ends with the program.
-fn weighed<const D: usize>(
-    shape: &Shape<D>,
-    density: f64,
-    limits: MassLimits,
-    interrupt: &Interrupt,
-) -> Option<Result<Mass<D>, ShapeError>> {
-    let (sender, weighed) = mpsc::channel();
-    let shape = shape.clone();
-    let worker = thread::spawn(move || sender.send(shape.mass(density, limits)));
-    loop {
-        match weighed.recv_timeout(LOOK) {
-            _ if interrupt.is_asked() => return None,
-            Ok(mass) => return Some(mass),
-            Err(RecvTimeoutError::Timeout) => {}
-            // The worker panicked, and so does the program.
-            Err(RecvTimeoutError::Disconnected) => match worker.join() {
-                Ok(_) => return None,
-                Err(panic) => std::panic::resume_unwind(panic),
-            },
-        }
-    }
 }
 
 /// Writes infinite errors as null, and so the centroid of what is empty.

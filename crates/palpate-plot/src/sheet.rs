@@ -42,8 +42,8 @@ impl Sheet {
         for row in self.tiles.chunks(self.columns) {
             for (column, tile) in row.iter().enumerate() {
                 let left = area.min[0] + column as f64 * (width + BETWEEN);
-                draw_tile(drawing, tile, &Rect::new(left, top, width, width));
-                tile.tile_legend().into_iter().for_each(|entry| merge(&mut entries, entry));
+                let seen = draw_tile(drawing, tile, &Rect::new(left, top, width, width));
+                seen.into_iter().for_each(|entry| merge(&mut entries, entry));
             }
             top += NAME + width + SCALE + BETWEEN;
         }
@@ -67,8 +67,9 @@ fn merge(entries: &mut Vec<Entry>, entry: Entry) {
     }
 }
 
-/// Draws name, picture and scale bar from the top left corner of `place`.
-fn draw_tile(drawing: &mut Drawing, tile: &Isolines, place: &Rect) {
+/// Draws name, picture and scale bar from the top left corner of `place`; returns the entries of
+/// the legend.
+fn draw_tile(drawing: &mut Drawing, tile: &Isolines, place: &Rect) -> Vec<Entry> {
     let [left, top] = place.min;
     let style = TextStyle::TILE;
     let name = shorten(tile.title(), style.size, style.weight, place.width());
@@ -78,7 +79,7 @@ fn draw_tile(drawing: &mut Drawing, tile: &Isolines, place: &Rect) {
     let (width, height) = (scale * width, scale * height);
     let margin = [(place.width() - width) / 2.0, (place.height() - height) / 2.0];
     let plot = Rect::new(left + margin[0], top + NAME + margin[1], width, height);
-    tile.draw_tile(drawing, plot);
+    let entries = tile.draw_tile(drawing, plot);
     let length = round_down(BAR * place.width() / scale);
     let (right, base) = (place.max[0], top + NAME + place.height() + SCALE - 6.0);
     let start = right - length * scale;
@@ -86,4 +87,5 @@ fn draw_tile(drawing: &mut Drawing, tile: &Isolines, place: &Rect) {
     drawing.stroke(Path::line(&bar), Stroke::new(Color::INK, 1.2));
     let style = TextStyle::TICK;
     drawing.label(&write_length(length), [start - 6.0, base + 0.5], Anchor::End, style);
+    entries
 }

@@ -56,7 +56,12 @@ fn answer<const D: usize>(
     let scene = moved.as_ref().unwrap_or(scene);
     let count = pairs_of(names.len(), bodies.len());
     let asked = Asked { bodies: &bodies, is_every: options.every_pair || count <= FEW_PAIRS };
-    let pairs = question.pairs(scene, &asked, interrupt)?;
+    let Some(pairs) = question.pairs(scene, &asked, interrupt)? else {
+        output::remark(
+            "interrupted before it was known which bodies touch; nothing is reported",
+        );
+        return Ok(Outcome::Interrupted);
+    };
     let report = report::Report {
         question: &question,
         names: &names,

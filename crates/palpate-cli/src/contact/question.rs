@@ -68,13 +68,13 @@ impl Question {
     }
 
     /// The pairs that touch or are undecided; and, if asked for, those that are apart: fewer of
-    /// them if interrupted.
+    /// them if interrupted. `None` if interrupted before it is known which bodies touch.
     pub(crate) fn pairs<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
         asked: &Asked<'_>,
         interrupt: &Interrupt,
-    ) -> Result<Vec<Pair<D>>, Failure> {
+    ) -> Result<Option<Vec<Pair<D>>>, Failure> {
         let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
         let ids = world.bodies().collect::<Vec<_>>();
         let empty = empty_bodies(scene);
@@ -89,9 +89,12 @@ impl Question {
             world.set_groups(*id, groups, mask).map_err(Failure::input)?;
         }
         let margin = self.settings.manifold.margin;
-        let mut pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
+        let stepped = interrupt.unless_asked(move || {
+            let pairs: Vec<_> = world.step().into_iter().map(|p| near(p, margin)).collect();
+            (world, pairs)
+        });
+        let Some((world, mut pairs)) = stepped else { return Ok(None) };
         if asked.is_every {
-            interrupt.heed();
             let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
             let is_left = |bodies: &[usize; 2]| asked.has(*bodies) && !known.contains(bodies);
             let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
@@ -108,7 +111,7 @@ impl Question {
                 });
             }
         }
-        Ok(pairs)
+        Ok(Some(pairs))
     }
 
     /// A pair that the world did not find near, and a `lower` bound of its separation that is

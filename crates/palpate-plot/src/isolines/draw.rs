@@ -105,8 +105,9 @@ impl Isolines {
         (bottom - area.min[1], [self.legend(&bodies), overlays.entries].concat())
     }
 
-    /// Draws the field alone into `plot` [px], with the axes of the plane.
-    pub(crate) fn draw_tile(&self, drawing: &mut Drawing, plot: Rect) {
+    /// Draws field and overlays into `plot` [px], with the axes of the plane and no names.
+    /// Returns the entries of the legend.
+    pub(crate) fn draw_tile(&self, drawing: &mut Drawing, plot: Rect) -> Vec<Entry> {
         let frame = Frame::new(self.view, plot);
         let levels = self.drawn_levels();
         let picture = self.picture(&levels, frame, Side::Inside);
@@ -117,16 +118,19 @@ impl Isolines {
         }
         let [x, y] = frame.pixel([0.0; 2]);
         let axes = [[[x, plot.min[1]], [x, plot.max[1]]], [[plot.min[0], y], [plot.max[0], y]]];
-        for axis in axes.iter().filter(|axis| plot.contains(axis[0])) {
-            drawing.stroke(Path::line(axis), axis_stroke());
-        }
+        let seen = axes.iter().filter(|axis| plot.contains(axis[0]));
+        let has_axes = seen.clone().count() > 0;
+        seen.for_each(|axis| drawing.stroke(Path::line(axis), axis_stroke()));
         picture.draw_lines(drawing, &lines);
         picture.draw_surface(drawing, &lines);
+        let overlays = Overlays::new(frame, &self.overlays);
+        let labels = overlays.place_labels(&mut Occupied::default());
+        overlays.draw(drawing, &labels);
         drawing.stroke(Path::rect(&plot), Stroke::new(Color::MUTED, 0.75));
+        [self.tile_legend(has_axes), overlays.entries].concat()
     }
 
-    /// What [`draw_tile`](Self::draw_tile) draws.
-    pub(crate) fn tile_legend(&self) -> Vec<Entry> {
+    fn tile_legend(&self, has_axes: bool) -> Vec<Entry> {
         let mut entries = self.legend(&Bodies::default());
         // Each tile has its own step, and its own promises of both sides.
         entries.retain(|entry| !matches!(&entry.key, Key::Line(line) if line.width < 1.0));
@@ -134,6 +138,9 @@ impl Isolines {
             if let Key::Promised(promised) = entry.key {
                 *entry = promised.entry();
             }
+        }
+        if !has_axes {
+            return entries;
         }
         let [right, up] = self.axis_arrows();
         let way = if up.sign > 0.0 { "up" } else { "down" };
