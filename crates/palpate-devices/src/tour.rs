@@ -3,6 +3,7 @@
 
 //! A generated hand path over a shape: around it, along its surface, into it and away again.
 
+mod aim;
 mod orbit;
 mod smoothing;
 
@@ -240,9 +241,19 @@ impl<const D: usize> Tour<D> {
         let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
         let height = ORBIT_HEIGHT * self.size + self.probe_radius;
-        let mut sights: Vec<Sight<D>> = orbit(&self.bounds, height, step, count)
+        let sights = orbit(&self.bounds, height, step, count)
             .map(|from| self.look(shape, from))
             .collect();
+        self.pressed(shape, sights, step)
+    }
+
+    /// The path of the hand over what rays see whose feet are `step` apart [m].
+    fn pressed(
+        &self,
+        shape: &Shape<D>,
+        mut sights: Vec<Sight<D>>,
+        step: f64,
+    ) -> Result<Route<D>, DeviceError> {
         if sights.iter().all(|s| s.seen.is_none()) {
             return Err(DeviceError::NothingToTouch);
         }
@@ -363,6 +374,21 @@ impl<const D: usize> Tour<D> {
         let length = (from - foot).norm();
         let up = (from - foot) * (1.0 / length);
         let seen = self.trace(shape, from, up, length);
+        let height = seen.as_ref().map_or(0.0, |seen| seen.height);
+        Sight { foot, up, height, seen }
+    }
+
+    /// The ray that comes down from `length` above `foot` [m], against `up`. A ray that begins in
+    /// a body sees nothing.
+    fn look_down(
+        &self,
+        shape: &Shape<D>,
+        foot: Point<D>,
+        up: Vector<f64, D>,
+        length: f64,
+    ) -> Sight<D> {
+        let seen = self.trace(shape, foot + up * length, up, length);
+        let seen = seen.filter(|seen| seen.height < length);
         let height = seen.as_ref().map_or(0.0, |seen| seen.height);
         Sight { foot, up, height, seen }
     }
