@@ -7,14 +7,14 @@
 
 use palpate_haptics::Servo;
 
-/// Forces below this are not felt [N]: a hundredth of the weight of a paper clip's gram.
+/// Forces below this are not felt [N]: a hundredth of the weight of a gram.
 const FELT: f64 = 1e-4;
 
 /// A contact point that is inside a body in the first tick of a run.
 ///
-/// A proxy comes from outside, so a point that begins inside has none that it followed: its force
-/// rises from zero, and what it would give to the hand, the passivity controller holds back, since
-/// the hand has pressed nothing in.
+/// A proxy follows from outside; of a point that begins inside, none is known. If one is found
+/// outside the body, the force rises from zero; if none is found, there is no force until the
+/// point leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -25,11 +25,12 @@ pub struct StartInside {
     pub body: u32,
     /// How deep the point is below the surface offset by the probe's radius [m]: `r − f`.
     pub depth: f64,
-    /// Ticks from the start without a force that is felt, as long as the point has not left the
-    /// body.
+    /// Ticks from the start without a force, as long as the point has not left the body.
     pub ticks_without_force: u64,
     /// The time of these ticks [s].
     pub time_without_force: f64,
+    /// `true` if a force was felt before the point left: more than 0.1 mN.
+    pub is_felt: bool,
     /// `true` if the point left the body during the run.
     pub has_left: bool,
 }
@@ -37,15 +38,8 @@ pub struct StartInside {
 /// The points that begin inside, in preallocated memory.
 #[derive(Clone, Debug)]
 pub(crate) struct StartTally {
-    starts: Vec<Option<Start>>,
+    starts: Vec<Option<StartInside>>,
     has_begun: bool,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Start {
-    report: StartInside,
-    /// `true` once a force was felt.
-    is_felt: bool,
 }
 
 impl StartTally {
@@ -61,38 +55,40 @@ impl StartTally {
         let radius = if servo.tool().is_some() { 0.0 } else { servo.options().probe.radius() };
         for ((point, touch), start) in (0..).zip(servo.touches()).zip(&mut self.starts) {
             if is_first && touch.device.is_finite() {
-                let (value, body) = servo.bodies().everything().nearest(touch.device);
-                let is_inside = touch.contact || value < 0.0;
-                let (depth, body) = match touch.contact {
-                    true => (touch.depth(), touch.body),
-                    false => (radius - value, body),
+                let (value, nearest) = servo.bodies().everything().nearest(touch.device);
+                let (depth, body) = if touch.contact {
+                    (touch.depth(), touch.body)
+                } else {
+                    (radius - value, nearest)
                 };
-                let report = StartInside {
+                let (ticks_without_force, time_without_force) = (0, 0.0);
+                let (is_felt, has_left) = (false, false);
+                *start = (touch.contact || value < 0.0).then_some(StartInside {
                     point,
                     body,
                     depth,
-                    ticks_without_force: 0,
-                    time_without_force: 0.0,
-                    has_left: false,
-                };
-                *start = is_inside.then_some(Start { report, is_felt: false });
+                    ticks_without_force,
+                    time_without_force,
+                    is_felt,
+                    has_left,
+                });
             }
-            let Some(start) = start.as_mut().filter(|start| !start.report.has_left) else {
+            let Some(start) = start.as_mut().filter(|start| !start.has_left) else { continue };
+            let value = |at| servo.bodies().everything().nearest(at).0;
+            start.has_left = !touch.contact && value(touch.device) >= radius;
+            if start.has_left {
                 continue;
-            };
-            let is_out = || servo.bodies().everything().nearest(touch.device).0 >= radius;
-            start.report.has_left = !touch.contact && is_out();
+            }
             start.is_felt |= touch.force.norm() > FELT;
-            let is_without = !start.report.has_left && !start.is_felt;
-            start.report.ticks_without_force += u64::from(is_without);
+            start.ticks_without_force += u64::from(!start.is_felt);
         }
     }
 
     /// The points that began inside.
     pub(crate) fn reports(&self, rate: f64) -> Vec<StartInside> {
-        let of = |start: &Start| StartInside {
-            time_without_force: start.report.ticks_without_force as f64 / rate,
-            ..start.report
+        let of = |start: &StartInside| StartInside {
+            time_without_force: start.ticks_without_force as f64 / rate,
+            ..*start
         };
         self.starts.iter().flatten().map(of).collect()
     }

@@ -9,7 +9,7 @@ use palpate_devices::{DeviceError, HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{ServoOptions, UnprotectedServo};
+use palpate_haptics::{Probe, ServoOptions, UnprotectedServo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 const DURATION: f64 = 20.0;
@@ -126,6 +126,33 @@ fn a_tour_touches_every_body() {
         }
     }
     assert_eq!(touched, [true; 4]);
+}
+
+/// A tour pressed a probe of 1e-7 m to 3/4 of its radius, and felt nothing.
+#[test]
+fn a_tour_presses_a_tiny_probe_as_deep_as_a_point() {
+    let largest = |shape: &Shape<3>, radius: f64| {
+        let bounds = shape.promise().bounds.unwrap().aabb;
+        let tour = Tour::new(bounds, 5.0).unwrap().with_probe_radius(radius).unwrap();
+        let mut device = RecordedDevice::new(vec![tour.over(shape).unwrap()]).unwrap();
+        let probe = Probe::new(radius).unwrap();
+        let options = ServoOptions::default().with_max_force(f64::INFINITY).with_probe(probe);
+        let mut servo =
+            without_limits(UnprotectedServo::new(shape.clone(), 1, options).unwrap());
+        let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
+        let report = run(&mut servo, &mut device, options).unwrap();
+        assert_eq!(report.evaluations.budget_spent, 0, "{radius}");
+        (report.largest_force, report.contact_time)
+    };
+    for shape in [ball(0.5), ball(0.05), cuboid([0.2, 0.01, 0.2])] {
+        let (force, time) = largest(&shape, 0.0);
+        assert!(force > 0.2, "{force}");
+        for radius in [1e-7, 1e-6, 5e-6] {
+            let (its, its_time) = largest(&shape, radius);
+            assert!((its - force).abs() < 0.01 * force, "{radius}: {its} N, a point {force} N");
+            assert!((its_time - time).abs() < 0.01 * time, "{radius}: {its_time} s, {time} s");
+        }
+    }
 }
 
 /// A table of 1 m with its top at y = 0.
