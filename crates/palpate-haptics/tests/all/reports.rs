@@ -62,8 +62,9 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
     assert_eq!((first.point, first.body, first.has_left), (0, 1, true));
     // 1 mm and the probe's radius of 2 mm.
     assert!((first.depth - 0.003).abs() < 1e-15, "{first:?}");
-    // 1 mm below the surface, after 499 ms, the field leads out, and the force rises.
-    assert!(first.is_felt && (499..=501).contains(&first.ticks_without_force), "{first:?}");
+    // Half the budget, 32 evaluations, leads a proxy up by 3 mm each; near 0.41 m that is enough to
+    // come to where the field has a gradient.
+    assert!(first.is_felt && (400..=420).contains(&first.ticks_without_force), "{first:?}");
     assert_eq!(first.time_without_force, first.ticks_without_force as f64 / 1000.0);
     assert_eq!((second.point, second.has_left, second.is_felt), (1, false, false));
     assert_eq!(second.ticks_without_force, 1000);
