@@ -9,6 +9,7 @@ mod common;
 mod contact;
 mod descents;
 mod error_maps;
+mod feel;
 mod gradients;
 mod interrupted;
 mod memoir;
