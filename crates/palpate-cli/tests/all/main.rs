@@ -8,6 +8,7 @@ mod balls;
 mod common;
 mod contact;
 mod descents;
+mod documented;
 mod error_maps;
 mod feel;
 mod gradients;
