@@ -3,6 +3,8 @@
 
 //! What a run may ask of time and memory, refused before any of it is taken.
 
+use palpate::servo_loop::TraceRow;
+
 use crate::outcome::Failure;
 
 /// The most rows that a run keeps: an hour of one contact point at 1 kHz.
@@ -31,16 +33,25 @@ pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
     Ok(ticks)
 }
 
-/// The rows of a run that are kept, if they are not too many.
-pub(super) fn rows(count: f64) -> Result<usize, Failure> {
+/// The rows of a run that are kept, if they are not too many, and the system has memory for them.
+pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
+    const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer --points";
     if count > MOST_ROWS {
         let problem = format!(
-            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; shorten --duration, \
-             lower --rate, or use fewer --points"
+            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}"
         );
         return Err(Failure::input(problem));
     }
-    Ok(count.max(0.0).ceil() as usize)
+    let rows = count.max(0.0).ceil() as usize;
+    // Memory that is only reserved costs nothing; a recorder that gets none would end the program.
+    if Vec::<TraceRow<D>>::new().try_reserve_exact(rows).is_err() {
+        let memory = 1e-9 * (rows * size_of::<TraceRow<D>>()) as f64;
+        return Err(Failure::input(format!(
+            "--trace, --plot and --wav keep {rows} rows of this run, {memory:.1} GB of memory, \
+             which the system does not give; {SHORTEN}"
+        )));
+    }
+    Ok(rows)
 }
 
 /// Refuses paths for so many contact points along a way of so many samples, if they take too

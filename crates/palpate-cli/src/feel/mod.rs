@@ -77,7 +77,7 @@ where
             let ticks = limits::ticks(touring, options.rate)?;
             let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
             if outputs.keep_ticks() {
-                limits::rows(ticks * points as f64)?;
+                limits::rows::<D>(ticks * points as f64)?;
             }
             match tool {
                 Some(tool) => vec![tool.path(touring)?],
@@ -102,7 +102,7 @@ where
     let accepted = servo.accepted().to_vec();
 
     let keeps_rows = outputs.keep_ticks();
-    let rows = if keeps_rows { limits::rows(ticks * contacts as f64)? } else { 0 };
+    let rows = if keeps_rows { limits::rows::<D>(ticks * contacts as f64)? } else { 0 };
     let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));

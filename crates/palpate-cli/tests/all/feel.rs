@@ -3,7 +3,7 @@
 
 //! What `palpate feel` says of its run, and what it refuses before one.
 
-use crate::common::{Folder, assert_refused, errors, json, palpate, status, text};
+use crate::common::{Folder, assert_refused, errors, json, palpate, root, status, text};
 use crate::pictures::words;
 
 const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
@@ -101,6 +101,28 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
         &["feel", &scene, "--path", &short, "--rate", "10"],
         "a run of 0.01 s has no tick at 10 Hz; the least duration is 0.05 s",
     );
+}
+
+/// The program ended without a word where it got no memory for its rows.
+#[cfg(target_os = "linux")]
+#[test]
+fn rows_that_the_system_has_no_memory_for_are_refused() {
+    let folder = Folder::new();
+    let trace = folder.name("trace.csv");
+    let shell = "ulimit -v 1000000; exec \"$@\"";
+    let feel = ["feel", "scenes/s1.json", "--fast", "--duration", "3600", "--trace", &trace];
+    let output = std::process::Command::new("sh")
+        .args(["-c", shell, "sh", env!("CARGO_BIN_EXE_palpate")])
+        .args(feel)
+        .current_dir(root(""))
+        .output()
+        .unwrap();
+    let said = errors(&output);
+    let start = "palpate: --trace, --plot and --wav keep 3600000 rows of this run, ";
+    let end = " GB of memory, which the system does not give; shorten --duration, lower --rate, \
+               or use fewer --points\n";
+    assert!(said.starts_with(start) && said.ends_with(end), "{said}");
+    assert_eq!(status(&output), 2);
 }
 
 #[test]
