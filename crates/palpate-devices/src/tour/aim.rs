@@ -32,6 +32,10 @@ const ENOUGH: f64 = 0.1;
 /// presses less: a part of 1 cm is felt with 0.15 N at 500 N/m.
 const VISIT_DEPTH: f64 = 0.03;
 
+/// The steepest that the hand goes down to a surface in a visit: down a steeper wall, it would
+/// leave its proxy behind at the edge. It flies over what a steeper place hides.
+const STEEPEST_WAY: f64 = 2.0;
+
 /// The least part of a visit's time that flights leave, as a part of the equal share.
 const LEAST_SHARE: f64 = 0.25;
 
@@ -299,9 +303,11 @@ impl<const D: usize> Outlook<'_, D> {
         let feet = wound(target, tour.speed * time);
         let way: f64 = feet.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
         let count = (way / (STEP * tour.detail())).clamp(100.0, MOST_POINTS) as usize;
+        let step = way / count as f64;
         let sights = evenly(&feet, count).into_iter();
-        let sights = sights.map(|foot| self.look(foot, target.up)).collect();
-        let mut route = tour.pressed(self.whole, sights, way / count as f64).ok()?;
+        let mut sights: Vec<_> = sights.map(|foot| self.look(foot, target.up)).collect();
+        hide(&mut sights, STEEPEST_WAY * step);
+        let mut route = tour.pressed(self.whole, sights, step).ok()?;
         route.passed.iter_mut().for_each(|way| *way /= tour.speed);
         Some(route)
     }
@@ -435,6 +441,23 @@ fn wound<const D: usize>(target: &Target<D>, way: f64) -> Vec<Point<D>> {
         axes.fold(target.foot, |foot, (axis, swing)| foot + *axis * swing)
     };
     (0..=WAY_POINTS).map(place).collect()
+}
+
+/// Takes away what rays see beside a place from which the way down is steeper than `fall` [m] from
+/// ray to ray.
+fn hide<const D: usize>(sights: &mut [Sight<D>], fall: f64) {
+    let mut cover: Vec<f64> = sights.iter().map(|sight| sight.height).collect();
+    for i in 1..cover.len() {
+        cover[i] = cover[i].max(cover[i - 1] - fall);
+    }
+    for i in (1..cover.len()).rev() {
+        cover[i - 1] = cover[i - 1].max(cover[i] - fall);
+    }
+    for (sight, cover) in sights.iter_mut().zip(cover) {
+        if cover > sight.height {
+            sight.seen = None;
+        }
+    }
 }
 
 /// `count + 1` places at equal distances along a line.
