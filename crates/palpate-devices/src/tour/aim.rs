@@ -32,12 +32,18 @@ const ENOUGH: f64 = 0.1;
 /// presses less: a part of 1 cm is felt with 0.15 N at 500 N/m.
 const VISIT_DEPTH: f64 = 0.03;
 
+/// The grain of what is seen of a body, as a part of its extents: the hand lands on rims that wide.
+const VISIT_GRAIN: f64 = 0.5;
+
 /// The steepest that the hand goes down to a surface in a visit: down a steeper wall, it would
 /// leave its proxy behind at the edge. It flies over what a steeper place hides.
 const STEEPEST_WAY: f64 = 2.0;
 
 /// The least part of a visit's time that flights leave, as a part of the equal share.
 const LEAST_SHARE: f64 = 0.25;
+
+/// The fewest sweeps over a body in a visit: a figure of eight; one would be a straight line.
+const FEWEST_SWEEPS: f64 = 2.0;
 
 /// The most sweeps over a body in a visit: neighbouring ones are then a twelfth of it apart.
 const MOST_SWEEPS: f64 = 12.0;
@@ -294,7 +300,7 @@ impl<const D: usize> Outlook<'_, D> {
         }));
         let size = 2.0 * reach;
         let tour = Tour {
-            bounds: Aabb::centred(sizes * 2.0),
+            bounds: Aabb::centred(sizes * (2.0 * VISIT_GRAIN)),
             size,
             speed: self.tour.speed * (size / self.tour.size).sqrt(),
             depth: Some(self.tour.depth().min(VISIT_DEPTH * size)),
@@ -433,7 +439,7 @@ fn across<const D: usize>(up: Vector<f64, D>) -> Vec<Vector<f64, D>> {
 /// middle: `sin(2πmt)` along the first axis and `sin(2πt)` along the second.
 fn wound<const D: usize>(target: &Target<D>, way: f64) -> Vec<Point<D>> {
     let reach = target.reach();
-    let sweeps = (way / (4.0 * reach)).round().clamp(1.0, MOST_SWEEPS);
+    let sweeps = (way / (4.0 * reach)).round().clamp(FEWEST_SWEEPS, MOST_SWEEPS);
     let place = |i: usize| {
         let part = std::f64::consts::TAU * (i as f64 / WAY_POINTS as f64);
         let swings = [libm::sin(sweeps * part), libm::sin(part)];

@@ -9,7 +9,7 @@ use palpate_devices::{DeviceError, HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{Probe, ServoOptions, UnprotectedServo};
+use palpate_haptics::{Bodies, Body, Material, Probe, ServoOptions, Surface, UnprotectedServo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 const DURATION: f64 = 20.0;
@@ -167,13 +167,26 @@ fn at(shape: Shape<3>, place: [f64; 3]) -> Shape<3> {
 /// Which of the bodies a tour touches that visits each.
 fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) -> Vec<bool> {
     let whole = Shape::union(bodies.iter().cloned()).unwrap();
-    let path = Tour::new(bounds, duration).unwrap().over_each(&whole, bodies).unwrap();
+    let tour = Tour::new(bounds, duration).unwrap();
+    let path = tour.over_each(&whole, bodies).unwrap();
     assert_eq!((path.start(), path.duration()), (0.0, duration));
     // Pressed to 1.5 mm of the probe's 2 mm, and between two points a little more.
     for tick in 0..=(duration * 1e3) as u32 {
         let hand = path.state_at(f64::from(tick) * 1e-3).position;
         assert!(whole.distance(hand) > 0.002 - 1.5 * 0.0015, "deep at {tick} ms: {hand:?}");
     }
+    // No proxy is left behind in a visit, on the other side of an edge.
+    let parts = bodies.iter().map(|shape| {
+        Body::new(shape.clone(), Surface::new(&Material::default()).unwrap()).unwrap()
+    });
+    let scene = Bodies::new(parts.collect()).unwrap();
+    let servo = UnprotectedServo::new(scene, 1, ServoOptions::default()).unwrap();
+    let mut device = RecordedDevice::new(vec![path.clone()]).unwrap();
+    let options = RunOptions::new(duration).with_pace(Pace::AsFastAsPossible);
+    let report = run(&mut without_limits(servo), &mut device, options).unwrap();
+    let is_visit = tour.over(&whole).as_ref() != Ok(&path);
+    let deep = report.largest_depth;
+    assert!(deep < 0.003 || !is_visit, "{deep} m deep in {duration} s");
     let touches = |body: &Shape<D>| path.positions().iter().any(|p| body.distance(*p) < 0.0019);
     bodies.iter().map(touches).collect()
 }
@@ -214,6 +227,10 @@ fn a_tour_visits_bodies_in_the_plane() {
     let disc = |x: f64| ball::<2>(0.01).translated(Vector([x, 0.01])).unwrap();
     let bodies = vec![disc(-0.37), floor, disc(0.21)];
     assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 3]);
+    // Between floor and roof, the disc is seen from the side alone.
+    let mut bodies = bodies;
+    bodies.push(cuboid([1.0, 0.02]).translated(Vector([0.0, 0.1])).unwrap());
+    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 4]);
 }
 
 /// Below a table top, and in a box that is open on one side.
