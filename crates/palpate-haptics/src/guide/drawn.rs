@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Lines that show a guide in a picture.
+//! Lines that show a guide in a picture. They are no part of a tick: they allocate.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -134,60 +134,4 @@ fn circles<const D: usize>(centre: Point<D>, radius: f64) -> Vec<Vec<Point<D>>> 
         (0..=CORNERS).map(corner).collect()
     };
     pairs.map(circle).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::guide::{Curve, GuideOptions};
-
-    fn within() -> Aabb<3> {
-        Aabb { min: Vector([-1.0, 0.0, -2.0]), max: Vector([1.0, 3.0, 2.0]) }
-    }
-
-    #[test]
-    fn a_line_that_misses_the_box_is_not_drawn() {
-        let options = GuideOptions::default();
-        let missing = Guide::along_line([0.0, 5.0, 0.0], [1.0, 0.0, 0.0], options).unwrap();
-        assert!(missing.lines_within(&within()).is_empty());
-        let slanted = Guide::along_line([0.0, 1.0, 0.0], [1.0, 1.0, 0.0], options).unwrap();
-        let [line] = &slanted.lines_within(&within())[..] else { panic!("one line") };
-        let ends = [Vector([-1.0, 0.0, 0.0]), Vector([1.0, 2.0, 0.0])];
-        assert!(line.iter().zip(ends).all(|(a, b)| (*a - b).norm() < 1e-15), "{line:?}");
-    }
-
-    #[test]
-    fn a_plane_is_two_lines_in_it() {
-        let normal = Vector([0.3, 1.0, -0.2]);
-        let plane = Guide::on_plane([0.1, 1.5, 0.2], normal, GuideOptions::default()).unwrap();
-        let lines = plane.lines_within(&within());
-        assert_eq!(lines.len(), 2);
-        for line in &lines {
-            assert!((line[1] - line[0]).dot(normal).abs() < 1e-14);
-            assert!((line[0] - Vector([0.1, 1.5, 0.2])).dot(normal).abs() < 1e-14);
-        }
-        let flat = Guide::on_plane([0.0, 0.0], [0.0, 1.0], GuideOptions::default()).unwrap();
-        assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0; 2]))).len(), 1);
-    }
-
-    #[test]
-    fn points_curves_and_wells_are_drawn_where_they_are() {
-        let options = GuideOptions::default();
-        let point = Guide::to_point([0.5, 1.0, 0.0], options).unwrap();
-        let cross = point.lines_within(&within());
-        assert_eq!((cross.len(), cross[1][0][0]), (3, 0.5));
-        let corners = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
-        let curve = Guide::along_curve(Curve::polyline(&corners).unwrap(), options).unwrap();
-        let flat = Aabb::centred(Vector([1.0; 2]));
-        assert_eq!(
-            (curve.kind_name(), curve.lines_within(&flat)),
-            ("curve", vec![corners.to_vec()])
-        );
-        let well = Guide::well([0.1, 0.2, 0.3], 0.05, options).unwrap();
-        let circles = well.lines_within(&within());
-        assert_eq!(circles.len(), 3);
-        let centre = Vector([0.1, 0.2, 0.3]);
-        let is_on = |p: &Point<3>| ((*p - centre).norm() - 0.05).abs() < 1e-15;
-        assert!(circles.iter().flatten().all(is_on));
-    }
 }
