@@ -3,6 +3,7 @@
 
 //! A generated hand path over a shape: around it, along its surface, into it and away again.
 
+mod aim;
 mod orbit;
 mod smoothing;
 
@@ -93,6 +94,11 @@ const DEPTH: f64 = 0.01;
 /// The depth that keeps the force continuous over edges, as a part of the probe's radius.
 const SMOOTH_DEPTH: f64 = 0.75;
 
+/// A probe up to this radius counts as a point [m]: pressed to a part of its radius, it would feel
+/// nothing, because 1e-5 m deep in 500 N/m are 5 mN. A shape so small that this is deep is pressed
+/// to a part of its own size.
+const POINT_RADIUS: f64 = 1e-5;
+
 /// The least time between two samples, as a part of the time for one step of the orbit.
 const SHORTEST_STEP: f64 = 0.3;
 
@@ -134,7 +140,8 @@ impl<const D: usize> Tour<D> {
     /// With the size `s` of the box (its longest edge) and by default, the hand slides
     /// at `0.3 √(s · 1 m)` a second (0.1 m/s over a scene of 0.1 m, 0.3 m/s over one of 1 m),
     /// touches with the default probe, and presses `0.01 s` deep, but at most 3/4 of the probe's
-    /// radius, so that the force is continuous over every edge.
+    /// radius, so that the force is continuous over every edge. A probe of at most 1e-5 m
+    /// radius is a point, which is pressed `0.01 s` deep.
     ///
     /// # Errors
     ///
@@ -223,8 +230,8 @@ impl<const D: usize> Tour<D> {
     /// The depth to which the hand presses [m].
     fn depth(&self) -> f64 {
         let felt = DEPTH * self.size;
-        let smooth =
-            if self.probe_radius > 0.0 { SMOOTH_DEPTH * self.probe_radius } else { felt };
+        let is_ball = self.probe_radius > POINT_RADIUS;
+        let smooth = if is_ball { SMOOTH_DEPTH * self.probe_radius } else { felt };
         self.depth.unwrap_or(felt.min(smooth))
     }
 
@@ -240,9 +247,19 @@ impl<const D: usize> Tour<D> {
         let count = (way / (STEP * self.detail())).clamp(100.0, MOST_POINTS) as usize;
         let step = way / count as f64;
         let height = ORBIT_HEIGHT * self.size + self.probe_radius;
-        let mut sights: Vec<Sight<D>> = orbit(&self.bounds, height, step, count)
+        let sights = orbit(&self.bounds, height, step, count)
             .map(|from| self.look(shape, from))
             .collect();
+        self.pressed(shape, sights, step)
+    }
+
+    /// The path of the hand over what rays see whose feet are `step` apart [m].
+    fn pressed(
+        &self,
+        shape: &Shape<D>,
+        mut sights: Vec<Sight<D>>,
+        step: f64,
+    ) -> Result<Route<D>, DeviceError> {
         if sights.iter().all(|s| s.seen.is_none()) {
             return Err(DeviceError::NothingToTouch);
         }
@@ -363,6 +380,21 @@ impl<const D: usize> Tour<D> {
         let length = (from - foot).norm();
         let up = (from - foot) * (1.0 / length);
         let seen = self.trace(shape, from, up, length);
+        let height = seen.as_ref().map_or(0.0, |seen| seen.height);
+        Sight { foot, up, height, seen }
+    }
+
+    /// The ray that comes down from `length` above `foot` [m], against `up`. A ray that begins in
+    /// a body sees nothing.
+    fn look_down(
+        &self,
+        shape: &Shape<D>,
+        foot: Point<D>,
+        up: Vector<f64, D>,
+        length: f64,
+    ) -> Sight<D> {
+        let seen = self.trace(shape, foot + up * length, up, length);
+        let seen = seen.filter(|seen| seen.height < length);
         let height = seen.as_ref().map_or(0.0, |seen| seen.height);
         Sight { foot, up, height, seen }
     }

@@ -26,7 +26,7 @@
 //! # What is promised
 //!
 //! - *The proxy crosses no surface.* It moves only where an evaluation and the field's
-//!   Lipschitz constant prove the path free, at any speed of the hand. A probe of radius zero may
+//!   Lipschitz constant prove the path free, at any speed of the hand. A probe that is a point may
 //!   cross walls thinner than 1e-4 of the bounding radius.
 //! - *The step always ends, in bounded work.* [`Servo::step`] allocates nothing, takes no lock,
 //!   does not panic and evaluates the shape at most [`Probe::budget`] times for each contact

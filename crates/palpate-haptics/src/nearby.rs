@@ -135,6 +135,25 @@ impl<'a, const D: usize> Nearby<'a, D> {
         (seen.distance, seen.gradient)
     }
 
+    /// The least of the fields at a point [m], and the index of its body.
+    ///
+    /// ```
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::{Bodies, Body, Surface};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let disc = || Body::new(Shape::circle(0.5)?, Surface::default());
+    /// let right = disc()?.at(Pose::translation(Vector([2.0, 0.0])))?;
+    /// let bodies = Bodies::new(vec![disc()?, right])?;
+    /// assert_eq!(bodies.everything().nearest(Vector([1.75, 0.0])), (-0.25, 1));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn nearest(&self, p: Point<D>) -> (f64, u32) {
+        self.distance(p, &Punctured::default())
+    }
+
     pub(crate) fn all(&self) -> impl Iterator<Item = (u32, &'a Body<D>)> {
         let bodies = self.bodies.bodies();
         let count = self.list.map_or(bodies.len(), <[u32]>::len);

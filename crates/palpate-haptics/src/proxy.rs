@@ -59,7 +59,8 @@ impl Probe {
     /// A ball of `radius` [m]; a radius of zero makes a point.
     ///
     /// A point does not cross walls thicker than 1e-4 of the radius of the shape's bounding
-    /// ball; a ball crosses no wall.
+    /// ball; a ball crosses no wall. A ball smaller than 2e-5 of that radius moves as a point
+    /// does, and touches where its surface is.
     ///
     /// # Errors
     ///
@@ -221,7 +222,7 @@ impl<const D: usize> Proxy<D> {
     /// Follows the device point to `device` [m] as far as the bodies let it.
     ///
     /// Free space costs one evaluation. The proxy moves only along paths that are proven free,
-    /// so it crosses no wall at any speed, except that a probe of radius zero may cross one thinner
+    /// so it crosses no wall at any speed, except that a [point](Probe::new) may cross one thinner
     /// than 1e-4 of the bounding radius. It rests at points with `f ≥ r − 1e-9 R`, with the
     /// field's value `f`, the probe's radius `r` and the radius `R` of the ball around all
     /// bodies.

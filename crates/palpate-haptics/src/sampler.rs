@@ -22,8 +22,9 @@ const ROUNDINGS: f64 = 4.0;
 const POINT_SKIN: f64 = 5e-5;
 
 /// A probe smaller than this part of the scene is treated as a point: a skin as small as its
-/// radius would allow only tiny steps.
-const POINT_RADIUS: f64 = 1e-6;
+/// radius would allow only tiny steps, and a fast hand would leave its proxy behind. A larger part
+/// would take probes for points that a hand can tell from them, and their walls with them.
+const POINT_RADIUS: f64 = 2e-5;
 
 /// A gradient shorter than this part of the Lipschitz constant says nothing about the surface:
 /// it belongs to a ridge, a blend or a centre.

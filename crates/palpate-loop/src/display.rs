@@ -62,10 +62,14 @@ impl Display for Lateness {
 mod tests {
     use super::*;
     use crate::report::Tally;
+    use palpate_haptics::{DeviceProfile, Protection, ServoOptions, UnprotectedServo};
 
     #[test]
     fn a_report_is_a_sentence_with_its_ending() {
-        let tally = Tally::new(1, 1000.0);
+        let circle = palpate_field::Shape::circle(0.05).unwrap();
+        let servo = UnprotectedServo::new(circle, 1, ServoOptions::default()).unwrap();
+        let profile = DeviceProfile::unlimited("none");
+        let tally = Tally::new(&servo.protected(&Protection::new(profile)).unwrap());
         let report = tally.report(Ending::Finished, true, 0, Vec::new());
         let said = "0 ticks at 1000 Hz, 0.000 s in contact, at most 0.000 N; finished";
         assert_eq!(report.to_string(), said);

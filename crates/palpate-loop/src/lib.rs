@@ -39,22 +39,26 @@
 
 mod clock;
 mod display;
+mod guide_report;
 mod pacer;
 mod priority;
 mod recorder;
 mod report;
 mod run;
 mod servo_loop;
+mod start_report;
 mod statistics;
 mod thread;
 mod tool_report;
 
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
+pub use guide_report::GuideReport;
 pub use pacer::{Lateness, Pace};
 pub use priority::{Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};
 pub use report::{Ending, Evaluations, RunError, RunReport};
 pub use run::{Motion, Run, RunOptions, Seconds, Watch, run, run_on};
+pub use start_report::StartInside;
 pub use statistics::{Bucket, Distribution};
 pub use thread::{EndedThread, ServoThread, StartError, ThreadOptions};
 pub use tool_report::ToolReport;

@@ -3,7 +3,9 @@
 
 //! The report of a run.
 
+use crate::guide_report::{GuideReport, GuideTally};
 use crate::recorder::TickTimes;
+use crate::start_report::{StartInside, StartTally};
 use crate::statistics::{Distribution, Times};
 use crate::tool_report::{ToolReport, ToolTally};
 use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
@@ -47,6 +49,10 @@ pub struct RunReport {
     pub events: EventCounts,
     /// The report of each contact point's safety chain; empty for a device that gives no force.
     pub safety: Vec<SafetyReport>,
+    /// The contact points that were inside a body in the first tick.
+    pub starts_inside: Vec<StartInside>,
+    /// The report of each guide of the servo.
+    pub guides: Vec<GuideReport>,
     /// The report of the tool; `None` if the servo renders contact points.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
@@ -131,7 +137,7 @@ pub enum Ending {
 
 /// Counts during a run, in preallocated memory.
 #[derive(Debug)]
-pub(crate) struct Tally {
+pub(crate) struct Tally<const D: usize> {
     points: usize,
     rate: f64,
     ticks: u64,
@@ -145,14 +151,17 @@ pub(crate) struct Tally {
     cost: Times,
     lateness: Times,
     events: EventCounts,
+    starts: StartTally,
+    guides: GuideTally<D>,
     tool: Option<ToolTally>,
 }
 
-impl Tally {
-    pub(crate) fn new(points: usize, rate: f64) -> Self {
+impl<const D: usize> Tally<D> {
+    pub(crate) fn new(servo: &Servo<D>) -> Self {
+        let points = servo.touches().len();
         Self {
             points,
-            rate,
+            rate: servo.options().rate,
             ticks: 0,
             contact_ticks: 0,
             missed_deadlines: 0,
@@ -164,6 +173,8 @@ impl Tally {
             cost: Times::new(),
             lateness: Times::new(),
             events: EventCounts::default(),
+            starts: StartTally::new(points),
+            guides: GuideTally::new(servo),
             tool: None,
         }
     }
@@ -179,11 +190,7 @@ impl Tally {
     /// Counts a tick, and returns the progress for other threads.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn tick<const D: usize>(
-        &mut self,
-        times: TickTimes,
-        servo: &Servo<D>,
-    ) -> Progress {
+    pub(crate) fn tick(&mut self, times: TickTimes, servo: &Servo<D>) -> Progress {
         let (touches, mut budget) = (servo.touches(), servo.options().probe.budget());
         if let Some(tool) = servo.tool() {
             budget = tool.options().budget;
@@ -191,6 +198,8 @@ impl Tally {
             let written = is_turned.then(|| servo.torque());
             self.tool.get_or_insert_default().tick(tool, written);
         }
+        self.starts.tick(servo);
+        self.guides.tick(servo);
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
@@ -245,6 +254,8 @@ impl Tally {
             rows_dropped,
             events: self.events,
             safety,
+            starts_inside: self.starts.reports(self.rate),
+            guides: self.guides.reports(self.rate),
             tool: self.tool.as_ref().map(ToolTally::report),
         }
     }

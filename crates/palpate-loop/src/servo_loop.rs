@@ -38,7 +38,7 @@ pub(crate) struct ServoLoop<'a, const D: usize> {
     no_forces: Vec<Vector<f64, D>>,
     /// Whether the device has rotation, and so takes a torque.
     is_turned: bool,
-    tally: Tally,
+    tally: Tally<D>,
 }
 
 /// The pace and the number of ticks.
@@ -54,7 +54,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
     /// A loop with a device that was [checked](Servo::check_device).
     pub(crate) fn new(servo: &'a mut Servo<D>, device: &'a mut dyn Device<D>) -> Self {
         let points = device.points();
-        let tally = Tally::new(points, servo.options().rate);
+        let tally = Tally::new(servo);
         Self {
             servo,
             device,

@@ -34,7 +34,7 @@ pub(crate) struct FeelOptions {
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) duration: Option<f64>,
     /// The hand's path, with the columns time_s,x_m,y_m[,z_m] and optionally point; a built-in
-    /// tour of the surfaces if left out.
+    /// tour of the bodies if left out. A path of one point carries the points of the scene's tool.
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (the hand follows its path whatever the force),
@@ -68,10 +68,10 @@ pub(crate) struct FeelOptions {
     /// Run the ticks without waiting for the clock.
     #[arg(long)]
     pub(crate) fast: bool,
-    /// Write every tick to a CSV file.
+    /// Write every tick to a CSV file: .csv.
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
-    /// Write what actuators play to a WAV file, with a channel for each contact point.
+    /// Write what actuators play to a WAV file, with a channel for each contact point: .wav.
     #[arg(long, value_name = "WAV")]
     pub(crate) wav: Option<PathBuf>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.

@@ -28,6 +28,15 @@ pub(super) fn map<const D: usize>(
     }
 }
 
+/// `true` if the workspace map is made to hold the scene, and not given by it.
+pub(super) fn is_fitted<const D: usize>(scene: &BuiltScene<D>, choice: &DeviceChoice) -> bool {
+    let is_limited = match choice {
+        DeviceChoice::Simulated(profile) => profile.workspace_radius < f64::INFINITY,
+        DeviceChoice::Recorded | DeviceChoice::Glove => false,
+    };
+    is_limited && scene.workspace.is_none() && scene.bounds().is_some()
+}
+
 /// The device, with a hand for each path in world coordinates. `turns` is the rotation of the
 /// hand over time, for a device with rotation.
 pub(super) fn device<const D: usize>(

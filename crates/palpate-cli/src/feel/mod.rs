@@ -4,10 +4,14 @@
 //! `palpate feel`: runs a servo with a device in a hand, and reports.
 
 mod figure;
+mod guides;
 mod held;
+mod inside;
+mod limits;
 mod moved;
 mod nearness;
 mod outputs;
+mod paths;
 mod report;
 mod slices;
 mod tool;
@@ -17,15 +21,13 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use palpate::devices::profile_named;
-use palpate::devices::{HandPath, Interpolation, Tour};
-use palpate::field::{Pose, Vector};
+use palpate::field::Pose;
 use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::emptiness;
-use crate::hand_csv;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -35,19 +37,6 @@ use outputs::{Outputs, Ran};
 
 /// The duration of a run without a path and without `--duration` [s].
 const DURATION: f64 = 10.0;
-
-/// How far each contact point of the built-in hand lags behind the one before [s].
-const LAG: f64 = 0.5;
-
-/// The most rows that a run keeps: an hour of one contact point at 1 kHz. Each takes about 150
-/// bytes.
-const MOST_ROWS: f64 = 3.6e6;
-
-/// The most ticks of a run: eleven days at 1 kHz.
-const MOST_TICKS: f64 = 1e9;
-
-/// The contact points of the built-in hand on the built-in gallery: two hands.
-const FINGERS: usize = 10;
 
 /// The device that feels the built-in gallery.
 const SHOWN: &str = "omega";
@@ -79,17 +68,26 @@ where
     let choice = choice(options)?;
     check_forces(&choice, options)?;
     let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
-    // Checked before a path of that length is made.
-    ticks(options.duration.unwrap_or(DURATION), options.rate)?;
     let tool = tool::of_scene(scene, options)?;
-    let paths = match &tool {
-        Some(tool) if options.path.is_none() => {
-            vec![tool.path(options.duration.unwrap_or(DURATION))?]
+    let touring = options.duration.unwrap_or(DURATION);
+    let paths = match (&options.path, &tool) {
+        (Some(file), _) => paths::in_file(scene, file)?,
+        (None, tool) => {
+            // Checked before a path of that length is made.
+            let ticks = limits::ticks(touring, options.rate)?;
+            let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
+            if outputs.keep_ticks() {
+                limits::rows::<D>(ticks * points as f64)?;
+            }
+            match tool {
+                Some(tool) => vec![tool.path(touring)?],
+                None => paths::on_tour(scene, options, touring)?,
+            }
         }
-        _ => paths(scene, options)?,
     };
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
     let duration = options.duration.unwrap_or(longest);
+    let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();
     let turns = match &tool {
         Some(_) if options.path.is_none() => Some(tool::turns(duration)?),
@@ -103,9 +101,8 @@ where
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
     let accepted = servo.accepted().to_vec();
 
-    let ticks = ticks(duration, options.rate)?;
     let keeps_rows = outputs.keep_ticks();
-    let rows = if keeps_rows { rows(ticks * contacts as f64)? } else { 0 };
+    let rows = if keeps_rows { limits::rows::<D>(ticks * contacts as f64)? } else { 0 };
     let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
@@ -141,6 +138,12 @@ where
         rate: options.rate,
         title: &report::title(name, &outcome),
         has_forces: device.profile().max_force > 0.0,
+        rendered: servo
+            .bodies()
+            .bodies()
+            .iter()
+            .map(|body| body.surface().stiffness())
+            .collect(),
     };
     let written = outputs.write(scene, &recorder, &ran);
     let felt = report::Felt {
@@ -150,6 +153,7 @@ where
         servo: &servo,
         device: device.profile(),
         accepted: &accepted,
+        workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),
     };
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
     // hides no file that is missing.
@@ -172,29 +176,6 @@ fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
             DeviceChoice::Simulated(Box::new(profile_named(SHOWN).map_err(Failure::input)?))
         }
     })
-}
-
-/// The rows of a run that are kept, if they are not too many.
-fn rows(count: f64) -> Result<usize, Failure> {
-    if count > MOST_ROWS {
-        let problem = format!(
-            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; shorten --duration, \
-             lower --rate, or use fewer --points"
-        );
-        return Err(Failure::input(problem));
-    }
-    Ok(count.max(0.0).ceil() as usize)
-}
-
-/// The ticks of a run.
-fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
-    let ticks = duration * rate;
-    if ticks > MOST_TICKS {
-        return Err(Failure::input(format!(
-            "a run has at most {MOST_TICKS:e} ticks; {duration} s at {rate} Hz are {ticks:e}"
-        )));
-    }
-    Ok(ticks)
 }
 
 /// Refuses forces that the device does not give.
@@ -242,42 +223,4 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         tool.options.max_force = options.max_force.or(tool.options.max_force);
     }
     scene
-}
-
-/// The paths of the contact points, from the file or tours of the scene. On a tour the points
-/// of a tool go side by side, others one behind the other.
-fn paths<const D: usize>(
-    scene: &BuiltScene<D>,
-    options: &FeelOptions,
-) -> Result<Vec<HandPath<D>>, Failure> {
-    if let Some(path) = &options.path {
-        return hand_csv::read(path);
-    }
-    let beside = if options.points.is_some() { Vec::new() } else { beside(scene) };
-    let default = if options.scene.is_none() { FINGERS } else { 1 };
-    let points = if beside.is_empty() { options.points.unwrap_or(default) } else { 1 };
-    let duration = options.duration.unwrap_or(DURATION);
-    let lag = LAG * points.saturating_sub(1) as f64;
-    let radius = scene.tool.as_ref().map_or(Probe::default().radius(), |tool| tool.radius);
-    let tour = Tour::new(input::bounds(scene)?, duration + lag)
-        .and_then(|tour| tour.with_probe_radius(radius))
-        .and_then(|tour| tour.over(&scene.whole))
-        .map_err(Failure::input)?;
-    let moved = |ahead: f64, by: Vector<f64, D>| {
-        let times = tour.times().iter().map(|time| time - ahead).collect();
-        let positions = tour.positions().iter().map(|point| *point + by).collect();
-        HandPath::new(times, positions, Interpolation::Smooth).map_err(Failure::input)
-    };
-    if beside.is_empty() {
-        (0..points).map(|contact| moved(LAG * contact as f64, Vector::ZERO)).collect()
-    } else {
-        beside.into_iter().map(|arm| moved(0.0, arm)).collect()
-    }
-}
-
-/// The contact points of the scene's tool, relative to the hand; empty if it has none.
-fn beside<const D: usize>(scene: &BuiltScene<D>) -> Vec<Vector<f64, D>> {
-    let rotation = scene.device_rotation();
-    let points = scene.tool.as_ref().map_or(&[][..], |tool| tool.points.as_slice());
-    points.iter().map(|arm| rotation.rotate(*arm)).collect()
 }

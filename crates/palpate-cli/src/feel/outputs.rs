@@ -10,7 +10,7 @@ use super::figure::Run;
 use super::vibration::Vibration;
 use crate::arguments::FeelOptions;
 use crate::outcome::Failure;
-use crate::output::{Destination, Files};
+use crate::output::{self, Destination, Files};
 use crate::picture::{Dimensions, Drawable, Picture};
 use crate::trace;
 
@@ -28,6 +28,8 @@ pub(super) struct Ran<'a> {
     pub(super) title: &'a str,
     /// `false` for a device without force feedback.
     pub(super) has_forces: bool,
+    /// The stiffness of each body as the device renders it [N/m].
+    pub(super) rendered: Vec<f64>,
 }
 
 impl Outputs {
@@ -36,8 +38,16 @@ impl Outputs {
         let inputs = [&options.scene, &options.path];
         let mut files = Files::reading(inputs.into_iter().filter_map(Option::as_deref));
         Ok(Self {
-            trace: options.trace.as_deref().map(|path| files.output(path)).transpose()?,
-            wav: options.wav.as_deref().map(|path| files.output(path)).transpose()?,
+            trace: options
+                .trace
+                .as_deref()
+                .map(|path| files.output_as(path, "a trace", "csv"))
+                .transpose()?,
+            wav: options
+                .wav
+                .as_deref()
+                .map(|path| files.output_as(path, "a vibration", "wav"))
+                .transpose()?,
             plot: options
                 .plot
                 .as_deref()
@@ -51,7 +61,8 @@ impl Outputs {
         self.trace.is_some() || self.wav.is_some() || self.plot.is_some()
     }
 
-    /// Writes all files from the ticks; if one fails, the others are still written.
+    /// Writes all files from the ticks, and says which; if one fails, the others are still
+    /// written.
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
@@ -64,12 +75,32 @@ impl Outputs {
         let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces;
         let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate));
         let vibration = vibration.transpose()?;
-        let trace =
-            self.trace.iter().map(|to| to.write(|out| trace::write(scene, recorder, out)));
-        let wav = self.wav.iter().zip(&vibration).map(|(to, vibration)| vibration.write(to));
-        let vibration = vibration.as_ref().filter(|_| !ran.has_forces);
-        let run = Run { scene, recorder, title: ran.title, vibration };
-        let plot = self.plot.iter().map(|to| run.draw(to));
-        Failure::any(trace.chain(wav).chain(plot))
+        let wav = self.wav.iter().zip(&vibration);
+        let wav = wav.map(|(to, vibration)| (to.name(), vibration.write(to)));
+        let trace = self
+            .trace
+            .iter()
+            .map(|to| (to.name(), to.write(|out| trace::write(scene, recorder, out))));
+        let shown_vibration = vibration.as_ref().filter(|_| !ran.has_forces);
+        let run = Run {
+            scene,
+            recorder,
+            title: ran.title,
+            rendered: &ran.rendered,
+            vibration: shown_vibration,
+        };
+        let plot = self.plot.iter().map(|to| (to.path(), run.draw(to)));
+        let written: Vec<_> = trace.chain(wav).chain(plot).collect();
+        let rows = recorder.rows().len();
+        let said = written.iter().filter(|(_, written)| written.is_ok()).map(|(path, _)| {
+            let is_trace = self.trace.iter().any(|trace| trace.name() == *path);
+            let rows = if is_trace { format!(" ({rows} rows)") } else { String::new() };
+            format!("{}{rows}", path.display())
+        });
+        let said: Vec<_> = said.collect();
+        if !said.is_empty() {
+            output::remark(format_args!("wrote {}", said.join(", ")));
+        }
+        Failure::any(written.into_iter().map(|(_, written)| written))
     }
 }

@@ -20,6 +20,8 @@ use crate::outcome::Failure;
 use crate::output::{self, shown};
 use crate::times::{quantiles, write_histogram};
 
+use super::{guides, inside};
+
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
     format!(
@@ -50,6 +52,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) servo: &'a Servo<D>,
     pub(super) device: &'a DeviceProfile,
     pub(super) accepted: &'a [Accepted],
+    /// World metres for each metre of the device, if the program chose them.
+    pub(super) workspace_scale: Option<f64>,
 }
 
 impl<const D: usize> Felt<'_, D> {
@@ -69,6 +73,17 @@ impl<const D: usize> Felt<'_, D> {
     fn json(&self) -> Result<Value, serde_json::Error> {
         let mut json = serde_json::to_value(self.report)?;
         json["device"] = self.device.name.as_ref().into();
+        for (start, told) in
+            self.report.starts_inside.iter().zip(json_items(&mut json, "starts_inside"))
+        {
+            told["name"] = self.name_of(start.body).into();
+        }
+        for (guide, told) in self.servo.guides(0).iter().zip(json_items(&mut json, "guides")) {
+            told["kind"] = guide.kind_name().into();
+        }
+        if let Some(scale) = self.workspace_scale {
+            json["workspace_scale"] = scale.into();
+        }
         if self.servo.tool().is_some() {
             json["coupling"] = serde_json::to_value(self.accepted.first())?;
             if let Some(turning) = self.accepted.get(1) {
@@ -81,6 +96,17 @@ impl<const D: usize> Felt<'_, D> {
             json["moving"] = self.moving().collect();
         }
         Ok(json)
+    }
+
+    /// The name of a body; empty for one that is not there.
+    pub(super) fn name_of(&self, body: u32) -> &str {
+        self.scene.bodies.get(body as usize).map_or("", |body| &body.name)
+    }
+
+    /// `true` if forces act on the hand that no contact gives: of guides or magnets.
+    fn has_free_forces(&self) -> bool {
+        let has_magnet = self.scene.bodies.iter().any(|body| body.material.magnet.is_some());
+        has_magnet || !self.report.guides.is_empty()
     }
 
     /// The names of the bodies that have motions.
@@ -99,6 +125,11 @@ impl<const D: usize> Felt<'_, D> {
     }
 }
 
+/// The items of a list of a JSON object.
+fn json_items<'a>(json: &'a mut Value, key: &str) -> impl Iterator<Item = &'a mut Value> {
+    json.get_mut(key).and_then(Value::as_array_mut).into_iter().flatten()
+}
+
 fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
     let Felt { report, servo, device, accepted, .. } = felt;
     let name = shown(felt.name);
@@ -111,11 +142,18 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
         None => writeln!(out, "{name}, felt with {} contact point(s)", report.points)?,
     }
+    let asked = felt.scene.bodies.iter().map(|body| &body.material);
+    let stiffness = of_asked(
+        &range(surfaces().map(Surface::stiffness)),
+        &range(asked.clone().map(|material| material.stiffness)),
+    );
+    let damping = of_asked(
+        &range(surfaces().map(Surface::damping)),
+        &range(asked.map(|material| material.damping)),
+    );
     write!(
         out,
-        "  stiffness {} N/m, damping {} N·s/m, at most {} N, ",
-        range(surfaces().map(Surface::stiffness)),
-        range(surfaces().map(Surface::damping)),
+        "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
         options.max_force,
     )?;
     match &report.tool {
@@ -128,6 +166,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         None => writeln!(out, "probe of {} mm", 1e3 * options.probe.radius())?,
     }
     writeln!(out, "  device         {}", device.name)?;
+    if let Some(scale) = felt.workspace_scale {
+        let scale = rounded(scale);
+        writeln!(out, "  workspace      {scale} m of the scene for each metre of the device")?;
+    }
     if !felt.scene.motions.is_empty() {
         let moving: Vec<_> = felt.moving().map(|name| shown(name).to_string()).collect();
         writeln!(out, "  moving         {}", moving.join(", "))?;
@@ -158,6 +200,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     if !report.is_released {
         writeln!(out, "  the device did not take the zero forces at the end")?;
     }
+    inside::write(out, felt)?;
     let share = 100.0 * report.contact_time / report.duration.max(f64::MIN_POSITIVE);
     writeln!(out, "  ticks          {} at {} Hz", report.ticks, report.rate)?;
     writeln!(
@@ -189,7 +232,8 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         "  events         {} touches, {} slips, {} sticks, {} pops",
         events.touches, events.slips, events.sticks, events.pops
     )?;
-    write_safety(out, &report.safety)?;
+    guides::write(out, felt)?;
+    write_safety(out, felt)?;
     if let Some(cost) = &report.cost {
         writeln!(out, "  cost a tick    {}", quantiles(cost))?;
     }
@@ -246,7 +290,8 @@ fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
 }
 
 /// The actions of the safety chains of all points together.
-fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
+fn write_safety<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    let safety = &felt.report.safety[..];
     if safety.is_empty() {
         return Ok(());
     }
@@ -255,10 +300,11 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
     };
     writeln!(
         out,
-        "  energy         {:.3} mJ taken from the hand, {:.3} mJ given, {:.3} mJ kept back",
+        "  energy         {:.3} mJ taken from the hand, {:.3} mJ given, {:.3} mJ kept back{}",
         energy(|p| p.energy_in),
         energy(|p| p.energy_out),
         energy(|p| p.dissipated),
+        if felt.has_free_forces() { "; of contacts alone" } else { "" },
     )?;
     let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
     let turns = |of: fn(&TurningReport) -> u64| -> u64 {
@@ -284,6 +330,11 @@ fn write_safety(out: &mut String, safety: &[SafetyReport]) -> std::fmt::Result {
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     writeln!(out, "  safety, ticks  {acted}")?;
     writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
+}
+
+/// What is rendered, and what was asked for if that is another.
+fn of_asked(rendered: &str, asked: &str) -> String {
+    if rendered == asked { rendered.to_owned() } else { format!("{rendered} (asked {asked})") }
 }
 
 /// The numbers of all bodies: one number if they are equal, else their range.

@@ -32,6 +32,8 @@ const MOST_SWING_POINTS: f64 = 1e6;
 pub(super) struct Held<const D: usize> {
     pub(super) tool: Tool<D>,
     obstacle: Shape<D>,
+    /// The part of them that each body makes.
+    obstacles: Vec<Shape<D>>,
     /// A box that holds the bodies, and the places of the origin from which the tool touches
     /// them.
     pub(super) bounds: Aabb<D>,
@@ -50,11 +52,15 @@ pub(super) fn of_scene<const D: usize>(
     }
     // The workspace map turns the tool as the device holds it.
     let rotation = scene.device_rotation();
-    let obstacle =
-        tool.shell().obstacle(&rotation, &scene.whole, POINTS).map_err(Failure::input)?;
+    let around = |shape: &Shape<D>| {
+        tool.shell().obstacle(&rotation, shape, POINTS).map_err(Failure::input)
+    };
+    let obstacle = around(&scene.whole)?;
+    let obstacles = scene.bodies.iter().map(|body| around(&body.shape));
+    let obstacles = obstacles.collect::<Result<_, _>>()?;
     let bounds = scene.bounds_with(&tool);
     let bounds = bounds.ok_or_else(|| Failure::input(input::NO_BOUNDS))?;
-    Ok(Some(Held { tool, obstacle, bounds }))
+    Ok(Some(Held { tool, obstacle, obstacles, bounds }))
 }
 
 impl<const D: usize> Held<D> {
@@ -63,7 +69,7 @@ impl<const D: usize> Held<D> {
         let radius = self.tool.shell().points().first().map_or(0.0, |point| point.radius);
         Tour::new(self.bounds, duration)
             .and_then(|tour| tour.with_probe_radius(radius))
-            .and_then(|tour| tour.over(&self.obstacle))
+            .and_then(|tour| tour.over_each(&self.obstacle, &self.obstacles))
             .map_err(Failure::input)
     }
 }

@@ -43,6 +43,22 @@ impl Files {
         Self { inputs: inputs.into_iter().filter_map(known).collect(), outputs: Vec::new() }
     }
 
+    /// As [`output`](Self::output), for a file whose name must end in `.expected`; a refusal
+    /// says `what` it is. A device or a pipe has no ending.
+    pub(crate) fn output_as(
+        &mut self,
+        path: &Path,
+        what: &str,
+        expected: &str,
+    ) -> Result<Destination, Failure> {
+        let destination = self.output(path)?;
+        if destination.is_file() && ending(path) != expected {
+            let problem = format!("the name of {what} must end in .{expected}");
+            return Err(Failure::file(path, problem));
+        }
+        Ok(destination)
+    }
+
     /// Checks that the run can write `path` without losing an input or another output.
     ///
     /// # Errors
@@ -85,6 +101,12 @@ impl Files {
         })?;
         Ok(Destination { name: path.to_owned(), target: Target::Replaced(target) })
     }
+}
+
+/// The ending of a file's name, in lower case; empty if it has none.
+pub(crate) fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.unwrap_or_default().to_ascii_lowercase()
 }
 
 fn direct(path: &Path) -> Destination {

@@ -21,7 +21,7 @@ use tempfile::NamedTempFile;
 use crate::outcome::Failure;
 
 pub(crate) use escape::shown;
-pub(crate) use files::Files;
+pub(crate) use files::{Files, ending};
 pub(crate) use terminal::{answer, complain, ended, live, remark, usage};
 
 /// Where an output goes.
@@ -52,6 +52,11 @@ impl Destination {
     /// The path that the command line gave.
     pub(crate) fn name(&self) -> &Path {
         &self.name
+    }
+
+    /// `true` for a file; `false` for standard output, devices and pipes.
+    pub(crate) fn is_file(&self) -> bool {
+        matches!(self.target, Target::Replaced(_))
     }
 
     /// Where an output goes that is not whole: `NAME.part`, or `None` if the destination cannot

@@ -102,22 +102,23 @@ where
     noted(scene, plane, view, |_| String::new())
 }
 
-/// The isolines of a scene on `plane`, with its bodies and a `note` below the name of each.
+/// The isolines of a scene on `plane`, with its bodies and a `note` below the name of each, by its
+/// number.
 pub(crate) fn noted<const D: usize>(
     scene: &BuiltScene<D>,
     plane: &Slice,
     view: &View,
-    note: impl Fn(&BuiltBody<D>) -> String,
+    note: impl Fn(usize) -> String,
 ) -> Result<Isolines, PlotError>
 where
     Dimensions: Drawable<D>,
 {
     let sampling = Sampling::default();
-    let body = |body: &BuiltBody<D>| {
+    let body = |(number, body): (usize, &BuiltBody<D>)| {
         let outline = outline(&body.shape, plane, view, sampling)?;
-        Ok(Body::new(&body.name, outline).with_note(note(body)))
+        Ok(Body::new(&body.name, outline).with_note(note(number)))
     };
-    let bodies = scene.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+    let bodies = scene.bodies.iter().enumerate().map(body).collect::<Result<Vec<_>, _>>()?;
     let isolines = Isolines::sample(plane, view, sampling, values(&scene.whole, plane))?;
     Ok(isolines.with_bodies(bodies))
 }

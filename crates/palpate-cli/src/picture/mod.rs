@@ -16,7 +16,7 @@ use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::{Format, Map};
 use crate::outcome::Failure;
-use crate::output::{Destination, Files};
+use crate::output::{self, Destination, Files};
 
 use flat::slopes;
 pub(crate) use flat::{isolines, noted, outline, scene, values};
@@ -178,8 +178,7 @@ pub(crate) struct Picture {
 impl Picture {
     /// A picture at `path`, in the format of its ending, as an output of the run of `files`.
     pub(crate) fn new(files: &mut Files, path: &Path) -> Result<Self, Failure> {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let format = match ending.to_ascii_lowercase().as_str() {
+        let format = match output::ending(path).as_str() {
             "svg" => Format::Svg,
             "png" => Format::Png,
             _ => {

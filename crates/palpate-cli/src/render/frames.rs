@@ -79,9 +79,7 @@ impl Frames {
         let (Some(folder), Some(pictures)) = (&options.frames, options.turntable) else {
             let usual = || stem.with_extension("png");
             let path = options.output.clone().unwrap_or_else(usual);
-            let ending =
-                path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-            if !ending.eq_ignore_ascii_case("png") {
+            if output::ending(&path) != "png" {
                 let problem = "the name of a rendered picture must end in .png";
                 return Err(Failure::file(&path, problem));
             }

@@ -65,7 +65,10 @@ fn feel_reports_traces_and_draws() {
         assert!(found.contains(&word), "{word} in {found:?}");
     }
     assert!(svg.contains("stroke=\"#5cb8f0\""), "the tenth colour");
-    assert!(found.contains(&"sphere") && found.contains(&"1000 N/m"), "{found:?}");
+    assert!(
+        found.contains(&"sphere") && found.contains(&"375.1 N/m, asked 1000 N/m"),
+        "{found:?}"
+    );
     let again = json(&arguments);
     for key in ["ticks", "contact_time", "largest_force", "largest_depth", "evaluations"] {
         assert_eq!(report[key], again[key], "{key}");

@@ -136,6 +136,13 @@ impl<const D: usize> Curve<D> {
         self.deviation
     }
 
+    /// The ends of all segments, in order [m].
+    pub(super) fn corners(&self) -> Vec<Point<D>> {
+        let starts = self.segments.iter().map(|segment| segment.from);
+        let end = self.segments.last().map(|last| last.from + last.tangent * last.length);
+        starts.chain(end).collect()
+    }
+
     /// The closest point; the first along the curve if several are equally close.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; looks at 64 balls and 1024

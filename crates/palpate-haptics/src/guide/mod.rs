@@ -10,6 +10,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod curve;
+mod drawn;
 pub(crate) mod limit;
 mod slope;
 mod target;
@@ -182,6 +183,8 @@ pub struct Guide<const D: usize> {
     kind: Kind<D>,
     options: GuideOptions,
     engaged: bool,
+    /// The force of the last tick [N].
+    last: Vector<f64, D>,
 }
 
 #[derive(Clone, Debug)]
@@ -307,7 +310,7 @@ impl<const D: usize> Guide<D> {
     }
 
     fn of(kind: Kind<D>, options: GuideOptions) -> Result<Self, HapticsError> {
-        Ok(Self { kind, options: options.checked()?, engaged: false })
+        Ok(Self { kind, options: options.checked()?, engaged: false, last: Vector::ZERO })
     }
 
     /// The options.
@@ -330,13 +333,32 @@ impl<const D: usize> Guide<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does. A
     /// curve costs at most 1024 segments, a slope one evaluation of its shape.
     pub fn force(&mut self, position: Point<D>, velocity: Vector<f64, D>) -> Vector<f64, D> {
-        let Some(motion) = self.motion(position, velocity) else {
-            self.engaged = false;
-            return Vector::ZERO;
-        };
-        self.engaged = true;
-        let force = damped(&motion, self.options.max_force);
-        if force.is_finite() { force } else { Vector::ZERO }
+        let motion = self.motion(position, velocity);
+        self.engaged = motion.is_some();
+        let force = motion.map(|motion| damped(&motion, self.options.max_force));
+        self.last = force.filter(Vector::is_finite).unwrap_or(Vector::ZERO);
+        self.last
+    }
+
+    /// The force that [`force`](Self::force) gave last [N]; zero before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_haptics::{Guide, GuideOptions};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let mut guide = Guide::to_point([0.0, 0.0], GuideOptions::default())?;
+    /// assert_eq!(guide.last_force(), Vector::ZERO);
+    /// let force = guide.force(Vector([0.0, 0.001]), Vector::ZERO);
+    /// assert_eq!(guide.last_force(), force);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn last_force(&self) -> Vector<f64, D> {
+        self.last
     }
 
     /// Spring and damper, without the limit; `None` where the guide does not act.

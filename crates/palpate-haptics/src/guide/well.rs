@@ -38,6 +38,15 @@ impl<const D: usize> Well<D> {
         Err(HapticsError::Number(NumberError::new(parameter, rule, reach, "m")))
     }
 
+    pub(super) fn centre(&self) -> Point<D> {
+        self.centre
+    }
+
+    /// The distance at which the pull ends [m].
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
     /// The pull at `position` [N], and the part of the damper that acts there; `None` beyond
     /// the reach.
     ///

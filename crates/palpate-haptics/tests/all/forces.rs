@@ -181,6 +181,49 @@ fn a_shape_that_moves_over_the_hand_pushes_gently() {
     assert_eq!(touch(&mut servo, device).force, Vector([0.0, 32.0]));
 }
 
+/// A skin of 1e-7 m allowed only tiny steps: a probe that slid at 1 m/s over a ball spent its budget
+/// and was left behind.
+#[test]
+fn a_tiny_probe_is_felt_as_a_point() {
+    fn forces<const D: usize>(
+        shape: &Shape<D>,
+        radius: f64,
+        hand: impl Fn(f64) -> Point<D>,
+    ) -> Vec<f64> {
+        let mut servo = servo(shape, radius, spring_alone(512.0));
+        let force = |tick: i32| {
+            let touch = touch(&mut servo, hand(0.001 * f64::from(tick)));
+            assert!(touch.evaluations < 63, "{radius}: {} in {tick}", touch.evaluations);
+            touch.force.norm()
+        };
+        (0..150).map(force).collect()
+    }
+    fn check<const D: usize>(shape: &Shape<D>, hand: impl Fn(f64) -> Point<D> + Copy) {
+        let points = forces(shape, 0.0, hand);
+        assert!(points.iter().fold(0.0_f64, |most, force| most.max(*force)) > 0.4);
+        for radius in [1e-7, 1e-6, 5e-6] {
+            for (force, point) in forces(shape, radius, hand).into_iter().zip(&points) {
+                // Besides 1 %, the radius, by which the probe touches before the point.
+                let most = 0.01 * point + 1.01 * 512.0 * radius;
+                assert!(
+                    (force - point).abs() <= most,
+                    "{radius}: {force} N, a point {point} N"
+                );
+            }
+        }
+    }
+    for speed in [0.1, 1.0] {
+        let around = |time: f64| {
+            let (sin, cos) = (speed * time / 0.049).sin_cos();
+            let radius = if time < 0.01 { 0.06 - 1.1 * time } else { 0.049 };
+            Vector([sin * radius, cos * radius, 0.0])
+        };
+        check(&ball::<3>(0.05), around);
+        let along = |time: f64| Vector([speed * time - 0.07, 0.006 - time.min(0.002), 0.01]);
+        check(&cuboid([0.2, 0.01, 0.2]), along);
+    }
+}
+
 #[test]
 fn numbers_that_are_not_finite_give_no_force_and_are_survived() {
     let floor = half_space([0.0, 1.0, 0.0], 0.0);

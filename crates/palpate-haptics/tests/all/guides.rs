@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use arbitrary::Unstructured;
-use palpate_field::{Shape, Vector, kernel::Ball};
+use palpate_field::{Aabb, Point, Shape, Vector, kernel::Ball};
 use palpate_haptics::{Curve, Guide, GuideOptions, Slope};
 use palpate_testkit::cases::each as cases;
 
@@ -186,4 +186,55 @@ fn wrong_numbers_are_named() {
     assert!(Slope::new(ball(), 1.0, [1.0, 1.0]).is_err());
     assert!(Slope::new(ball(), f64::NAN, [0.0, 1.0]).is_err());
     assert!(Slope::new(ball(), 1.0, [0.0, 1.0]).unwrap().with_edge(0.6).is_err());
+}
+
+/// The box in which guides are drawn.
+fn within() -> Aabb<3> {
+    Aabb { min: Vector([-1.0, 0.0, -2.0]), max: Vector([1.0, 3.0, 2.0]) }
+}
+
+#[test]
+fn a_line_that_misses_the_box_is_not_drawn() {
+    let options = GuideOptions::default();
+    let missing = Guide::along_line([0.0, 5.0, 0.0], [1.0, 0.0, 0.0], options).unwrap();
+    assert!(missing.lines_within(&within()).is_empty());
+    let slanted = Guide::along_line([0.0, 1.0, 0.0], [1.0, 1.0, 0.0], options).unwrap();
+    let [line] = &slanted.lines_within(&within())[..] else { panic!("one line") };
+    let ends = [Vector([-1.0, 0.0, 0.0]), Vector([1.0, 2.0, 0.0])];
+    assert!(line.iter().zip(ends).all(|(a, b)| (*a - b).norm() < 1e-15), "{line:?}");
+}
+
+#[test]
+fn a_plane_is_two_lines_in_it() {
+    let normal = Vector([0.3, 1.0, -0.2]);
+    let plane = Guide::on_plane([0.1, 1.5, 0.2], normal, GuideOptions::default()).unwrap();
+    let lines = plane.lines_within(&within());
+    assert_eq!(lines.len(), 2);
+    for line in &lines {
+        assert!((line[1] - line[0]).dot(normal).abs() < 1e-14);
+        assert!((line[0] - Vector([0.1, 1.5, 0.2])).dot(normal).abs() < 1e-14);
+    }
+    let flat = Guide::on_plane([0.0, 0.0], [0.0, 1.0], GuideOptions::default()).unwrap();
+    assert_eq!(flat.lines_within(&Aabb::centred(Vector([1.0; 2]))).len(), 1);
+}
+
+#[test]
+fn points_curves_and_wells_are_drawn_where_they_are() {
+    let options = GuideOptions::default();
+    let point = Guide::to_point([0.5, 1.0, 0.0], options).unwrap();
+    let cross = point.lines_within(&within());
+    assert_eq!((cross.len(), cross[1][0][0]), (3, 0.5));
+    let corners = [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]].map(Vector);
+    let curve = Guide::along_curve(Curve::polyline(&corners).unwrap(), options).unwrap();
+    let flat = Aabb::centred(Vector([1.0; 2]));
+    assert_eq!(
+        (curve.kind_name(), curve.lines_within(&flat)),
+        ("curve", vec![corners.to_vec()])
+    );
+    let well = Guide::well([0.1, 0.2, 0.3], 0.05, options).unwrap();
+    let circles = well.lines_within(&within());
+    assert_eq!(circles.len(), 3);
+    let centre = Vector([0.1, 0.2, 0.3]);
+    let is_on = |p: &Point<3>| ((*p - centre).norm() - 0.05).abs() < 1e-15;
+    assert!(circles.iter().flatten().all(is_on));
 }

@@ -9,7 +9,7 @@ use palpate_devices::{DeviceError, HandPath, RecordedDevice, Tour};
 use palpate_field::kernel::{Cylinder, Polygon, RegularStar};
 use palpate_field::operator::Profile;
 use palpate_field::{Aabb, Rotation, Shape, Vector};
-use palpate_haptics::{ServoOptions, UnprotectedServo};
+use palpate_haptics::{Bodies, Body, Material, Probe, ServoOptions, Surface, UnprotectedServo};
 use palpate_loop::{Pace, RunOptions, RunReport, run};
 
 const DURATION: f64 = 20.0;
@@ -126,6 +126,158 @@ fn a_tour_touches_every_body() {
         }
     }
     assert_eq!(touched, [true; 4]);
+}
+
+/// A tour pressed a probe of 1e-7 m to 3/4 of its radius, and felt nothing.
+#[test]
+fn a_tour_presses_a_tiny_probe_as_deep_as_a_point() {
+    let largest = |shape: &Shape<3>, radius: f64| {
+        let bounds = shape.promise().bounds.unwrap().aabb;
+        let tour = Tour::new(bounds, 5.0).unwrap().with_probe_radius(radius).unwrap();
+        let mut device = RecordedDevice::new(vec![tour.over(shape).unwrap()]).unwrap();
+        let probe = Probe::new(radius).unwrap();
+        let options = ServoOptions::default().with_max_force(f64::INFINITY).with_probe(probe);
+        let mut servo =
+            without_limits(UnprotectedServo::new(shape.clone(), 1, options).unwrap());
+        let options = RunOptions::new(5.0).with_pace(Pace::AsFastAsPossible);
+        let report = run(&mut servo, &mut device, options).unwrap();
+        assert_eq!(report.evaluations.budget_spent, 0, "{radius}");
+        (report.largest_force, report.contact_time)
+    };
+    for shape in [ball(0.5), ball(0.05), cuboid([0.2, 0.01, 0.2])] {
+        let (force, time) = largest(&shape, 0.0);
+        assert!(force > 0.2, "{force}");
+        for radius in [1e-7, 1e-6, 5e-6] {
+            let (its, its_time) = largest(&shape, radius);
+            assert!((its - force).abs() < 0.01 * force, "{radius}: {its} N, a point {force} N");
+            assert!((its_time - time).abs() < 0.01 * time, "{radius}: {its_time} s, {time} s");
+        }
+    }
+}
+
+/// A table of 1 m with its top at y = 0.
+fn table() -> Shape<3> {
+    cuboid([1.0, 0.04, 1.0]).translated(Vector([0.0, -0.02, 0.0])).unwrap()
+}
+
+fn at(shape: Shape<3>, place: [f64; 3]) -> Shape<3> {
+    shape.translated(Vector(place)).unwrap()
+}
+
+/// Which of the bodies a tour touches that visits each.
+fn visited<const D: usize>(bodies: &[Shape<D>], bounds: Aabb<D>, duration: f64) -> Vec<bool> {
+    let whole = Shape::union(bodies.iter().cloned()).unwrap();
+    let tour = Tour::new(bounds, duration).unwrap();
+    let path = tour.over_each(&whole, bodies).unwrap();
+    assert_eq!((path.start(), path.duration()), (0.0, duration));
+    // Pressed to 1.5 mm of the probe's 2 mm, and between two points a little more.
+    for tick in 0..=(duration * 1e3) as u32 {
+        let hand = path.state_at(f64::from(tick) * 1e-3).position;
+        assert!(whole.distance(hand) > 0.002 - 1.5 * 0.0015, "deep at {tick} ms: {hand:?}");
+    }
+    // No proxy is left behind in a visit, on the other side of an edge.
+    let parts = bodies.iter().map(|shape| {
+        Body::new(shape.clone(), Surface::new(&Material::default()).unwrap()).unwrap()
+    });
+    let scene = Bodies::new(parts.collect()).unwrap();
+    let servo = UnprotectedServo::new(scene, 1, ServoOptions::default()).unwrap();
+    let mut device = RecordedDevice::new(vec![path.clone()]).unwrap();
+    let options = RunOptions::new(duration).with_pace(Pace::AsFastAsPossible);
+    let report = run(&mut without_limits(servo), &mut device, options).unwrap();
+    let is_visit = tour.over(&whole).as_ref() != Ok(&path);
+    let deep = report.largest_depth;
+    assert!(deep < 0.003 || !is_visit, "{deep} m deep in {duration} s");
+    let touches = |body: &Shape<D>| path.positions().iter().any(|p| body.distance(*p) < 0.0019);
+    bodies.iter().map(touches).collect()
+}
+
+fn bounds<const D: usize>(bodies: &[Shape<D>]) -> Aabb<D> {
+    let boxes = bodies.iter().filter_map(|body| body.promise().bounds);
+    boxes.map(|bounds| bounds.aabb).reduce(|a, b| a.union(&b)).unwrap()
+}
+
+/// The hand went over the table alone, past what stands on it.
+#[test]
+fn a_tour_visits_every_body_on_a_table() {
+    let ball_on_table = vec![table(), at(ball(0.02), [0.1, 0.02, 0.05])];
+    let cup = cuboid([0.06; 3]).difference([at(cuboid([0.05; 3]), [0.0, 0.01, 0.0])]).unwrap();
+    let two = vec![
+        at(cuboid([0.03, 0.05, 0.04]), [-0.22, 0.025, 0.13]),
+        table(),
+        at(cup, [0.31, 0.03, -0.07]),
+    ];
+    let corner = vec![table(), at(ball(0.01), [0.48, 0.01, -0.48])];
+    let row: Vec<_> = (0..6)
+        .map(|i| at(ball(0.012), [0.15 * f64::from(i) - 0.4, 0.012, 0.1]))
+        .chain([table()])
+        .collect();
+    for (name, bodies) in
+        [("ball", ball_on_table), ("two", two), ("corner", corner), ("row", row)]
+    {
+        for duration in [5.0, 10.0, 30.0] {
+            let visited = visited(&bodies, bounds(&bodies), duration);
+            assert!(visited.iter().all(|is| *is), "{name} in {duration} s: {visited:?}");
+        }
+    }
+}
+
+#[test]
+fn a_tour_visits_bodies_in_the_plane() {
+    let floor = cuboid([1.0, 0.02]).translated(Vector([0.0, -0.01])).unwrap();
+    let disc = |x: f64| ball::<2>(0.01).translated(Vector([x, 0.01])).unwrap();
+    let bodies = vec![disc(-0.37), floor, disc(0.21)];
+    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 3]);
+    // Between floor and roof, the disc is seen from the side alone.
+    let mut bodies = bodies;
+    bodies.push(cuboid([1.0, 0.02]).translated(Vector([0.0, 0.1])).unwrap());
+    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true; 4]);
+}
+
+/// Below a table top, and in a box that is open on one side.
+#[test]
+fn a_tour_reaches_bodies_from_where_they_are_free() {
+    let top = at(cuboid([0.6, 0.02, 0.6]), [0.0, 0.3, 0.0]);
+    let below = vec![top, at(ball(0.02), [0.05, 0.02, 0.03]), at(ball(0.03), [0.1, 0.34, 0.1])];
+    assert_eq!(visited(&below, bounds(&below), 10.0), [true; 3]);
+    let room = at(cuboid([0.28; 3]), [0.1, 0.0, 0.0]);
+    let shelf = cuboid([0.3; 3]).difference([room]).unwrap();
+    let inside = vec![shelf, at(ball(0.02), [0.06, -0.1, 0.02])];
+    assert_eq!(visited(&inside, bounds(&inside), 10.0), [true; 2]);
+}
+
+#[test]
+fn a_tour_visits_what_stands_on_the_ground() {
+    let ground = half_space([0.0, 1.0, 0.0], 0.0);
+    let bodies = vec![
+        ground,
+        at(ball(0.02), [0.4, 0.02, 0.3]),
+        at(cuboid([0.03; 3]), [-0.4, 0.015, -0.3]),
+    ];
+    let visited = visited(&bodies, bounds(&bodies), 10.0);
+    assert_eq!(visited, [true; 3]);
+}
+
+/// A body within another cannot be reached; the others are.
+#[test]
+fn a_body_that_is_closed_in_is_left_out() {
+    let shell = ball::<3>(0.05).shell(0.01).unwrap();
+    let bodies = vec![table(), at(shell, [0.2, 0.055, 0.1]), at(ball(0.01), [0.2, 0.055, 0.1])];
+    assert_eq!(visited(&bodies, bounds(&bodies), 10.0), [true, true, false]);
+}
+
+#[test]
+fn a_tour_of_what_is_touched_on_the_way_round_is_that_way() {
+    let bodies: Vec<_> =
+        (0..3).map(|i| at(ball(0.05), [0.12 * f64::from(i), 0.0, 0.0])).collect();
+    let whole = Shape::union(bodies.iter().cloned()).unwrap();
+    let tour = Tour::new(bounds(&bodies), DURATION).unwrap();
+    assert_eq!(tour.over_each(&whole, &bodies), tour.over(&whole));
+    // A hundred visits in a second are none.
+    let mut many = vec![table()];
+    many.extend((0..99).map(|i| at(ball(0.001), [0.009 * f64::from(i) - 0.45, 0.001, 0.0])));
+    let whole = Shape::union(many.iter().cloned()).unwrap();
+    let tour = Tour::new(bounds(&many), 1.0).unwrap();
+    assert_eq!(tour.over_each(&whole, &many), tour.over(&whole));
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! most contacts, the tool where it was, and what was felt over time.
 
 mod charts;
+mod guides;
 mod overlays;
 mod points;
 mod tools;
@@ -19,6 +20,7 @@ use super::moved;
 use super::slices::{FeltSlice, felt_slices};
 use super::vibration::Vibration;
 use crate::input::{self, promise_in_words};
+use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::picture::{self, Dimensions, Drawable, Picture};
 use points::Points;
@@ -28,6 +30,8 @@ pub(super) struct Run<'a, const D: usize> {
     pub(super) scene: &'a BuiltScene<D>,
     pub(super) recorder: &'a Recorder<D>,
     pub(super) title: &'a str,
+    /// The stiffness of each body as the device renders it [N/m].
+    pub(super) rendered: &'a [f64],
     /// What actuators play, for a device without force feedback.
     pub(super) vibration: Option<&'a Vibration>,
 }
@@ -84,11 +88,16 @@ where
     ) -> Result<Isolines, Failure> {
         let view = Dimensions::view(&slice.plane, bounds, picture::MARGIN);
         let view = view.map_err(Failure::input)?;
-        let scene = picture::noted(self.scene, &slice.plane, &view, material);
+        let note = |body: usize| {
+            let (asked, rendered) = (self.scene.bodies.get(body), self.rendered.get(body));
+            asked.zip(rendered).map_or(String::new(), |(body, felt)| material(body, *felt))
+        };
+        let scene = picture::noted(self.scene, &slice.plane, &view, note);
         let isolines = scene.map_err(Failure::input)?.in_ink().with_title(&slice.heading);
         let spacing = overlays::ARROW_SPACING * (view.width() * view.height()).sqrt();
         let end = self.recorder.rows().last().map_or(0.0, |row| row.time_s);
         moved::drawn_over(isolines, self.scene, &slice.plane, &view, end)
+            .and_then(|isolines| guides::drawn(isolines, self.scene, slice, bounds))
             .and_then(|isolines| overlays::drawn(isolines, slice, points, spacing))
             .and_then(|isolines| tools::drawn(isolines, slice, &view, tools))
             .map_err(Failure::input)
@@ -109,12 +118,20 @@ where
     }
 }
 
-/// A body's material in a word: the name of a preset, else the stiffness.
-fn material<const D: usize>(body: &BuiltBody<D>) -> String {
+/// A body's material in a word, the name of a preset, or else the stiffness; and the stiffness
+/// that the device renders [N/m], if it is another than the material's.
+fn material<const D: usize>(body: &BuiltBody<D>, rendered: f64) -> String {
     let is_it = |name: &&str| Material::preset(name).is_ok_and(|known| known == body.material);
-    match Material::preset_names().find(is_it) {
-        Some(name) if name == body.name => format!("{} N/m", body.material.stiffness),
-        Some(name) => name.to_owned(),
-        None => format!("{} N/m", body.material.stiffness),
+    let preset = Material::preset_names().find(is_it);
+    let name = preset.filter(|name| **name != body.name);
+    let asked = body.material.stiffness;
+    let is_softer = rendered < asked * (1.0 - 1e-9);
+    match (name, is_softer) {
+        (None, false) => format!("{asked} N/m"),
+        (Some(name), false) => (*name).to_owned(),
+        (None, true) => format!("{} N/m, asked {asked} N/m", rounded(rendered)),
+        (Some(name), true) => {
+            format!("{name}: {} N/m, asked {asked} N/m", rounded(rendered))
+        }
     }
 }

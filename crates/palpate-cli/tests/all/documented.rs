@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! What `docs/formats.md` says of the output of `feel`, `devices` and `jitter` is what they print.
+
+use std::collections::BTreeSet;
+
+use crate::common::{Folder, json, root};
+use serde_json::Value;
+
+type Names = BTreeSet<String>;
+
+/// Keys of failures that no test can bring about, and the reason of a refused priority, which
+/// depends on the machine.
+const OF_FAILURES: [&str; 2] = ["reason", "message"];
+
+/// A section of the page, from its heading to the next.
+fn section(heading: &str) -> String {
+    let page = std::fs::read_to_string(root("docs/formats.md")).unwrap();
+    let start = page.find(&format!("\n## {heading}\n")).unwrap();
+    let rest = &page[start + 4..];
+    rest[..rest.find("\n## ").unwrap_or(rest.len())].to_owned()
+}
+
+/// The words in backticks in a cell that are keys or columns: no options, no values in quotes.
+fn words(cell: &str) -> impl Iterator<Item = &str> {
+    let words = cell.split('`').skip(1).step_by(2);
+    words.filter(|word| word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'))
+}
+
+/// The names in the tables of a section: those of the first cells, or of all.
+fn documented(heading: &str, in_all_cells: bool) -> Names {
+    let section = section(heading);
+    let rows = section.lines().filter(|line| line.starts_with("| `"));
+    let cells = rows.flat_map(|row| {
+        let cells = row.trim_matches('|').split('|');
+        cells.take(if in_all_cells { usize::MAX } else { 1 }).collect::<Vec<_>>()
+    });
+    cells.flat_map(words).filter(|word| !is_value(word)).map(str::to_owned).collect()
+}
+
+/// Words in backticks that are values of JSON.
+fn is_value(word: &str) -> bool {
+    ["true", "false", "null"].contains(&word)
+}
+
+/// All keys of a value, at any depth.
+fn keys(value: &Value, found: &mut Names) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                found.insert(key.clone());
+                keys(value, found);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| keys(item, found)),
+        _ => {}
+    }
+}
+
+/// Compares names in both directions.
+fn assert_same(documented: &Names, printed: &Names) {
+    let missing: Vec<_> = printed.difference(documented).collect();
+    assert!(missing.is_empty(), "not documented: {missing:?}");
+    let surplus = documented.difference(printed);
+    let surplus: Vec<_> = surplus.filter(|key| !OF_FAILURES.contains(&key.as_str())).collect();
+    assert!(surplus.is_empty(), "documented, but not printed: {surplus:?}");
+}
+
+/// A ball that rises, two guides, a hand that begins inside.
+const RISING: &str = r#"{ "palpate": 1, "dimension": 3,
+  "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.05 } } } ],
+  "guides": [ { "point": [0, 0.1, 0] } ],
+  "motions": [ { "body": "ball", "to": { "translation": [0, 0.01, 0] } } ] }"#;
+
+/// Runs that print every key, with the traces that they write.
+fn runs() -> (Names, Names) {
+    let folder = Folder::new();
+    let scene = folder.write("rising.json", RISING);
+    let flat = RISING.replace("\"dimension\": 3", "\"dimension\": 2");
+    let flat = folder
+        .write("flat.json", &flat.replace(", 0] }", "] }").replace(", 0.1, 0]", ", 0.1]"));
+    let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n";
+    let hand = folder.write("hand.csv", rows);
+    let trace = folder.name("trace.csv");
+    let (mut printed, mut columns) = (Names::new(), Names::new());
+    let stylus = ["scenes/stylus_in_cup.json", "--fast", "--duration", "0.1"];
+    for run in [
+        &[&stylus[..], &["--device", "simulated:sigma7"]].concat()[..],
+        &[&scene, "--path", &hand, "--device", "simulated:omega"],
+        &[&flat, "--fast", "--duration", "0.1"],
+    ] {
+        let feel = [&["feel"], run, &["--json", "--trace", &trace]].concat();
+        keys(&json(&feel), &mut printed);
+        let trace = std::fs::read_to_string(&trace).unwrap();
+        let header = trace.lines().next().unwrap().replace("body_0_", "body_N_");
+        columns.extend(header.split(',').map(str::to_owned));
+    }
+    (printed, columns)
+}
+
+#[test]
+fn the_keys_and_columns_of_feel_are_documented() {
+    let (printed, columns) = runs();
+    assert_same(&documented("Reports of runs", true), &printed);
+    assert_same(&documented("Traces", false), &columns);
+}
+
+#[test]
+fn the_keys_of_devices_and_jitter_are_documented() {
+    for (heading, command) in [
+        ("Devices", &["devices", "--json"][..]),
+        ("Lateness", &["jitter", "--duration", "0.03", "--json"]),
+    ] {
+        let mut printed = Names::new();
+        keys(&json(command), &mut printed);
+        assert_same(&documented(heading, true), &printed);
+    }
+}

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Lines that show a guide in a picture. They are no part of a tick: they allocate.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::TAU;
+
+use palpate_field::{Aabb, Point, Vector};
+
+use super::target::Target;
+use super::{Guide, Kind};
+
+/// The size of the cross at a point, as a part of the half diagonal of the box.
+const CROSS: f64 = 0.03;
+
+/// Corners of a circle: smooth at the size of a picture.
+const CORNERS: u32 = 96;
+
+impl<const D: usize> Guide<D> {
+    /// What a picture calls the guide: `"point"`, `"line"`, `"plane"`, `"curve"` (segments too),
+    /// `"well"` or `"slope"`.
+    ///
+    /// ```
+    /// use palpate_haptics::{Guide, GuideOptions};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let well = Guide::well([0.0, 0.1], 0.05, GuideOptions::default())?;
+    /// assert_eq!(well.kind_name(), "well");
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn kind_name(&self) -> &'static str {
+        match &self.kind {
+            Kind::Target(Target::Point(_)) => "point",
+            Kind::Target(Target::Line { .. }) => "line",
+            Kind::Target(Target::Plane { .. }) => "plane",
+            Kind::Target(Target::Curve(_)) => "curve",
+            Kind::Well(_) => "well",
+            Kind::Slope(_) => "slope",
+        }
+    }
+
+    /// Lines that show where the guide is [m], each a list of its corners: a cross at a point, a
+    /// line and the lines of a plane as far as they are in the box `within`, the curve itself,
+    /// and circles at the reach of a well. A slope has none: its shape shows it.
+    ///
+    /// ```
+    /// use palpate_field::{Aabb, Vector};
+    /// use palpate_haptics::{Guide, GuideOptions};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let options = GuideOptions::default();
+    /// let guide = Guide::along_line([0.0, 0.5], [2.0, 0.0], options)?;
+    /// let lines = guide.lines_within(&Aabb::centred(Vector([1.0, 2.0])));
+    /// assert_eq!(lines, [[Vector([-1.0, 0.5]), Vector([1.0, 0.5])]]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn lines_within(&self, within: &Aabb<D>) -> Vec<Vec<Point<D>>> {
+        match &self.kind {
+            Kind::Target(Target::Point(point)) => {
+                let arm = CROSS * within.half_extents().norm();
+                let cross = |axis| vec![*point - unit(axis) * arm, *point + unit(axis) * arm];
+                (0..D).map(cross).collect()
+            }
+            Kind::Target(Target::Line { through, direction }) => {
+                clipped(*through, *direction, within).into_iter().collect()
+            }
+            Kind::Target(Target::Plane { through, normal }) => {
+                let along = in_plane(*normal);
+                let lines =
+                    along.into_iter().filter_map(|axis| clipped(*through, axis, within));
+                lines.collect()
+            }
+            Kind::Target(Target::Curve(curve)) => vec![curve.corners()],
+            Kind::Well(well) => circles(well.centre(), well.reach()),
+            Kind::Slope(_) => Vec::new(),
+        }
+    }
+}
+
+fn unit<const D: usize>(axis: usize) -> Vector<f64, D> {
+    Vector(std::array::from_fn(|i| f64::from(u8::from(i == axis))))
+}
+
+/// Directions in the plane with this normal, those nearest to axes: one in 2D, two in 3D.
+fn in_plane<const D: usize>(normal: Vector<f64, D>) -> Vec<Vector<f64, D>> {
+    let mut known = vec![normal];
+    for axis in 0..D {
+        let rest = known.iter().fold(unit(axis), |rest, k| rest - *k * rest.dot(*k));
+        // Half of an axis is left of one of any D axes; less would be rounding.
+        if rest.norm() > 0.5 && known.len() < D {
+            known.extend(rest.normalized());
+        }
+    }
+    known.split_off(1)
+}
+
+/// The part of a line in a box; `None` if there is none.
+fn clipped<const D: usize>(
+    through: Point<D>,
+    direction: Vector<f64, D>,
+    within: &Aabb<D>,
+) -> Option<Vec<Point<D>>> {
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    let (min, max) = (within.min.0, within.max.0);
+    for (((at, along), low), high) in through.0.iter().zip(direction.0).zip(min).zip(max) {
+        if along.abs() < f64::MIN_POSITIVE {
+            // Written so that NaN is outside.
+            let is_between = *at >= low && *at <= high;
+            if !is_between {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((low - at) / along, (high - at) / along);
+        (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+    }
+    (from < to).then(|| vec![through + direction * from, through + direction * to])
+}
+
+/// Circles about a centre, one in each plane of two axes.
+fn circles<const D: usize>(centre: Point<D>, radius: f64) -> Vec<Vec<Point<D>>> {
+    let pairs = (0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b)));
+    let circle = |(a, b): (usize, usize)| {
+        let corner = |i: u32| {
+            let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(CORNERS));
+            centre + (unit(a) * cos + unit(b) * sin) * radius
+        };
+        (0..=CORNERS).map(corner).collect()
+    };
+    pairs.map(circle).collect()
+}
