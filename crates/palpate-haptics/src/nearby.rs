@@ -140,14 +140,11 @@ impl<'a, const D: usize> Nearby<'a, D> {
     /// ```
     /// use palpate_field::{Pose, Shape, Vector};
     /// use palpate_haptics::{Bodies, Body, Surface};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let disc = || Body::new(Shape::circle(0.5)?, Surface::default());
     /// let right = disc()?.at(Pose::translation(Vector([2.0, 0.0])))?;
     /// let bodies = Bodies::new(vec![disc()?, right])?;
     /// assert_eq!(bodies.everything().nearest(Vector([1.75, 0.0])), (-0.25, 1));
-    /// # Ok(())
-    /// # }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
     pub fn nearest(&self, p: Point<D>) -> (f64, u32) {

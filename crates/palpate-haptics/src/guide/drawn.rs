@@ -24,12 +24,9 @@ impl<const D: usize> Guide<D> {
     ///
     /// ```
     /// use palpate_haptics::{Guide, GuideOptions};
-    ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let well = Guide::well([0.0, 0.1], 0.05, GuideOptions::default())?;
     /// assert_eq!(well.kind_name(), "well");
-    /// # Ok(())
-    /// # }
+    /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[must_use]
     pub fn kind_name(&self) -> &'static str {
@@ -50,14 +47,11 @@ impl<const D: usize> Guide<D> {
     /// ```
     /// use palpate_field::{Aabb, Vector};
     /// use palpate_haptics::{Guide, GuideOptions};
-    ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let options = GuideOptions::default();
     /// let guide = Guide::along_line([0.0, 0.5], [2.0, 0.0], options)?;
     /// let lines = guide.lines_within(&Aabb::centred(Vector([1.0, 2.0])));
     /// assert_eq!(lines, [[Vector([-1.0, 0.5]), Vector([1.0, 0.5])]]);
-    /// # Ok(())
-    /// # }
+    /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[must_use]
     pub fn lines_within(&self, within: &Aabb<D>) -> Vec<Vec<Point<D>>> {
@@ -77,7 +71,7 @@ impl<const D: usize> Guide<D> {
                 lines.collect()
             }
             Kind::Target(Target::Curve(curve)) => vec![curve.corners()],
-            Kind::Well(well) => circles(well.centre(), well.reach()),
+            Kind::Well(well) => circles(well.centre, well.reach),
             Kind::Slope(_) => Vec::new(),
         }
     }

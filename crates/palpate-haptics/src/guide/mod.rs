@@ -347,14 +347,11 @@ impl<const D: usize> Guide<D> {
     /// ```
     /// use palpate_field::Vector;
     /// use palpate_haptics::{Guide, GuideOptions};
-    ///
-    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
     /// let mut guide = Guide::to_point([0.0, 0.0], GuideOptions::default())?;
     /// assert_eq!(guide.last_force(), Vector::ZERO);
     /// let force = guide.force(Vector([0.0, 0.001]), Vector::ZERO);
     /// assert_eq!(guide.last_force(), force);
-    /// # Ok(())
-    /// # }
+    /// # Ok::<(), palpate_haptics::HapticsError>(())
     /// ```
     #[must_use]
     pub fn last_force(&self) -> Vector<f64, D> {

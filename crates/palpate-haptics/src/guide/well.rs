@@ -13,11 +13,11 @@ use palpate_safety::NumberError;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Well<const D: usize> {
-    centre: Point<D>,
+    pub(super) centre: Point<D>,
     /// The distance at which the pull is largest [m].
     inner: f64,
     /// The distance at which the pull ends [m].
-    reach: f64,
+    pub(super) reach: f64,
     /// The largest pull [N].
     max_force: f64,
 }
@@ -36,15 +36,6 @@ impl<const D: usize> Well<D> {
         }
         let (parameter, rule) = ("reach", "more than max_force / stiffness");
         Err(HapticsError::Number(NumberError::new(parameter, rule, reach, "m")))
-    }
-
-    pub(super) fn centre(&self) -> Point<D> {
-        self.centre
-    }
-
-    /// The distance at which the pull ends [m].
-    pub(super) fn reach(&self) -> f64 {
-        self.reach
     }
 
     /// The pull at `position` [N], and the part of the damper that acts there; `None` beyond

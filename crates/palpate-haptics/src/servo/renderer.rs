@@ -199,15 +199,12 @@ impl<const D: usize> Renderer<D> {
     /// ```
     /// use palpate_field::{Shape, Vector};
     /// use palpate_haptics::{Guide, GuideOptions, PointState, UnprotectedServo};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let mut servo = UnprotectedServo::new(Shape::circle(0.05)?, 1, Default::default())?;
     /// servo.guide(&[Guide::to_point([0.0, 0.1], GuideOptions::default())?]);
     /// servo.step(&[PointState::at_rest(Vector([0.0, 0.103]))]);
     /// assert!(servo.guides(0)[0].is_engaged());
     /// assert!((servo.guides(0)[0].last_force() - Vector([0.0, -0.9])).norm() < 1e-12);
-    /// # Ok(())
-    /// # }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
     pub fn guides(&self, point: u32) -> &[Guide<D>] {
