@@ -48,10 +48,13 @@ const STEEPEST: f64 = 4.0;
 /// hand deeper than the probe's radius would leave its proxy behind there.
 const SHARPEST: f64 = 0.9;
 
-/// The surface has a lip where the cosine of the angle between the normals of one step is below
-/// this. In a field that is a bound a lip stays sharp whatever the probe's radius; a hand
-/// pressed over it would leave its proxy behind below the lip.
-const LIP: f64 = 0.0;
+/// The surface has a lip where the cosine of the angle between the normals of two near points is
+/// below this. A hand pressed over a lip would leave its proxy behind: friction holds the proxy
+/// back, and in a field that is a bound a lip stays sharp whatever the probe's radius.
+const LIP: f64 = 0.5;
+
+/// The lag of a proxy that friction holds back, in depths: a lip within it keeps the proxy.
+const LAG: f64 = 2.0;
 
 /// The hand's detail, as a multiple of its depth or the probe's radius: the hand flies over
 /// shorter notches and enters longer ones.
@@ -132,6 +135,8 @@ pub struct Tour<const D: usize> {
     probe_radius: f64,
     depth: Option<f64>,
     speed: f64,
+    /// How far friction lets a proxy lag behind the hand along a surface, in depths.
+    lag: f64,
 }
 
 impl<const D: usize> Tour<D> {
@@ -157,7 +162,7 @@ impl<const D: usize> Tour<D> {
         let duration = NumberError::check_positive("duration", duration, "s")?;
         let probe_radius = palpate_haptics::Probe::default().radius();
         let speed = 0.3 * size.sqrt();
-        Ok(Self { bounds, duration, size, probe_radius, depth: None, speed })
+        Ok(Self { bounds, duration, size, probe_radius, depth: None, speed, lag: LAG })
     }
 
     /// This tour with another probe radius [m]; depths are below the surface offset by it.
@@ -338,17 +343,20 @@ impl<const D: usize> Tour<D> {
     }
 
     /// 1 for each point that is deeper than it may be, or halfway to its neighbour is, or is
-    /// further from it than the surface is steep, or over a lip from it; 0 for the others.
+    /// further from it than the surface is steep, or shortly before a lip; 0 for the others.
     fn too_deep(&self, shape: &Shape<D>, positions: &[Point<D>]) -> Vec<f64> {
         let deepest = DEEPEST * self.depth() + RAY_TOLERANCE * self.size;
         let lowest = self.probe_radius - deepest;
+        let reach = self.lag * self.depth();
         (0..positions.len())
             .map(|i| {
                 let (here, next) = (positions[i], positions[(i + 1).min(positions.len() - 1)]);
                 let halfway = (here + next) * 0.5;
                 let is_deep = shape.distance(here) < lowest || shape.distance(halfway) < lowest;
                 let is_far = (next - here).norm() > 0.5 * self.detail();
-                f64::from(u8::from(is_deep || is_far || self.crosses_lip(shape, here, next)))
+                let ahead = positions[i + 1..].iter().find(|p| (**p - here).norm() >= reach);
+                let is_over = ahead.is_some_and(|ahead| self.crosses_lip(shape, here, *ahead));
+                f64::from(u8::from(is_deep || is_far || is_over))
             })
             .collect()
     }

@@ -304,6 +304,8 @@ impl<const D: usize> Outlook<'_, D> {
             size,
             speed: self.tour.speed * (size / self.tour.size).sqrt(),
             depth: Some(self.tour.depth().min(VISIT_DEPTH * size)),
+            // What is steep is hidden, and a body may be no wider than the lag.
+            lag: 0.0,
             ..*self.tour
         };
         let feet = wound(target, tour.speed * time);
