@@ -30,6 +30,9 @@ const MOST_POINTS: f64 = 1_000_000.0;
 /// The most steps of a ray: enough for a surface at a grazing angle.
 const RAY_STEPS: u32 = 128;
 
+/// The steepest field for which rays take as many more steps: a screw thread has 40.
+const STEEPEST_FIELD: f64 = 64.0;
+
 /// How far the orbit is from the shape's box, as a part of the shape's size.
 const ORBIT_HEIGHT: f64 = 0.2;
 
@@ -418,7 +421,9 @@ impl<const D: usize> Tour<D> {
         let lipschitz = shape.promise().lipschitz;
         let tolerance = RAY_TOLERANCE * self.size;
         let mut height = length;
-        for _ in 0..RAY_STEPS {
+        // Steps are shorter by the steepness, and as many more are needed.
+        let steps = (f64::from(RAY_STEPS) * lipschitz.clamp(1.0, STEEPEST_FIELD)) as u32;
+        for _ in 0..steps {
             let point = from - up * (length - height);
             let gap = shape.distance(point) - self.probe_radius;
             if gap <= tolerance {

@@ -345,6 +345,16 @@ fn a_short_tour_comes_to_sides_and_top() {
     }
 }
 
+/// The rays over a nut on its bolt gave up before they reached its thread.
+#[test]
+fn a_tour_finds_the_surface_of_a_steep_field() {
+    let thread = cuboid([0.02, 0.06, 0.02]).twisted(2500.0).unwrap();
+    assert!(thread.promise().lipschitz > 30.0);
+    let path = tour(&thread);
+    let touches = path.positions().iter().filter(|p| thread.distance(**p) < 0.002).count();
+    assert!(touches > path.positions().len() / 10, "{touches} of {}", path.positions().len());
+}
+
 #[test]
 fn nothing_to_touch_is_an_error() {
     let far = Aabb::centred(Vector([0.1; 3]));
