@@ -82,8 +82,9 @@ fn no_proxy_is_left_behind_in_the_gallery() {
     for duration in ["10", "11"] {
         let report = json(&["feel", "--fast", "--duration", duration, "--json"]);
         let depth = report["largest_depth"].as_f64().unwrap();
-        // Pressed to 3/4 of a probe of 3 mm, and held back by friction before edges.
-        assert!(depth < 0.006, "{depth} m deep in {duration} s");
+        // Pressed to 3/4 of a probe of 3 mm. Friction keeps the proxy on one side of an apex for some
+        // milliseconds, while the hand passes over it; one left behind would be decimetres away.
+        assert!(depth < 0.01, "{depth} m deep in {duration} s");
     }
 }
 
