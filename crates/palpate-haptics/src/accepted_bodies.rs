@@ -109,27 +109,22 @@ impl<const D: usize> Protection<D> {
         Ok(AcceptedBodies { bodies, coupling: None, accepted, protection })
     }
 
-    /// Accepts bodies and the coupling of a tool together: the factor that the worst layer in
-    /// series with the coupling needs scales all of them. If the device gives a torque, a
-    /// second entry holds the accepted angular stiffness and damping.
+    /// Accepts bodies and the coupling of a tool together: as layers in series with the coupling.
+    /// If the device gives a torque, a second entry holds the accepted angular stiffness and
+    /// damping.
     fn accept_tool(
         &self,
         mut bodies: Bodies<D>,
         mut coupling: Coupling,
         rate: f64,
     ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
-        let mut worst: Option<Accepted> = None;
-        for layer in layers(&bodies)? {
-            let accepted = self.accepted(coupling.on(layer)?, rate)?;
-            if worst.as_ref().is_none_or(|worst| accepted.factor < worst.factor) {
-                worst = Some(accepted);
-            }
-        }
-        if let Some(worst) = worst.as_ref().filter(|worst| worst.factor < 1.0) {
-            bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(worst.factor));
-            coupling = coupling.softened(worst.factor);
-        }
-        let mut accepted: Vec<_> = worst.into_iter().collect();
+        let in_series = layers(&bodies)?.into_iter().map(|layer| coupling.on(layer));
+        let in_series: Vec<_> = in_series.collect::<Result<_, _>>()?;
+        let along = self.accepted(&in_series, rate)?;
+        let (stiffness, damping) = (along.stiffness_factor, along.damping_factor);
+        bodies.bodies_mut().iter_mut().for_each(|body| body.scale_surface(stiffness, damping));
+        coupling = coupling.softened(stiffness, damping);
+        let mut accepted = vec![along];
         if let Some(turning) = self.torques() {
             let turning = self.accept_turning(&layers(&bodies)?, &mut coupling, turning, rate);
             accepted.push(turning?);
@@ -160,14 +155,14 @@ impl<const D: usize> Protection<D> {
         let limits = DeviceLimits::about(turning);
         // A torque at the device is this multiple of the torque in the world.
         let scale = 1.0 / self.map.scale();
-        let of =
-            |impedance, acceptance| Accepted::of(impedance, scale, &limits, acceptance, rate);
-        if self.acceptance == Acceptance::Strict {
-            return Ok(of(coupling.turning_on(part, damping)?, Acceptance::Strict)?);
+        let of = |impedance| Accepted::of(impedance, scale, &limits, self.acceptance, rate);
+        if self.is_strict {
+            return Ok(of(coupling.turning_on(part, damping)?)?.unchanged()?);
         }
-        let accepted = of(coupling.turning_on(part, 0.0)?, self.acceptance)?;
-        *coupling = coupling.softened_about_axes(accepted.factor);
-        if self.acceptance == Acceptance::Scaled {
+        let accepted = of(coupling.turning_on(part, 0.0)?)?;
+        let (stiffness, own_damping) = (accepted.stiffness_factor, accepted.damping_factor);
+        *coupling = coupling.softened_about_axes(stiffness, own_damping);
+        if self.acceptance != Acceptance::AsIs {
             let taken = 0.5 * accepted.device_stiffness / rate + accepted.device_damping;
             let left = (turning.least_damping - taken)
                 .min(turning.max_damping - accepted.device_damping)

@@ -114,9 +114,9 @@ impl<const D: usize> Body<D> {
         &self.world_from_body
     }
 
-    /// Multiplies stiffness and damping by `factor`.
-    pub(crate) fn scale_surface(&mut self, factor: f64) {
-        self.surface = self.surface.scaled(factor);
+    /// Leaves these shares of the surface's stiffness and of its damping.
+    pub(crate) fn scale_surface(&mut self, stiffness: f64, damping: f64) {
+        self.surface = self.surface.scaled(stiffness, damping);
     }
 
     /// A vector of the world in the body's coordinates.

@@ -61,7 +61,7 @@ impl<const D: usize> Protection<D> {
     fn safety_options(&self, impedance: Impedance) -> SafetyOptions {
         SafetyOptions::new(impedance)
             .with_scale(self.map.scale())
-            .with_acceptance(Acceptance::AsItIs)
+            .with_acceptance(Acceptance::AsIs)
             .with_passivity_control(self.has_passivity_control)
             .with_rise_time(self.rise_time)
     }

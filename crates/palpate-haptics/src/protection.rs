@@ -33,8 +33,10 @@ pub struct Protection<const D: usize> {
     pub profile: DeviceProfile,
     /// The map between device and world coordinates.
     pub map: WorkspaceMap<D>,
-    /// How bodies that the device cannot render are treated.
+    /// What the device renders of the bodies.
     pub acceptance: Acceptance,
+    /// Whether bodies are refused of which the device renders less than all.
+    pub is_strict: bool,
     /// Whether the passivity controller acts; the passivity observer always runs.
     pub has_passivity_control: bool,
     /// The time over which the force rises after the start and after a proxy is placed anew
@@ -43,14 +45,15 @@ pub struct Protection<const D: usize> {
 }
 
 impl<const D: usize> Protection<D> {
-    /// Protection with every stage on and the identity map. Bodies that the device cannot
-    /// render are made softer; forces rise within 0.1 s.
+    /// Protection with every stage on and the identity map. The device renders what it can of the
+    /// bodies ([`Acceptance::Device`]); forces rise within 0.1 s.
     #[must_use]
     pub fn new(profile: DeviceProfile) -> Self {
         Self {
             profile,
             map: WorkspaceMap::default(),
-            acceptance: Acceptance::Scaled,
+            acceptance: Acceptance::Device,
+            is_strict: false,
             has_passivity_control: true,
             rise_time: 0.1,
         }
@@ -62,10 +65,16 @@ impl<const D: usize> Protection<D> {
         Self { map, ..self }
     }
 
-    /// The same protection with another way to treat bodies that the device cannot render.
+    /// The same protection with another choice of what the device renders of the bodies.
     #[must_use]
     pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
         Self { acceptance, ..self }
+    }
+
+    /// The same protection, refusing bodies of which the device renders less than all, or not.
+    #[must_use]
+    pub fn with_strictness(self, is_strict: bool) -> Self {
+        Self { is_strict, ..self }
     }
 
     /// The same protection with the passivity controller on or off.
@@ -80,12 +89,13 @@ impl<const D: usize> Protection<D> {
         Self { rise_time, ..self }
     }
 
-    /// The bodies as the device renders them at `rate` [Hz]: the stiffness and damping of each
-    /// body are scaled by the factor that its worst layer needs.
+    /// The bodies as the device renders them at `rate` [Hz]: all layers of a body have the share of
+    /// stiffness and the share of damping that [`Accepted::of_layers`] gives.
     ///
     /// # Errors
     ///
-    /// As [`Accepted::new`], or [`Accepted::strict`] with [`Acceptance::Strict`].
+    /// As [`Accepted::new`]; [`SafetyError::MaterialRefused`](palpate_safety::SafetyError) of strict
+    /// protection.
     pub fn accept(
         &self,
         mut bodies: Bodies<D>,
@@ -93,29 +103,23 @@ impl<const D: usize> Protection<D> {
     ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
         for body in bodies.bodies_mut() {
-            let mut worst: Option<Accepted> = None;
-            for impedance in body.surface().impedances() {
-                let accepted = self.accepted(impedance?, rate)?;
-                if worst.as_ref().is_none_or(|worst| accepted.factor < worst.factor) {
-                    worst = Some(accepted);
-                }
-            }
-            let Some(worst) = worst else { continue };
-            if worst.factor < 1.0 {
-                body.scale_surface(worst.factor);
-            }
-            all.push(worst);
+            let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
+            let accepted = self.accepted(&layers, rate)?;
+            body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
+            all.push(accepted);
         }
         Ok((bodies, all))
     }
 
+    /// What the device renders of layers.
     pub(crate) fn accepted(
         &self,
-        impedance: Impedance,
+        layers: &[Impedance],
         rate: f64,
     ) -> Result<Accepted, HapticsError> {
         let scale = self.map.scale();
         let limits = DeviceLimits::along(&self.profile);
-        Ok(Accepted::of(impedance, scale, &limits, self.acceptance, rate)?)
+        let accepted = Accepted::of_layers(layers, scale, &limits, self.acceptance, rate)?;
+        Ok(if self.is_strict { accepted.unchanged()? } else { accepted })
     }
 }

@@ -1,33 +1,41 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Which materials a device renders passively, and how others are scaled.
+//! How stiff and how damped a material may be on a device.
 //!
 //! The rules bound the Z-width of a device, the range of impedances that it renders passively.
 //! J. E. Colgate, G. G. Schenkel, "Passivity of a class of sampled-data systems: application to
 //! haptic interfaces" (1997): `b > K T / 2 + |B|`. J. J. Abbott, A. M. Okamura, "Effects of
 //! position quantization and sampling rate on virtual-wall passivity" (2005): `K ≤ min(2 b / T,
 //! 2 f_c / Δ)`.
+//!
+//! Stiffness comes first, and damping takes what is left: a hand feels a soft wall at once, and
+//! seldom misses a damper.
 
 use std::sync::Arc;
 
 use crate::device::DeviceProfile;
-use crate::error::{NumberError, SafetyError};
+use crate::error::{NumberError, Refused, SafetyError};
 use crate::impedance::Impedance;
 use crate::limits::DeviceLimits;
 
-/// How a material that a device cannot render is treated.
+/// The rate for which profiles state the largest stiffness and damping [Hz].
+const STATED_RATE: f64 = 1000.0;
+
+/// What a device renders of a material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Acceptance {
-    /// Stiffness and damping are scaled down by the same factor.
+    /// What needs no controller in any hand: beside the rules of [`Device`](Self::Device), the
+    /// physical damping alone dissipates what sampling generates, `K ≤ 2 b / T`.
+    Passive,
+    /// As stiff as the device renders well at this rate, and as damped as its physical damping
+    /// leaves room for. The passivity controller takes care of what is left.
     #[default]
-    Scaled,
-    /// The material is refused with an error.
-    Strict,
-    /// The material stays as it is: the passivity controller alone keeps the hand safe.
-    AsItIs,
+    Device,
+    /// As it is: the passivity controller alone keeps the hand safe.
+    AsIs,
 }
 
 /// A rule that limits what a device renders.
@@ -36,21 +44,25 @@ pub enum Acceptance {
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Rule {
-    /// `K ≤ 2 (b − |B|) / T`, Colgate and Schenkel (1997).
+    /// `K ≤ 2 b / T`, Colgate and Schenkel (1997); with [`Acceptance::Passive`] alone.
     Passivity,
     /// `K ≤ 2 f_c / Δ`, Abbott and Okamura (2005).
     Quantisation,
-    /// The device's largest stiffness.
+    /// The device's largest stiffness at the servo's rate.
     MaxStiffness,
-    /// The device's largest damping.
+    /// `B ≤ b − K T / 2`: the damping that the stiffness leaves, Colgate and Schenkel (1997).
+    DampingLeft,
+    /// The device's largest damping at the servo's rate.
     MaxDamping,
-    /// `κ ≤ 2 (b − |β|) / T`: passivity of rotation.
+    /// `κ ≤ 2 b / T`: passivity of rotation.
     AngularPassivity,
     /// `κ ≤ 2 f_c / Δ`: quantisation of rotation.
     AngularQuantisation,
-    /// The device's largest angular stiffness.
+    /// The device's largest angular stiffness at the servo's rate.
     MaxAngularStiffness,
-    /// The device's largest angular damping.
+    /// `β ≤ b − κ T / 2`: the damping that the stiffness leaves.
+    AngularDampingLeft,
+    /// The device's largest angular damping at the servo's rate.
     MaxAngularDamping,
 }
 
@@ -59,37 +71,50 @@ impl Rule {
     #[must_use]
     pub fn condition(self) -> &'static str {
         match self {
-            Self::Passivity => "K ≤ 2 (b − |B|) / T",
+            Self::Passivity => "K ≤ 2 b / T",
             Self::Quantisation => "K ≤ 2 f_c / Δ",
-            Self::MaxStiffness => "K ≤ the device's largest stiffness",
-            Self::MaxDamping => "B ≤ the device's largest damping",
-            Self::AngularPassivity => "κ ≤ 2 (b − |β|) / T",
+            Self::MaxStiffness => "K ≤ the device's largest stiffness at this rate",
+            Self::DampingLeft => "B ≤ b − K T / 2",
+            Self::MaxDamping => "B ≤ the device's largest damping at this rate",
+            Self::AngularPassivity => "κ ≤ 2 b / T about axes",
             Self::AngularQuantisation => "κ ≤ 2 f_c / Δ about axes",
-            Self::MaxAngularStiffness => "κ ≤ the device's largest angular stiffness",
-            Self::MaxAngularDamping => "β ≤ the device's largest angular damping",
+            Self::MaxAngularStiffness => {
+                "κ ≤ the device's largest angular stiffness at this rate"
+            }
+            Self::AngularDampingLeft => "β ≤ b − κ T / 2 about axes",
+            Self::MaxAngularDamping => "β ≤ the device's largest angular damping at this rate",
         }
+    }
+}
+
+impl Rule {
+    /// Whether the rule is about rotation.
+    pub(crate) fn is_angular(self) -> bool {
+        matches!(
+            self,
+            Self::AngularPassivity
+                | Self::AngularQuantisation
+                | Self::MaxAngularStiffness
+                | Self::AngularDampingLeft
+                | Self::MaxAngularDamping
+        )
     }
 }
 
 /// A material as a device renders it.
 ///
-/// With the stiffness `K` and damping `B` at the device, a period `T`, the device's least
-/// damping `b`, friction `f_c` and encoder step `Δ`, a material is accepted if
+/// With the stiffness `K` and the damping `B` at the device, a period `T`, and the device's least
+/// damping `b`, friction `f_c` and encoder step `Δ`, the device renders
 ///
 /// ```text
-/// K ≤ min(2 (b − |B|) / T, 2 f_c / Δ),  K ≤ K_max,  B ≤ B_max
+/// K = min(K asked for, K_max(T), 2 f_c / Δ)         and ≤ 2 b / T with Acceptance::Passive
+/// B = min(B asked for, B_max(T), max(0, b − K T / 2))
 /// ```
 ///
-/// Otherwise both are multiplied by the largest factor `s` that satisfies every rule:
-///
-/// ```text
-/// s = min(b / (K T / 2 + B), 2 f_c / (Δ K), K_max / K, B_max / B)
-/// ```
-///
-/// The rule with `f_c` does not apply without encoder steps or with infinite friction.
-/// Passivity depends on the numbers of the profile, some of which may be
-/// [`assumed`](Self::assumed). A profile states its largest stiffness and damping for 1 kHz;
-/// the same numbers are used at any rate.
+/// A profile states its largest stiffness and damping for 1 kHz; both grow with the rate, as the
+/// energy does that a wall generates between two samples: `K_max(T) = K_max · 1 ms / T`. The rule
+/// with `f_c` does not apply without encoder steps or with infinite friction. Some numbers of the
+/// profile may be [`assumed`](Self::assumed).
 ///
 /// Rotation follows the same rules, with the numbers of the
 /// [`TurningProfile`](crate::TurningProfile), the angular stiffness `κ` [N·m/rad] for `K` and
@@ -101,11 +126,17 @@ impl Rule {
 /// use palpate_safety::{Accepted, DeviceProfile, Impedance, Rule};
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-/// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
-/// // b / (K T / 2 + B) = 0.5 / (1.5 + 0.5)
-/// let accepted = Accepted::new(Impedance::new(3000.0, 0.5)?, 1.0, &device, 1000.0)?;
-/// assert_eq!((accepted.factor, accepted.rule), (0.25, Some(Rule::Passivity)));
-/// assert_eq!(accepted.impedance, Impedance::new(750.0, 0.125)?);
+/// let device =
+///     DeviceProfile::unlimited("example").with_max_stiffness(1500.0).with_least_damping(1.0);
+/// let asked = Impedance::new(3000.0, 0.5)?;
+/// let accepted = Accepted::new(asked, 1.0, &device, 1000.0)?;
+/// // b − K T / 2 = 1 − 0.75
+/// assert_eq!(accepted.impedance, Impedance::new(1500.0, 0.25)?);
+/// assert_eq!(accepted.stiffness_rule, Some(Rule::MaxStiffness));
+/// assert_eq!((accepted.stiffness_factor, accepted.damping_factor), (0.5, 0.5));
+/// // At twice the rate the same device is twice as stiff.
+/// let faster = Accepted::new(asked, 1.0, &device, 2000.0)?;
+/// assert_eq!(faster.impedance, Impedance::new(3000.0, 0.25)?);
 /// # Ok(())
 /// # }
 /// ```
@@ -116,14 +147,22 @@ pub struct Accepted {
     /// The stiffness and damping to render, in the world; angular for a rotational entry.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub impedance: Impedance,
+    /// The stiffness that was asked for, at the device [N/m]; [N·m/rad] for a rotational entry.
+    pub requested_stiffness: f64,
+    /// The damping that was asked for, at the device [N·s/m]; [N·m·s/rad] for a rotational entry.
+    pub requested_damping: f64,
     /// The stiffness at the device [N/m]; [N·m/rad] for a rotational entry.
     pub device_stiffness: f64,
     /// The damping at the device [N·s/m]; [N·m·s/rad] for a rotational entry.
     pub device_damping: f64,
-    /// The factor that stiffness and damping were multiplied by, in (0, 1].
-    pub factor: f64,
-    /// The rule that determined the factor; `None` if the factor is one.
-    pub rule: Option<Rule>,
+    /// The share of the stiffness that the device renders, in (0, 1].
+    pub stiffness_factor: f64,
+    /// The rule that determined that share; `None` if it is one.
+    pub stiffness_rule: Option<Rule>,
+    /// The share of the damping that the device renders, in [0, 1]; one without damping.
+    pub damping_factor: f64,
+    /// The rule that determined that share; `None` if it is one.
+    pub damping_rule: Option<Rule>,
     /// Names of the device's numbers that are assumed.
     #[cfg_attr(feature = "serde", serde(serialize_with = "as_list"))]
     pub assumed: Arc<[&'static str]>,
@@ -145,44 +184,15 @@ impl Accepted {
     /// # Errors
     ///
     /// [`SafetyError::Number`] if rate or scale is not positive and finite, if a number of the
-    /// profile that a rule needs is not positive, or if the scaled stiffness is zero: such a
-    /// device renders no wall.
+    /// profile that a rule needs is not positive, or if no stiffness is left: such a device renders
+    /// no wall.
     pub fn new(
         impedance: Impedance,
         scale: f64,
         device: &DeviceProfile,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        Self::of(impedance, scale, &DeviceLimits::along(device), Acceptance::Scaled, rate)
-    }
-
-    /// As [`new`](Self::new), but refuses an impedance that would have to be scaled.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new), or [`SafetyError::MaterialRefused`].
-    ///
-    /// ```
-    /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
-    ///
-    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
-    /// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
-    /// let refused = Accepted::strict(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0);
-    /// assert_eq!(
-    ///     refused.unwrap_err().to_string(),
-    ///     "a stiffness of 2000 N/m and a damping of 0 N·s/m at the device break \
-    ///      K ≤ 2 (b − |B|) / T; 0.5 times both would not"
-    /// );
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub fn strict(
-        impedance: Impedance,
-        scale: f64,
-        device: &DeviceProfile,
-        rate: f64,
-    ) -> Result<Self, SafetyError> {
-        Self::of(impedance, scale, &DeviceLimits::along(device), Acceptance::Strict, rate)
+        Self::of(impedance, scale, &DeviceLimits::along(device), Acceptance::Device, rate)
     }
 
     /// The part of `impedance` that a device with these limits renders; lengths in the world,
@@ -190,7 +200,7 @@ impl Accepted {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), or [`strict`](Self::strict) with [`Acceptance::Strict`].
+    /// As [`new`](Self::new).
     pub fn of(
         impedance: Impedance,
         scale: f64,
@@ -198,76 +208,151 @@ impl Accepted {
         acceptance: Acceptance,
         rate: f64,
     ) -> Result<Self, SafetyError> {
-        let (stiffness, damping) = at_device(impedance, scale)?;
-        let (mut factor, mut rule) = (1.0, None);
-        if acceptance != Acceptance::AsItIs {
-            for (limit, of) in factors(stiffness, damping, limits, rate)? {
-                if limit < factor {
-                    (factor, rule) = (limit, Some(of));
+        Self::of_layers(&[impedance], scale, limits, acceptance, rate)
+    }
+
+    /// As [`of`](Self::of), for a body of several layers. All have one share of their stiffness,
+    /// which the stiffest layer needs, and one share of their damping, the least that any layer
+    /// leaves room for. The entry is that of the stiffest layer.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), or if there is no layer.
+    pub fn of_layers(
+        layers: &[Impedance],
+        scale: f64,
+        limits: &DeviceLimits,
+        acceptance: Acceptance,
+        rate: f64,
+    ) -> Result<Self, SafetyError> {
+        let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
+        let rate = NumberError::check_rate(rate)?;
+        let stiffer =
+            |a: Impedance, b: Impedance| if b.stiffness() > a.stiffness() { b } else { a };
+        let stiffest = layers.iter().copied().reduce(stiffer);
+        let stiffest = stiffest.ok_or(NumberError::new("layers", "at least 1", 0.0, ""))?;
+        let (mut of_stiffness, mut of_damping) = (Share::WHOLE, Share::WHOLE);
+        if acceptance != Acceptance::AsIs {
+            let bounds = stiffness_bounds(limits, acceptance, rate)?;
+            of_stiffness = Share::within(scale * stiffest.stiffness(), &bounds);
+            for layer in layers.iter().filter(|layer| layer.damping() > 0.0) {
+                let stiffness = of_stiffness.factor * scale * layer.stiffness();
+                let bounds = damping_bounds(limits, stiffness, rate)?;
+                let share = Share::within(scale * layer.damping(), &bounds);
+                if share.factor < of_damping.factor {
+                    of_damping = share;
                 }
             }
         }
-        if let (Acceptance::Strict, Some(rule)) = (acceptance, rule) {
-            let condition = rule.condition();
-            return Err(if limits.is_turning {
-                SafetyError::TurningRefused { stiffness, damping, condition, factor }
-            } else {
-                SafetyError::MaterialRefused { stiffness, damping, condition, factor }
-            });
+        let impedance = Impedance::new(
+            of_stiffness.factor * stiffest.stiffness(),
+            of_damping.factor * stiffest.damping(),
+        )?;
+        Ok(Self {
+            impedance,
+            requested_stiffness: scale * stiffest.stiffness(),
+            requested_damping: scale * stiffest.damping(),
+            device_stiffness: scale * impedance.stiffness(),
+            device_damping: scale * impedance.damping(),
+            stiffness_factor: of_stiffness.factor,
+            stiffness_rule: of_stiffness.rule,
+            damping_factor: of_damping.factor,
+            damping_rule: of_damping.rule,
+            assumed: limits.assumed.clone(),
+        })
+    }
+
+    /// This, unless the device renders less than was asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::MaterialRefused`].
+    ///
+    /// ```
+    /// use palpate_safety::{Accepted, DeviceProfile, Impedance};
+    ///
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let accepted = Accepted::new(Impedance::new(2000.0, 0.0)?, 1.0, &device, 1000.0)?;
+    /// assert_eq!(
+    ///     accepted.unchanged().unwrap_err().to_string(),
+    ///     "the device renders stiffness and damping of 1000 N/m and 0 N·s/m, not the 2000 N/m and \
+    ///      0 N·s/m that are asked for: K ≤ the device's largest stiffness at this rate"
+    /// );
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn unchanged(self) -> Result<Self, SafetyError> {
+        match self.stiffness_rule.or(self.damping_rule) {
+            None => Ok(self),
+            Some(rule) => Err(Refused::new(&self, rule).into()),
         }
-        let impedance =
-            if rule.is_some() { impedance_times(impedance, factor)? } else { impedance };
-        let (device_stiffness, device_damping) = at_device(impedance, scale)?;
-        let assumed = limits.assumed.clone();
-        Ok(Self { impedance, device_stiffness, device_damping, factor, rule, assumed })
     }
 
     /// Copies `other`, except the names of assumed numbers: both belong to the same device.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn renew(&mut self, other: &Self) {
-        let Self { impedance, device_stiffness, device_damping, factor, rule, .. } = *other;
-        (self.impedance, self.factor, self.rule) = (impedance, factor, rule);
-        (self.device_stiffness, self.device_damping) = (device_stiffness, device_damping);
+        self.impedance = other.impedance;
+        self.requested_stiffness = other.requested_stiffness;
+        self.requested_damping = other.requested_damping;
+        self.device_stiffness = other.device_stiffness;
+        self.device_damping = other.device_damping;
+        self.stiffness_factor = other.stiffness_factor;
+        self.stiffness_rule = other.stiffness_rule;
+        self.damping_factor = other.damping_factor;
+        self.damping_rule = other.damping_rule;
     }
 }
 
-/// Stiffness [N/m] and damping [N·s/m] at the device, where forces equal those of the world and
-/// displacements are `scale` times smaller.
-fn at_device(impedance: Impedance, scale: f64) -> Result<(f64, f64), SafetyError> {
-    let scale = NumberError::check_positive("scale", scale, "(world per device)")?;
-    Ok((scale * impedance.stiffness(), scale * impedance.damping()))
+/// A share of what is asked for, and the rule that leaves no more.
+#[derive(Clone, Copy)]
+struct Share {
+    factor: f64,
+    rule: Option<Rule>,
 }
 
-fn impedance_times(impedance: Impedance, factor: f64) -> Result<Impedance, SafetyError> {
-    Impedance::new(factor * impedance.stiffness(), factor * impedance.damping())
+impl Share {
+    const WHOLE: Self = Self { factor: 1.0, rule: None };
+
+    /// The share of `asked` that is within all bounds.
+    fn within(asked: f64, bounds: &[(f64, Rule)]) -> Self {
+        bounds.iter().fold(Self::WHOLE, |least, (bound, rule)| {
+            let factor = bound / asked;
+            if factor < least.factor { Self { factor, rule: Some(*rule) } } else { least }
+        })
+    }
 }
 
-/// The largest factor that each rule allows; infinite where a rule does not apply.
-fn factors(
-    stiffness: f64,
-    damping: f64,
+/// The largest stiffness at the device that each rule allows; infinite where a rule does not apply.
+fn stiffness_bounds(
     limits: &DeviceLimits,
+    acceptance: Acceptance,
     rate: f64,
-) -> Result<[(f64, Rule); 4], SafetyError> {
-    let period = 1.0 / NumberError::check_rate(rate)?;
-    let least = limits.least_damping.positive()?;
-    let max_stiffness = limits.max_stiffness.positive()?;
-    let step = limits.encoder_step.not_negative()?;
-    let quantisation = if step > 0.0 {
-        2.0 * limits.friction.positive()? / (step * stiffness)
-    } else {
-        f64::INFINITY
+) -> Result<[(f64, Rule); 3], SafetyError> {
+    let least_damping = limits.least_damping.positive()?;
+    let passive = match acceptance {
+        Acceptance::Passive => 2.0 * least_damping * rate,
+        Acceptance::Device | Acceptance::AsIs => f64::INFINITY,
     };
-    let of_damping =
-        if damping > 0.0 { limits.max_damping.positive()? / damping } else { f64::INFINITY };
-    let [passive, seen, stiff, damped] = limits.rules;
-    Ok([
-        (least / (0.5 * period * stiffness + damping), passive),
-        (quantisation, seen),
-        (max_stiffness / stiffness, stiff),
-        (of_damping, damped),
-    ])
+    let step = limits.encoder_step.not_negative()?;
+    let seen =
+        if step > 0.0 { 2.0 * limits.friction.positive()? / step } else { f64::INFINITY };
+    let stated = limits.max_stiffness.positive()? * (rate / STATED_RATE);
+    let [of_passivity, of_steps, of_maker, ..] = limits.rules;
+    Ok([(passive, of_passivity), (seen, of_steps), (stated, of_maker)])
+}
+
+/// The largest damping at the device that each rule allows beside a stiffness.
+fn damping_bounds(
+    limits: &DeviceLimits,
+    stiffness: f64,
+    rate: f64,
+) -> Result<[(f64, Rule); 2], SafetyError> {
+    let left = (limits.least_damping.positive()? - 0.5 * stiffness / rate).max(0.0);
+    let stated = limits.max_damping.positive()? * (rate / STATED_RATE);
+    let [.., of_rest, of_maker] = limits.rules;
+    Ok([(left, of_rest), (stated, of_maker)])
 }
 
 #[cfg(test)]
@@ -291,6 +376,12 @@ mod tests {
         Accepted::new(Impedance::new(stiffness, damping).unwrap(), 1.0, device, 1000.0).unwrap()
     }
 
+    fn passive(stiffness: f64, damping: f64, device: &DeviceProfile) -> Accepted {
+        let impedance = Impedance::new(stiffness, damping).unwrap();
+        let limits = DeviceLimits::along(device);
+        Accepted::of(impedance, 1.0, &limits, Acceptance::Passive, 1000.0).unwrap()
+    }
+
     #[test]
     fn every_rule_binds_somewhere() {
         let base = device();
@@ -299,52 +390,89 @@ mod tests {
             change(&mut device);
             device
         };
-        let rule_of = |k, b, device: &DeviceProfile| {
-            let accepted = accept(k, b, device);
-            (accepted.factor, accepted.rule)
-        };
-        assert_eq!(rule_of(1000.0, 0.0, &base), (1.0, None));
-        assert_eq!(rule_of(2000.0, 0.0, &base), (0.5, Some(Rule::Passivity)));
-        assert_eq!(rule_of(1000.0, 0.5, &base), (0.5, Some(Rule::Passivity)));
+        let of_stiffness = |a: Accepted| (a.device_stiffness, a.stiffness_rule);
+        let of_damping = |a: Accepted| (a.device_damping, a.damping_rule);
+        assert_eq!(of_stiffness(accept(1000.0, 0.0, &base)), (1000.0, None));
+        assert_eq!(of_stiffness(accept(2000.0, 0.0, &base)), (2000.0, None));
+        let sampled = (1000.0, Some(Rule::Passivity));
+        assert_eq!(of_stiffness(passive(2000.0, 0.0, &base)), sampled);
         let rough = with(&|d| d.encoder_step = 0.000_25);
-        assert_eq!(rule_of(1000.0, 0.0, &rough), (0.5, Some(Rule::Quantisation)));
+        let seen = (500.0, Some(Rule::Quantisation));
+        assert_eq!(of_stiffness(accept(1000.0, 0.0, &rough)), seen);
         let soft = with(&|d| d.max_stiffness = 250.0);
-        assert_eq!(rule_of(1000.0, 0.0, &soft), (0.25, Some(Rule::MaxStiffness)));
+        let stated = (250.0, Some(Rule::MaxStiffness));
+        assert_eq!(of_stiffness(accept(1000.0, 0.0, &soft)), stated);
+        // b − K T / 2 = 0.5 − 0.25, and nothing beside 2 b / T and more.
+        let left = |damping: f64| (damping, Some(Rule::DampingLeft));
+        assert_eq!(of_damping(accept(500.0, 0.5, &base)), left(0.25));
+        assert_eq!(of_damping(accept(1500.0, 0.5, &base)), left(0.0));
         let thin = with(&|d| d.max_damping = 0.0625);
-        assert_eq!(rule_of(100.0, 0.25, &thin), (0.25, Some(Rule::MaxDamping)));
+        let stated = (0.0625, Some(Rule::MaxDamping));
+        assert_eq!(of_damping(accept(100.0, 0.25, &thin)), stated);
         let free = with(&|d| d.friction = f64::INFINITY);
-        assert_eq!(rule_of(1000.0, 0.0, &free), (1.0, None));
+        assert_eq!(of_stiffness(accept(1000.0, 0.0, &free)), (1000.0, None));
     }
 
+    /// Damping takes no stiffness away: presets of 1000 N/m were felt with 75 N/m.
     #[test]
-    fn what_is_accepted_satisfies_every_rule_and_no_larger_factor_does() {
+    fn what_is_accepted_satisfies_every_rule_and_no_larger_share_does() {
         let device = device();
         cases(500, |u| {
             let k = f64::from(u.int_in_range(1..=20_000)?);
             let b = f64::from(u.int_in_range(0..=10_000)?) * 1e-3;
-            let accepted = accept(k, b, &device);
-            let holds = |s: f64, k: f64, b: f64| {
-                let (k, b) = (s * k, s * b);
-                k <= 2.0 * (0.5 - b) / 1e-3
-                    && k <= 2.0 * 0.0625 / 3e-5
-                    && k <= 2500.0
-                    && b <= 4.0
-            };
-            let (k_accepted, b_accepted) = (accepted.device_stiffness, accepted.device_damping);
-            assert!(holds(1.0 - 1e-12, k_accepted, b_accepted));
-            assert_eq!(accepted.rule.is_none(), accepted.factor == 1.0);
-            assert!(accepted.rule.is_none() || !holds(accepted.factor * (1.0 + 1e-12), k, b));
+            let rate = *u.choose(&[500.0, 1000.0, 4000.0, 10_000.0])?;
+            let acceptance = *u.choose(&[Acceptance::Passive, Acceptance::Device])?;
+            let impedance = Impedance::new(k, b).unwrap();
+            let limits = DeviceLimits::along(&device);
+            let accepted = Accepted::of(impedance, 1.0, &limits, acceptance, rate).unwrap();
+            let mut most = f64::min(2.0 * 0.0625 / 3e-5, 2.5 * rate);
+            if acceptance == Acceptance::Passive {
+                most = most.min(2.0 * 0.5 * rate);
+            }
+            let stiffness = k.min(most);
+            let damping = b.min((0.5 - 0.5 * stiffness / rate).max(0.0)).min(4e-3 * rate);
+            let off = |x: f64, y: f64| (x - y).abs() / x.max(1e-9);
+            assert!(off(stiffness, accepted.device_stiffness) < 1e-12, "{accepted:?}");
+            assert!((damping - accepted.device_damping).abs() < 1e-12, "{accepted:?}");
+            assert_eq!(accepted.stiffness_rule.is_none(), accepted.stiffness_factor == 1.0);
+            assert_eq!(accepted.damping_rule.is_none(), accepted.damping_factor == 1.0);
+            assert_eq!((accepted.requested_stiffness, accepted.requested_damping), (k, b));
             Ok(())
         });
+    }
+
+    #[test]
+    fn layers_have_one_share_of_stiffness_and_one_of_damping() {
+        let layers = [(1000.0, 0.1), (5000.0, 0.0), (500.0, 0.9)];
+        let layers = layers.map(|(k, b)| Impedance::new(k, b).unwrap());
+        let limits = DeviceLimits::along(&device());
+        let of = |layers: &[Impedance]| {
+            Accepted::of_layers(layers, 1.0, &limits, Acceptance::Device, 1000.0)
+        };
+        let accepted = of(&layers).unwrap();
+        assert_eq!(accepted.impedance, Impedance::new(2500.0, 0.0).unwrap());
+        assert_eq!(accepted.stiffness_factor, 0.5);
+        // The third layer has 250 N/m left, and 0.5 − 0.125 N·s/m of 0.9.
+        assert!((accepted.damping_factor - 0.375 / 0.9).abs() < 1e-15);
+        assert_eq!(accepted.damping_rule, Some(Rule::DampingLeft));
+        assert_eq!(of(&[]).unwrap_err().to_string(), "layers must be at least 1, got 0");
+    }
+
+    #[test]
+    fn a_material_as_it_is_keeps_every_number() {
+        let impedance = Impedance::new(1e6, 1e3).unwrap();
+        let limits = DeviceLimits::along(&device());
+        let accepted = Accepted::of(impedance, 1.0, &limits, Acceptance::AsIs, 1000.0).unwrap();
+        assert_eq!((accepted.impedance, accepted.stiffness_rule), (impedance, None));
+        accepted.unchanged().unwrap();
     }
 
     #[test]
     fn stiffness_at_the_device_counts() {
         let impedance = Impedance::new(1000.0, 0.0).unwrap();
         let accepted = Accepted::new(impedance, 4.0, &device(), 1000.0).unwrap();
-        assert_eq!(accepted.factor, 0.25);
-        assert_eq!(accepted.device_stiffness, 1000.0);
-        assert_eq!(accepted.impedance.stiffness(), 250.0);
+        assert_eq!((accepted.requested_stiffness, accepted.device_stiffness), (4000.0, 2500.0));
+        assert_eq!(accepted.impedance.stiffness(), 625.0);
         assert_eq!(accepted.assumed[..], ["least_damping"]);
     }
 

@@ -66,8 +66,10 @@ pub struct SafetyOptions {
     /// Lengths in the world over lengths at the device:
     /// [`WorkspaceMap::scale`](crate::WorkspaceMap::scale).
     pub scale: f64,
-    /// How a material that the device cannot render is treated.
+    /// What the device renders of the material.
     pub acceptance: Acceptance,
+    /// Whether a material is refused of which the device renders less than all.
+    pub is_strict: bool,
     /// Whether the passivity controller acts; the observer always runs. A force that must do
     /// work on the hand is incompatible with the controller.
     pub has_passivity_control: bool,
@@ -86,8 +88,8 @@ pub struct SafetyOptions {
 }
 
 impl SafetyOptions {
-    /// Options for `impedance` in a world of the device's scale. The impedance is scaled down
-    /// if necessary; passivity is controlled with a reserve of 0.1 mJ, which a hand does not
+    /// Options for `impedance` in a world of the device's scale. The device renders what it can of
+    /// it ([`Acceptance::Device`]); passivity is controlled with a reserve of 0.1 mJ, which a hand does not
     /// feel; motors cool within 2 s; forces rise within 0.2 s, and fall within 0.02 s after 5
     /// late ticks.
     #[must_use]
@@ -95,7 +97,8 @@ impl SafetyOptions {
         Self {
             impedance,
             scale: 1.0,
-            acceptance: Acceptance::Scaled,
+            acceptance: Acceptance::Device,
+            is_strict: false,
             has_passivity_control: true,
             reserve: 1e-4,
             cooling_time: 2.0,
@@ -117,10 +120,16 @@ impl SafetyOptions {
         Self { scale, ..self }
     }
 
-    /// The same options with another way to treat a material that the device cannot render.
+    /// The same options with another choice of what the device renders.
     #[must_use]
     pub const fn with_acceptance(self, acceptance: Acceptance) -> Self {
         Self { acceptance, ..self }
+    }
+
+    /// The same options, refusing a material of which the device renders less than all, or not.
+    #[must_use]
+    pub const fn with_strictness(self, is_strict: bool) -> Self {
+        Self { is_strict, ..self }
     }
 
     /// The same options with the passivity controller on or off.
@@ -221,7 +230,8 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// # Errors
     ///
-    /// As [`Accepted::new`], or [`Accepted::strict`] with [`Acceptance::Strict`].
+    /// As [`Accepted::new`], or [`SafetyError::MaterialRefused`] of a
+    /// [strict](SafetyOptions::is_strict) chain.
     /// [`SafetyError::Number`] if a limit of the device is not positive, its mass is negative,
     /// or an energy or a time of the options is negative or not finite.
     pub fn new(
@@ -233,6 +243,7 @@ impl<const D: usize> SafetyChain<D> {
         let SafetyOptions { impedance, scale, .. } = options;
         let limits = DeviceLimits::along(device);
         let accepted = Accepted::of(impedance, scale, &limits, options.acceptance, rate)?;
+        let accepted = if options.is_strict { accepted.unchanged()? } else { accepted };
         let damping = limits.least_damping.positive()?;
         let passivity = PassivityOptions {
             // A device with infinite damping is passive whatever it renders.

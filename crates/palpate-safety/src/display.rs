@@ -5,17 +5,20 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use crate::acceptance::Accepted;
+use crate::acceptance::{Accepted, Rule};
 use crate::report::SafetyReport;
 
 impl Display for Accepted {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Self { impedance, factor, rule, .. } = self;
-        write!(f, "stiffness {}, damping {}", impedance.stiffness(), impedance.damping())?;
-        match rule {
-            None => f.write_str(", as requested"),
-            Some(rule) => write!(f, ", {factor} times as requested: {}", rule.condition()),
-        }
+        let mut part = |name, number, factor, rule: Option<Rule>| {
+            write!(f, "{name} {number}")?;
+            rule.map_or(Ok(()), |rule| {
+                write!(f, " ({factor} times as requested: {})", rule.condition())
+            })
+        };
+        let impedance = self.impedance;
+        part("stiffness", impedance.stiffness(), self.stiffness_factor, self.stiffness_rule)?;
+        part(", damping", impedance.damping(), self.damping_factor, self.damping_rule)
     }
 }
 
@@ -50,14 +53,16 @@ mod tests {
     #[test]
     fn an_accepted_material_says_which_rule_made_it_softer()
     -> std::result::Result<(), SafetyError> {
-        let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
+        let device = DeviceProfile::unlimited("example")
+            .with_max_stiffness(1500.0)
+            .with_least_damping(1.0);
         let of = |stiffness, damping| {
             Accepted::new(Impedance::new(stiffness, damping)?, 1.0, &device, 1000.0)
         };
-        let said = "stiffness 750, damping 0.125, 0.25 times as requested: K ≤ 2 (b − |B|) / T";
+        let said = "stiffness 1500 (0.5 times as requested: K ≤ the device's largest stiffness at \
+                    this rate), damping 0.25 (0.5 times as requested: B ≤ b − K T / 2)";
         assert_eq!(of(3000.0, 0.5)?.to_string(), said);
-        let said = "stiffness 500, damping 0, as requested";
-        assert_eq!(of(500.0, 0.0)?.to_string(), said);
+        assert_eq!(of(500.0, 0.0)?.to_string(), "stiffness 500, damping 0");
         Ok(())
     }
 

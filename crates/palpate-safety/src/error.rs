@@ -3,6 +3,10 @@
 
 //! What can be wrong with a number, a material for a device, or a device.
 
+use std::fmt;
+
+use crate::acceptance::{Accepted, Rule};
+
 /// A number that breaks the rule of its parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{parameter} must be {rule}, got {value}{}{unit}", if unit.is_empty() { "" } else { " " })]
@@ -134,6 +138,49 @@ impl NumberError {
     }
 }
 
+/// What a device renders instead of what is asked of it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Refused {
+    /// The stiffness and the damping that are asked for, at the device [N/m, N·s/m]; angular about
+    /// axes [N·m/rad, N·m·s/rad].
+    pub asked: [f64; 2],
+    /// The stiffness and the damping that the device renders.
+    pub rendered: [f64; 2],
+    /// The rule that leaves no more.
+    pub rule: Rule,
+}
+
+impl Refused {
+    pub(crate) fn new(accepted: &Accepted, rule: Rule) -> Self {
+        Self {
+            asked: [accepted.requested_stiffness, accepted.requested_damping],
+            rendered: [accepted.device_stiffness, accepted.device_damping],
+            rule,
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (angular, [of_stiffness, of_damping]) = if self.rule.is_angular() {
+            ("angular ", ["N·m/rad", "N·m·s/rad"])
+        } else {
+            ("", ["N/m", "N·s/m"])
+        };
+        let ([asked, asked_damping], [stiffness, damping]) = (self.asked, self.rendered);
+        write!(
+            f,
+            "the device renders {angular}stiffness and damping of {stiffness} {of_stiffness} and \
+             {damping} {of_damping}, not the {asked} {of_stiffness} and {asked_damping} {of_damping} \
+             that are asked for: {}",
+            self.rule.condition()
+        )
+    }
+}
+
+impl std::error::Error for Refused {}
+
 /// Why a device cannot be protected as asked. Every variant carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -141,36 +188,9 @@ pub enum SafetyError {
     /// A number breaks the rule of its parameter.
     #[error(transparent)]
     Number(#[from] NumberError),
-    /// A device does not render a material, and is not to render a softer one.
-    #[error(
-        "a stiffness of {stiffness} N/m and a damping of {damping} N·s/m at the device break \
-         {condition}; {factor} times both would not"
-    )]
-    MaterialRefused {
-        /// Stiffness at the device [N/m].
-        stiffness: f64,
-        /// Damping at the device [N·s/m].
-        damping: f64,
-        /// The rule that is broken: "K ≤ 2 (b − |B|) / T".
-        condition: &'static str,
-        /// What both would have to be multiplied by.
-        factor: f64,
-    },
-    /// A device does not turn a tool with its coupling, and is not to be given a softer one.
-    #[error(
-        "an angular stiffness of {stiffness} N·m/rad and an angular damping of {damping} \
-         N·m·s/rad at the device break {condition}; {factor} times both would not"
-    )]
-    TurningRefused {
-        /// Angular stiffness at the device [N·m/rad].
-        stiffness: f64,
-        /// Angular damping at the device [N·m·s/rad].
-        damping: f64,
-        /// The rule that is broken: "κ ≤ 2 (b − |β|) / T".
-        condition: &'static str,
-        /// What both would have to be multiplied by.
-        factor: f64,
-    },
+    /// A device renders less than is asked of it, and is not to.
+    #[error(transparent)]
+    MaterialRefused(#[from] Refused),
     /// A device bears less than the one that the servo was made for.
     #[error(
         "the servo was made for a device with a {limit} of {servo} {unit}, but this device has \

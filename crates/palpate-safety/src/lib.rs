@@ -41,7 +41,7 @@ pub use acceptance::{Acceptance, Accepted, Rule};
 pub use chain::{PortState, SafetyChain, SafetyOptions};
 pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, TurningProfile};
 pub use effect::Effect;
-pub use error::{NumberError, SafetyError};
+pub use error::{NumberError, Refused, SafetyError};
 pub use impedance::Impedance;
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;

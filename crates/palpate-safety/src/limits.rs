@@ -47,9 +47,8 @@ pub struct DeviceLimits {
     pub(crate) least_damping: Limit,
     pub(crate) friction: Limit,
     pub(crate) encoder_step: Limit,
-    /// The rules, in the order in which they are checked.
-    pub(crate) rules: [Rule; 4],
-    pub(crate) is_turning: bool,
+    /// The rules of stiffness, then those of damping.
+    pub(crate) rules: [Rule; 5],
     pub(crate) assumed: Arc<[&'static str]>,
 }
 
@@ -67,8 +66,13 @@ impl DeviceLimits {
             least_damping: Limit::new(device.least_damping, "least_damping", "N·s/m"),
             friction: Limit::new(device.friction, "friction", "N"),
             encoder_step: Limit::new(device.encoder_step, "encoder_step", "m"),
-            rules: [Rule::Passivity, Rule::Quantisation, Rule::MaxStiffness, Rule::MaxDamping],
-            is_turning: false,
+            rules: [
+                Rule::Passivity,
+                Rule::Quantisation,
+                Rule::MaxStiffness,
+                Rule::DampingLeft,
+                Rule::MaxDamping,
+            ],
             assumed: device.assumed.as_ref().into(),
         }
     }
@@ -91,9 +95,9 @@ impl DeviceLimits {
                 Rule::AngularPassivity,
                 Rule::AngularQuantisation,
                 Rule::MaxAngularStiffness,
+                Rule::AngularDampingLeft,
                 Rule::MaxAngularDamping,
             ],
-            is_turning: true,
             assumed: device.assumed.as_ref().into(),
         }
     }

@@ -22,14 +22,17 @@ const POINTS: usize = 500;
 pub struct ServoSettings {
     /// Ticks a second [Hz].
     pub rate: f64,
-    /// What is done with materials that the device cannot render.
+    /// What the device renders of materials.
     pub acceptance: Acceptance,
+    /// Whether materials are refused of which the device renders less than all.
+    pub is_strict: bool,
 }
 
 impl Default for ServoSettings {
-    /// 1 kHz; materials are scaled where they must be.
+    /// 1 kHz; the device renders what it can of materials.
     fn default() -> Self {
-        Self { rate: ServoOptions::default().rate, acceptance: Acceptance::Scaled }
+        let rate = ServoOptions::default().rate;
+        Self { rate, acceptance: Acceptance::Device, is_strict: false }
     }
 }
 
@@ -40,10 +43,16 @@ impl ServoSettings {
         Self { rate, ..self }
     }
 
-    /// With another way to deal with materials that the device cannot render.
+    /// With another choice of what the device renders of materials.
     #[must_use]
     pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
         Self { acceptance, ..self }
+    }
+
+    /// Refusing materials of which the device renders less than all, or not.
+    #[must_use]
+    pub fn with_strictness(self, is_strict: bool) -> Self {
+        Self { is_strict, ..self }
     }
 }
 
@@ -226,9 +235,12 @@ impl<const D: usize> BuiltScene<D> {
                 UnprotectedServo::with_tool(self.bodies()?, tool, options)?
             }
         };
-        let acceptance = settings.acceptance;
+        let ServoSettings { acceptance, is_strict, .. } = settings;
         let protection =
-            Protection::new(profile.clone()).with_map(map).with_acceptance(acceptance);
+            Protection::new(profile.clone())
+                .with_map(map)
+                .with_acceptance(acceptance)
+                .with_strictness(is_strict);
         let mut servo = servo.protected(&protection)?;
         servo.guide(&self.guides);
         Ok(servo)

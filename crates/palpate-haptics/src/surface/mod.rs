@@ -176,10 +176,10 @@ impl<const D: usize> Surface<D> {
         self.strata.impedances()
     }
 
-    /// This surface with stiffness and damping of all layers multiplied by `factor`.
+    /// This surface with the stiffness and the damping of all layers multiplied by these factors.
     #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        Self { strata: self.strata.scaled(factor), ..self.clone() }
+    pub fn scaled(&self, stiffness: f64, damping: f64) -> Self {
+        Self { strata: self.strata.scaled(stiffness, damping), ..self.clone() }
     }
 
     /// The shape with the surface's texture of kind *displacement*, if there is one.

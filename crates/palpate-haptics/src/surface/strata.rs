@@ -134,10 +134,10 @@ impl Strata {
         self.outermost.damping
     }
 
-    pub(crate) fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scaled(&self, stiffness: f64, damping: f64) -> Self {
         let scaled = |stratum: &Stratum| Stratum {
-            stiffness: factor * stratum.stiffness,
-            damping: factor * stratum.damping,
+            stiffness: stiffness * stratum.stiffness,
+            damping: damping * stratum.damping,
             ..*stratum
         };
         Self {

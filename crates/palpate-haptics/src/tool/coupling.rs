@@ -80,19 +80,22 @@ impl Coupling {
         damping * arm * arm
     }
 
-    /// This coupling with stiffness and damping multiplied by `factor`.
+    /// This coupling with these shares of its stiffness and of its damping, along and about axes.
     #[must_use]
-    pub(crate) fn softened(self, factor: f64) -> Self {
-        let (stiffness, damping) = (self.stiffness * factor, self.damping * factor);
-        Self { stiffness, damping, ..self.softened_about_axes(factor) }
+    pub(crate) fn softened(self, stiffness: f64, damping: f64) -> Self {
+        Self {
+            stiffness: self.stiffness * stiffness,
+            damping: self.damping * damping,
+            ..self.softened_about_axes(stiffness, damping)
+        }
     }
 
-    /// This coupling with angular stiffness and damping multiplied by `factor`.
+    /// This coupling with these shares of its angular stiffness and of its angular damping.
     #[must_use]
-    pub(crate) fn softened_about_axes(self, factor: f64) -> Self {
+    pub(crate) fn softened_about_axes(self, stiffness: f64, damping: f64) -> Self {
         Self {
-            angular_stiffness: self.angular_stiffness * factor,
-            angular_damping: self.angular_damping * factor,
+            angular_stiffness: self.angular_stiffness * stiffness,
+            angular_damping: self.angular_damping * damping,
             ..self
         }
     }
