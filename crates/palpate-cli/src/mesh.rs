@@ -46,7 +46,10 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
 /// Meshes larger than this are rarely touched, and often in millimetres [m].
 const LARGE: f64 = 2.0;
 
-/// Meshes smaller than this cannot be touched [m].
+/// Meshes larger than this are rarely meant [m].
+const HUGE: f64 = 1e3;
+
+/// Meshes smaller than this are rarely meant, and often in another unit [m].
 const SMALL: f64 = 1e-5;
 
 /// What to do if the size of a mesh is that of another unit.
@@ -56,6 +59,8 @@ fn hint(report: &Report<3>, scale: Option<f64>) -> Option<String> {
     let across = rounded(size);
     match scale {
         _ if (SMALL..=LARGE).contains(&size) || size <= 0.0 => None,
+        // Who says how large a unit is may mean a hall or a bridge.
+        Some(_) if (LARGE..=HUGE).contains(&size) => None,
         Some(_) => Some(format!(
             "it is {across} m across: --scale says how many metres a unit of the file is, 0.001 of \
              a file in millimetres"

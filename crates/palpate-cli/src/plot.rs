@@ -137,7 +137,9 @@ where
                 "--step is only for --map distance: other maps have no isolines",
             ));
         }
-        emptiness::warn(scene);
+        if !options.contacts {
+            emptiness::warn(scene);
+        }
         let compared = Compared::of(options, scene)?;
         let window = Window::of(options, scene)?;
         let named =

@@ -170,7 +170,7 @@ impl<const N: usize, const D: usize> Answer<N, D> {
         let evaluations = certified.evaluations;
         writeln!(out, "proven       [{bounds}] m ({evaluations} evaluations, {proof_time})")?;
         writeln!(out, "lowest at    {} m", joined(&certified.best.0))?;
-        writeln!(out, "missed by    {} m", self.missed_by())?;
+        writeln!(out, "missed by    {} m, with the best point", self.missed_by())?;
         for circle in self.circles.all() {
             let words = circle.in_words(name_of::<N>(), metres);
             writeln!(out, "{} about {} m: {words}", circle.name, circle.centre())?;

@@ -125,7 +125,8 @@ impl Header {
                 }
                 Written::None => {
                     return format!(
-                        "`{found}` says no unit: if it is in {unit}, call it {name}"
+                        "`{found}` says no unit: if it is in {unit}, call it {name}; if not, \
+                         convert it first"
                     );
                 }
                 Written::Unit(..) => {}
@@ -195,7 +196,10 @@ mod tests {
             (&["X (in)", "y_m"], "`X (in)` is in in: multiply by 0.0254, and call it x_m"),
             (&["x_m [mm]", "y_m"], "`x_m [mm]` is in mm: divide by 1000, and call it x_m"),
             (&["X [m]", "y_m"], "rename `X [m]` to x_m"),
-            (&["x", "y_m"], "`x` says no unit: if it is in m, call it x_m"),
+            (
+                &["x", "y_m"],
+                "`x` says no unit: if it is in m, call it x_m; if not, convert it first",
+            ),
             (&["x_m", "yy_m"], "there is no y_m, did you mean `yy_m`?"),
             (&["x_m", "z_m"], "there is no y_m, did you mean `z_m`?"),
             (&["left", "right"], "there is no x_m; there is no y_m"),

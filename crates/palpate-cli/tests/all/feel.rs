@@ -52,7 +52,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let hand = folder.write("hand.csv", rows);
     let feel = ["feel", &scene, "--path", &hand, "--fast"];
     let said = text(&palpate(&feel));
-    let expected = "  start          contact point 0 started 3.2 mm inside body \"ball\": \
+    let expected = "  start          contact point 0 started 1.2 mm inside body \"ball\": \
                     its force rose from zero\n";
     assert!(said.contains(expected), "{said}");
     let soft = [&feel[..], &["--stiffness", "0", "--damping", "0"]].concat();
@@ -64,7 +64,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let time = start["time_without_force"].as_f64().unwrap();
     let said = text(&palpate(&soft));
     let expected = format!(
-        "  start          contact point 0 started 3.2 mm inside body \"ball\": no force for \
+        "  start          contact point 0 started 1.2 mm inside body \"ball\": no force for \
          {time} s, until it left\n"
     );
     assert!(said.contains(&expected), "{said}");

@@ -250,7 +250,7 @@ impl Isolines {
         let wheel = Key::Wheel(self.axis_arrows());
         let grows = "direction in which the field grows";
         let direction = match method {
-            Some(method) => format!("{grows}, as {method} finds it"),
+            Some(method) => format!("direction that {method} finds"),
             None => format!("{grows}; at the rim its gradient is 1"),
         };
         let mut entries = vec![Entry::new(wheel, direction)];
