@@ -101,7 +101,7 @@ const DEPTH: f64 = 0.01;
 /// The depth that keeps the force continuous over edges, as a part of the probe's radius.
 const SMOOTH_DEPTH: f64 = 0.75;
 
-/// A probe up to this part of the scene's size counts as a point, as a servo's does: pressed to a
+/// A probe up to this part of the radius of the box counts as a point, as a servo's does: pressed to a
 /// part of its radius, it would feel nothing. With a larger part, thin probes would be pressed
 /// deeper than their radius, and their force would jump at edges.
 const POINT_PROBE: f64 = 2e-5;
@@ -150,7 +150,7 @@ impl<const D: usize> Tour<D> {
     /// at `0.3 √(s · 1 m)` a second (0.1 m/s over a scene of 0.1 m, 0.3 m/s over one of 1 m),
     /// touches with the default probe, and presses `0.01 s` deep, but at most 3/4 of the probe's
     /// radius, so that the force is continuous over every edge. A probe with a radius of at
-    /// most `2e-5 s` is a point, which is pressed `0.01 s` deep.
+    /// most 2e-5 of half the diagonal of the box is a point, which is pressed `0.01 s` deep.
     ///
     /// # Errors
     ///
@@ -239,7 +239,7 @@ impl<const D: usize> Tour<D> {
     /// The depth to which the hand presses [m].
     fn depth(&self) -> f64 {
         let felt = DEPTH * self.size;
-        let is_ball = self.probe_radius > POINT_PROBE * self.size;
+        let is_ball = self.probe_radius > POINT_PROBE * self.bounds.half_extents().norm();
         let smooth = if is_ball { SMOOTH_DEPTH * self.probe_radius } else { felt };
         self.depth.unwrap_or(felt.min(smooth))
     }

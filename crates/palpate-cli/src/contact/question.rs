@@ -57,6 +57,24 @@ impl Asked<'_> {
     }
 }
 
+impl ContactQuestion {
+    /// Refuses options of a search for contacts where none is made.
+    pub(crate) fn refuse_unless(&self, is_asked: bool) -> Result<(), Failure> {
+        let given = [
+            ("--margin", self.margin.is_some()),
+            ("--spacing", self.spacing.is_some()),
+            ("--tolerance", self.tolerance.is_some()),
+            ("--budget", self.budget.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given && !is_asked) {
+            Some((option, _)) => {
+                Err(Failure::input(format!("{option} is about contacts, and needs --contacts")))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
 impl Question {
     /// Lengths that the command line leaves out are shares of the smallest body. Warns of bodies
     /// that are empty.

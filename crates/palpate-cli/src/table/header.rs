@@ -40,6 +40,11 @@ impl Header {
     /// If the fields are separated by something else than commas, or are numbers.
     pub(super) fn new(fields: &StringRecord, line: u64) -> Result<Self, String> {
         let names: Vec<String> = fields.iter().map(str::to_owned).collect();
+        if names.first().is_some_and(|first| first.starts_with('#')) {
+            return Err(format!(
+                "line {line}: comments are not read; the first line names the columns"
+            ));
+        }
         if let [all] = &names[..] {
             let separators = [(';', "semicolons"), ('\t', "tabs"), (' ', "spaces")];
             let found = separators.iter().find(|(separator, _)| all.contains(*separator));
@@ -227,6 +232,8 @@ mod tests {
         assert_eq!(columns(&["x_m;y_m"]), separated("semicolons"));
         assert_eq!(columns(&["x_m\ty_m"]), separated("tabs"));
         assert_eq!(columns(&["x_m y_m"]), separated("spaces"));
+        let comment = "line 1: comments are not read; the first line names the columns";
+        assert_eq!(columns(&["# of the hand"]), comment);
         let none = "line 1: there is no header; the first line names the columns";
         assert_eq!(columns(&["0.5", "-1e3"]), none);
     }
