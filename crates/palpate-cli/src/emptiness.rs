@@ -27,19 +27,15 @@ pub(crate) fn is_empty<const D: usize>(shape: &Shape<D>) -> Option<bool> {
     answer.map_or(Some(false), |answer| answer.is_hit().map(|has_points| !has_points))
 }
 
-/// Which bodies are proven to be empty.
-pub(crate) fn empty_bodies<const D: usize>(scene: &BuiltScene<D>) -> Vec<bool> {
-    scene.bodies.iter().map(|body| is_empty(&body.shape_in_body) == Some(true)).collect()
-}
-
-/// Warns of each body that is proven to be empty.
-pub(crate) fn warn<const D: usize>(scene: &BuiltScene<D>) {
-    for (body, is_empty) in scene.bodies.iter().zip(empty_bodies(scene)) {
-        if is_empty {
-            output::remark(format_args!(
-                "warning: body {:?} is empty: no point is in it, which is proven",
-                body.name
-            ));
-        }
+/// Warns of each body that is proven to be empty; returns which are.
+pub(crate) fn warn<const D: usize>(scene: &BuiltScene<D>) -> Vec<bool> {
+    let empty: Vec<_> =
+        scene.bodies.iter().map(|body| is_empty(&body.shape_in_body) == Some(true)).collect();
+    for (body, _) in scene.bodies.iter().zip(&empty).filter(|(_, is_empty)| **is_empty) {
+        output::remark(format_args!(
+            "warning: body {:?} is empty: no point is in it, which is proven",
+            body.name
+        ));
     }
+    empty
 }

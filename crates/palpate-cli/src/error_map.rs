@@ -270,8 +270,12 @@ where
             Self::Gradient(Gradient { method, sampler, .. }) if method.samples() => {
                 let precision = if sampler.is_single() { "single" } else { "double" };
                 let offset = sampler.offset();
+                let grows = match method {
+                    GradientMethod::AdaptiveDichotomy => " or more, growing with the value",
+                    _ => "",
+                };
                 Some(format!(
-                    "gradient by {method}, offset {offset:.3e} m, {precision} precision"
+                    "gradient by {method}, offset {offset:.3e} m{grows}, {precision} precision"
                 ))
             }
             Self::Gradient(gradient) => Some(format!("gradient by {}", gradient.method)),

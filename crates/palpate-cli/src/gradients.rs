@@ -66,14 +66,23 @@ where
     Ok(Outcome::Yes)
 }
 
-/// Gradients that differ by more than this meet at an edge of the field.
+/// Gradients of places beside each other that differ by more than this meet at an edge of the
+/// field: a surface that turns so much there would have a radius of ten of their distances.
 const JUMP: f64 = 0.1;
 
-/// Whether the gradient jumps within `offset` of a point, as on the middle line of a slab, where
-/// the exact one is that of one side.
+/// The distance of these places, in offsets.
+const BESIDE: f64 = 1e-6;
+
+/// Their least distance, in roundings of a coordinate.
+const ROUNDINGS: f64 = 16.0;
+
+/// Whether the gradient jumps at a point, as on the middle line of a slab, where the exact one is
+/// that of one side.
 fn jumps<const D: usize>(shape: &Shape<D>, at: &AtPoint<D>, offset: f64) -> bool {
     (0..D).any(|axis| {
-        [-offset, offset].into_iter().any(|step| {
+        let least = ROUNDINGS * f64::EPSILON * at.point[axis].abs();
+        let step = (BESIDE * offset).max(least);
+        [-step, step].into_iter().any(|step| {
             let mut beside = at.point;
             beside[axis] += step;
             (shape.distance_gradient(beside).1 - at.gradient).norm() > JUMP
@@ -127,7 +136,7 @@ struct Comparison<'a, const D: usize> {
     options: &'a GradientsOptions,
     sampler: GradientSampler,
     at: AtPoint<D>,
-    /// Whether gradients of several sides meet at the point.
+    /// Whether the gradients of several sides meet at the point.
     jumps: bool,
     ways: Vec<Way<D>>,
 }
@@ -184,8 +193,8 @@ where
         if self.jumps {
             writeln!(
                 out,
-                "note                 the gradient jumps within the offset of this point: there is \
-                 none here, and `exact` is that of one side"
+                "note                 the gradient jumps here: there is none, and `exact` is that of \
+                 one side"
             )?;
         }
         for way in &self.ways {
@@ -233,7 +242,8 @@ where
         let panels = panels.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
         bar.finish_and_clear();
         let caption = format!(
-            "{}. Offset {:.3e} m, values in {} precision.",
+            "{}. Offset {:.3e} m, that of the adaptive dichotomy larger with the value; values in {} \
+             precision.",
             promise_in_words(scene.whole.promise()),
             self.sampler.offset(),
             self.precision(),

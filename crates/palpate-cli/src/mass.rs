@@ -3,10 +3,10 @@
 
 //! `palpate mass`: computes volume, mass and moments of the bodies of a scene.
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use palpate::field::{Mass, MassLimits};
-use palpate::scene::{AnyScene, BuiltScene};
+use palpate::scene::{AnyScene, BuiltBody, BuiltScene};
 use serde_json::{Value, json};
 
 use crate::arguments::MassOptions;
@@ -30,7 +30,7 @@ pub(crate) fn run(options: &MassOptions, interrupt: &Interrupt) -> Result<Outcom
 fn report<const D: usize>(
     options: &MassOptions,
     scene: &BuiltScene<D>,
-    [volume_unit, mass_unit, moment_unit]: [&str; 3],
+    units: [&str; 3],
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let limits =
@@ -66,47 +66,12 @@ fn report<const D: usize>(
             outcome = Outcome::No;
         }
         if options.json {
-            bodies.push(described(name, &mass));
+            let is_empty = mass.is_zero() && body.shape.promise().has_interior;
+            bodies.push(described(name, &mass, is_empty));
             continue;
         }
-        writeln!(out, "{}, at {} kg/m³ ({} cells)", shown(name), options.density, mass.cells)?;
-        if mass.is_zero() {
-            let why = if body.shape.promise().has_interior {
-                "empty: no point is in it, its volume is proven to be 0"
-            } else {
-                "no inside: curves and sheets have a volume of 0"
-            };
-            writeln!(out, "  {why} {volume_unit}")?;
-            continue;
-        }
-        if is_open && is_empty(&body.shape).is_none() {
-            writeln!(out, "  may be empty: no point was found in it")?;
-        }
-        if is_open {
-            let (cells, asked) = (mass.cells, options.tolerance);
-            let share = mass.volume_error / mass.volume;
-            writeln!(
-                out,
-                "  open: after {cells} cells the error is {share:.1e} of the volume, and \
-                 --tolerance asks for {asked}; raise --cells"
-            )?;
-        }
-        let line = |what: &str, value: f64, error: f64, unit: &str| {
-            format!("  {what:<15}{} ± {error:.1e} {unit}", measured(value, error))
-        };
-        writeln!(out, "{}", line("volume", mass.volume, mass.volume_error, volume_unit))?;
-        writeln!(out, "{}", line("mass", mass.mass(), mass.mass_error(), mass_unit))?;
-        let row = |numbers: &[f64], error: f64| {
-            let numbers: Vec<_> = numbers.iter().map(|x| measured(*x, error)).collect();
-            format!("[{}] ± {error:.1e}", numbers.join(", "))
-        };
-        let centroid = row(&mass.centroid.0, mass.centroid_error);
-        writeln!(out, "  {:<15}{centroid} m", "centroid")?;
-        for (i, moments) in mass.second_moments.iter().enumerate() {
-            let what = if i == 0 { "second moments" } else { "" };
-            let moments = row(moments, mass.second_moments_error);
-            writeln!(out, "  {what:<15}{moments} {moment_unit}")?;
-        }
+        let weighed = Weighed { body, mass, is_open, units };
+        weighed.write(&mut out, options)?;
     }
     if options.json {
         out.json(&json!({ "density_kg_per_m3": options.density, "bodies": bodies }))?;
@@ -114,8 +79,61 @@ fn report<const D: usize>(
     Ok(outcome)
 }
 
-/// Writes infinite errors as null, and so the centroid of what is empty.
-fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
+/// A body that is weighed.
+struct Weighed<'a, const D: usize> {
+    body: &'a BuiltBody<D>,
+    mass: Mass<D>,
+    /// Whether an error is above the tolerance.
+    is_open: bool,
+    /// Of volumes, masses and moments.
+    units: [&'a str; 3],
+}
+
+impl<const D: usize> Weighed<'_, D> {
+    fn write(&self, out: &mut impl Write, options: &MassOptions) -> io::Result<()> {
+        let Self { body, mass, is_open, units: [volume_unit, mass_unit, moment_unit] } = self;
+        let (density, cells) = (options.density, mass.cells);
+        writeln!(out, "{}, at {density} kg/m³ ({cells} cells)", shown(&body.name))?;
+        if mass.is_zero() {
+            let why = if body.shape.promise().has_interior {
+                "empty: no point is in it, its volume is proven to be 0"
+            } else {
+                "no inside: curves and sheets have a volume of 0"
+            };
+            return writeln!(out, "  {why} {volume_unit}");
+        }
+        if *is_open {
+            if is_empty(&body.shape).is_none() {
+                writeln!(out, "  may be empty: no point was found in it")?;
+            }
+            let (share, asked) = (mass.volume_error / mass.volume, options.tolerance);
+            writeln!(
+                out,
+                "  open: after {cells} cells the error is {share:.1e} of the volume, and \
+                 --tolerance asks for {asked}; raise --cells"
+            )?;
+        }
+        let one = |what: &str, value: f64, error: f64, unit: &str| {
+            format!("  {what:<15}{} ± {error:.1e} {unit}", measured(value, error))
+        };
+        writeln!(out, "{}", one("volume", mass.volume, mass.volume_error, volume_unit))?;
+        writeln!(out, "{}", one("mass", mass.mass(), mass.mass_error(), mass_unit))?;
+        let row = |what: &str, values: &[f64], error: f64, unit: &str| {
+            let values: Vec<_> = values.iter().map(|x| measured(*x, error)).collect();
+            format!("  {what:<15}[{}] ± {error:.1e} {unit}", values.join(", "))
+        };
+        writeln!(out, "{}", row("centroid", &mass.centroid.0, mass.centroid_error, "m"))?;
+        for (i, moments) in mass.second_moments.iter().enumerate() {
+            let what = if i == 0 { "second moments" } else { "" };
+            let moments = row(what, moments, mass.second_moments_error, moment_unit);
+            writeln!(out, "{moments}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes infinite errors as null, and so the centroid of what has no volume.
+fn described<const D: usize>(name: &str, mass: &Mass<D>, is_empty: bool) -> Value {
     let rows: Vec<_> = mass.second_moments.iter().map(|row| row.to_vec()).collect();
     json!({
         "name": name,
@@ -123,7 +141,7 @@ fn described<const D: usize>(name: &str, mass: &Mass<D>) -> Value {
         "volume_error": mass.volume_error,
         "mass": mass.mass(),
         "mass_error": mass.mass_error(),
-        "empty": mass.is_zero(),
+        "empty": is_empty,
         "centroid_m": (!mass.is_zero()).then(|| mass.centroid.0.to_vec()),
         "centroid_error_m": mass.centroid_error,
         "second_moments": rows,

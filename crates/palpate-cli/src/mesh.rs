@@ -3,7 +3,8 @@
 
 //! `palpate mesh`: checks a mesh file.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 
 use palpate::mesh::{Format, ReadError, ReadProblem, Report, read_file};
@@ -43,10 +44,16 @@ pub(crate) fn run(options: &MeshOptions) -> Result<Outcome, Failure> {
     Ok(if is_good { Outcome::Yes } else { Outcome::No })
 }
 
+/// Bytes of a file that tell what it is.
+const HEAD: u64 = 1 << 16;
+
 /// Meshes larger than this are rarely touched, and often in millimetres [m].
 const LARGE: f64 = 2.0;
 
-/// Meshes smaller than this cannot be touched [m].
+/// Meshes larger than this are rarely meant [m].
+const HUGE: f64 = 1e3;
+
+/// Meshes smaller than this are rarely meant, and often in another unit [m].
 const SMALL: f64 = 1e-5;
 
 /// What to do if the size of a mesh is that of another unit.
@@ -56,6 +63,8 @@ fn hint(report: &Report<3>, scale: Option<f64>) -> Option<String> {
     let across = rounded(size);
     match scale {
         _ if (SMALL..=LARGE).contains(&size) || size <= 0.0 => None,
+        // Who says how large a unit is may mean a hall or a bridge.
+        Some(_) if (LARGE..=HUGE).contains(&size) => None,
         Some(_) => Some(format!(
             "it is {across} m across: --scale says how many metres a unit of the file is, 0.001 of \
              a file in millimetres"
@@ -76,11 +85,15 @@ fn refused(path: &Path, error: &ReadError) -> Failure {
         return Failure::file(path, "is a folder; name a file in it");
     }
     let named = Format::of(path);
-    let bytes = match &error.problem {
-        ReadProblem::Unreadable(_) => return Failure::input(error),
-        _ => std::fs::read(path).unwrap_or_default(),
-    };
-    match Kind::of(&bytes) {
+    let mut head = Vec::new();
+    match &error.problem {
+        ReadProblem::Unreadable(_) | ReadProblem::TooLarge { .. } => {
+            return Failure::input(error);
+        }
+        // A file that was read can be read again; of one that cannot, the error is told.
+        _ => drop(File::open(path).map(|file| file.take(HEAD).read_to_end(&mut head))),
+    }
+    match Kind::of(&head) {
         Some(kind @ Kind::Mesh(format)) if named != Some(format) => {
             Failure::file(path, format_args!("{kind}; {}", kind.advice(path)))
         }

@@ -27,7 +27,7 @@ pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcom
     let mut files = Files::reading(inputs.into_iter().flatten());
     let picture = Picture::new(&mut files, &output_path(options))?;
     picture.check_width(options.width)?;
-    check_contacts(options)?;
+    options.question.refuse_unless(options.contacts)?;
     let named = input::scene(Some(&options.scene))?;
     match &named.scene {
         AnyScene::Planar(scene) => {
@@ -54,23 +54,6 @@ pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcom
             let through = deepest.unwrap_or_else(|| plot.window.bounds.centre());
             plot.draw(&plane(options, through)?, interrupt)
         }
-    }
-}
-
-/// Refuses options of a search for contacts where none is made.
-fn check_contacts(options: &PlotOptions) -> Result<(), Failure> {
-    let asked = &options.question;
-    let given = [
-        ("--margin", asked.margin.is_some()),
-        ("--spacing", asked.spacing.is_some()),
-        ("--tolerance", asked.tolerance.is_some()),
-        ("--budget", asked.budget.is_some()),
-    ];
-    match given.iter().find(|(_, is_given)| *is_given && !options.contacts) {
-        Some((option, _)) => {
-            Err(Failure::input(format!("{option} is about contacts, and needs --contacts")))
-        }
-        None => Ok(()),
     }
 }
 
@@ -137,7 +120,9 @@ where
                 "--step is only for --map distance: other maps have no isolines",
             ));
         }
-        emptiness::warn(scene);
+        if !options.contacts {
+            emptiness::warn(scene);
+        }
         let compared = Compared::of(options, scene)?;
         let window = Window::of(options, scene)?;
         let named =

@@ -7,12 +7,16 @@ use palpate::plot::Slice;
 use palpate::scene::{BuiltScene, View, ViewPlane};
 
 use crate::outcome::Failure;
+use crate::output;
 
-/// The bodies where they are at a time [s].
+/// The bodies where they are at a time [s]. Remarks that no body moves, if that is so.
 pub(crate) fn at<const D: usize>(
     scene: &BuiltScene<D>,
     time: f64,
 ) -> Result<BuiltScene<D>, Failure> {
+    if time > 0.0 && scene.motions.is_empty() {
+        output::remark("no body moves: --time changes nothing");
+    }
     scene.at(time).map_err(Failure::input)
 }
 

@@ -30,7 +30,8 @@ const MOST_POINTS: f64 = 1_000_000.0;
 /// The most steps of a ray: enough for a surface at a grazing angle.
 const RAY_STEPS: u32 = 128;
 
-/// The steepest field for which rays take as many more steps: a screw thread has 40.
+/// The largest Lipschitz constant by which the steps of a ray are multiplied: a screw thread has 40,
+/// and rays over a steeper field would take too long.
 const STEEPEST_FIELD: f64 = 64.0;
 
 /// How far the orbit is from the shape's box, as a part of the shape's size.
@@ -100,10 +101,10 @@ const DEPTH: f64 = 0.01;
 /// The depth that keeps the force continuous over edges, as a part of the probe's radius.
 const SMOOTH_DEPTH: f64 = 0.75;
 
-/// A probe up to this radius counts as a point [m]: pressed to a part of its radius, it would feel
-/// nothing, because 1e-5 m deep in 500 N/m are 5 mN. A shape so small that this is deep is pressed
-/// to a part of its own size.
-const POINT_RADIUS: f64 = 1e-5;
+/// A probe up to this part of the radius of the box counts as a point, as a servo's does: pressed to a
+/// part of its radius, it would feel nothing. With a larger part, thin probes would be pressed
+/// deeper than their radius, and their force would jump at edges.
+const POINT_PROBE: f64 = 2e-5;
 
 /// The least time between two samples, as a part of the time for one step of the orbit.
 const SHORTEST_STEP: f64 = 0.3;
@@ -148,8 +149,8 @@ impl<const D: usize> Tour<D> {
     /// With the size `s` of the box (its longest edge) and by default, the hand slides
     /// at `0.3 √(s · 1 m)` a second (0.1 m/s over a scene of 0.1 m, 0.3 m/s over one of 1 m),
     /// touches with the default probe, and presses `0.01 s` deep, but at most 3/4 of the probe's
-    /// radius, so that the force is continuous over every edge. A probe of at most 1e-5 m
-    /// radius is a point, which is pressed `0.01 s` deep.
+    /// radius, so that the force is continuous over every edge. A probe with a radius of at
+    /// most 2e-5 of half the diagonal of the box is a point, which is pressed `0.01 s` deep.
     ///
     /// # Errors
     ///
@@ -238,7 +239,7 @@ impl<const D: usize> Tour<D> {
     /// The depth to which the hand presses [m].
     fn depth(&self) -> f64 {
         let felt = DEPTH * self.size;
-        let is_ball = self.probe_radius > POINT_RADIUS;
+        let is_ball = self.probe_radius > POINT_PROBE * self.bounds.half_extents().norm();
         let smooth = if is_ball { SMOOTH_DEPTH * self.probe_radius } else { felt };
         self.depth.unwrap_or(felt.min(smooth))
     }

@@ -104,7 +104,8 @@ pub struct Mass<const D: usize> {
 }
 
 impl<const D: usize> Mass<D> {
-    /// `true` if the volume is proven to be zero: the shape is empty.
+    /// `true` if the volume is proven to be zero: the shape is empty, or a curve or sheet without
+    /// an inside.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         self.volume + self.volume_error <= 0.0

@@ -222,11 +222,11 @@ impl<const D: usize> ContactPoint<D> {
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
-            let wanted = map.force_to_device(limited(touch.wanted, options.max_force));
+            let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
             let (free_force, is_late) = (map.force_to_device(free), *is_late);
             let state = PortState { position, velocity, free_force, is_late, start };
-            let force = port.write(wanted, &state);
+            let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
             force
         } else {

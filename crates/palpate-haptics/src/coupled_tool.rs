@@ -154,7 +154,7 @@ impl<const D: usize> CoupledTool<D> {
         };
         let torque = turn.map_or(Vector::ZERO, |_| map.torque_to_device(felt.torque));
         let force = if let Some(chain) = self.chain() {
-            let force = map.force_to_device(limited(touch.wanted, setting.options.max_force));
+            let force = map.force_to_device(touch.wanted);
             let spin = turn.map_or(Vector::ZERO, |turn| turn.angular_velocity);
             let state = WrenchState {
                 position: SpatialVector { along: at_device.position, about: angle },
@@ -162,7 +162,8 @@ impl<const D: usize> CoupledTool<D> {
                 free_force: map.force_to_device(free),
                 is_late: setting.is_late,
             };
-            let given = chain.step(SpatialVector { along: force, about: torque }, &state);
+            let wanted = SpatialVector { along: force, about: torque };
+            let given = chain.step_within(wanted, setting.options.max_force, &state);
             self.torque = given.about;
             touch.force = map.force_to_world(given.along);
             given.along

@@ -135,7 +135,11 @@ impl<'a, const D: usize> Nearby<'a, D> {
         (seen.distance, seen.gradient)
     }
 
-    /// The least of the fields at a point [m], and the index of its body.
+    /// The least of the fields at a point [m], and the index of its body. Of the bodies near a
+    /// contact point, [`Bodies::nearby`], the value is at most the distance to the horizon within
+    /// which they were selected; where that is less than all fields, the index is 0.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does.
     ///
     /// ```
     /// use palpate_field::{Pose, Shape, Vector};

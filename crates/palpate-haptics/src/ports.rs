@@ -88,15 +88,16 @@ impl<const D: usize> Port<D> {
         PointState { velocity: self.estimator.update(state.position), ..state }
     }
 
-    /// The force to write [N], in device coordinates.
+    /// The force to write [N], in device coordinates, for a wanted force of at most `max_force`.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn write(
         &mut self,
         wanted: Vector<f64, D>,
+        max_force: f64,
         state: &PortState<D>,
     ) -> Vector<f64, D> {
-        self.chain.step(wanted, state)
+        self.chain.step_within(wanted, max_force, state)
     }
 
     /// Replaces the accepted impedance.

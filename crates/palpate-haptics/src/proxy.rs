@@ -58,9 +58,9 @@ pub struct Probe {
 impl Probe {
     /// A ball of `radius` [m]; a radius of zero makes a point.
     ///
-    /// A point does not cross walls thicker than 1e-4 of the radius of the shape's bounding
-    /// ball; a ball crosses no wall. A ball smaller than 2e-5 of that radius moves as a point
-    /// does, and touches where its surface is.
+    /// With the radius R of the scene's bounding ball, a probe with a radius below `2e-5 R` moves as
+    /// a point: it may cross walls thinner than `1e-4 R`. A larger probe crosses no wall. Each
+    /// touches where its own surface is.
     ///
     /// # Errors
     ///

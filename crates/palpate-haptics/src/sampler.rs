@@ -22,8 +22,8 @@ const ROUNDINGS: f64 = 4.0;
 const POINT_SKIN: f64 = 5e-5;
 
 /// A probe smaller than this part of the scene is treated as a point: a skin as small as its
-/// radius would allow only tiny steps, and a fast hand would leave its proxy behind. A larger part
-/// would take probes for points that a hand can tell from them, and their walls with them.
+/// radius would allow only tiny steps, and a fast hand would leave its proxy behind. With a larger
+/// part, probes that a hand feels as balls could cross thin walls.
 const POINT_RADIUS: f64 = 2e-5;
 
 /// A gradient shorter than this part of the Lipschitz constant says nothing about the surface:

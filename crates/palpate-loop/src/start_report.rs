@@ -12,9 +12,9 @@ const FELT: f64 = 1e-4;
 
 /// A contact point that is inside a body in the first tick of a run.
 ///
-/// A proxy follows from outside; of a point that begins inside, none is known. If one is found
-/// outside the body, the force rises from zero; if none is found, there is no force until the
-/// point leaves.
+/// A proxy follows from outside; of a point that begins inside, none is known. As soon as one is
+/// found outside the body, the force rises from zero; until then, or until the point leaves, there
+/// is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -23,7 +23,8 @@ pub struct StartInside {
     pub point: u32,
     /// The index of the body.
     pub body: u32,
-    /// How deep the point is below the surface offset by the probe's radius [m]: `r − f`.
+    /// How deep the point itself, not its probe, is in the body [m]: `−f`, with the field f of the
+    /// body.
     pub depth: f64,
     /// Ticks from the start without a force, as long as the point has not left the body.
     pub ticks_without_force: u64,
@@ -31,7 +32,7 @@ pub struct StartInside {
     pub time_without_force: f64,
     /// `true` if a force was felt before the point left: more than 0.1 mN.
     pub is_felt: bool,
-    /// `true` if the point left the body during the run.
+    /// `true` if point and probe left the body during the run.
     pub has_left: bool,
 }
 
@@ -47,30 +48,24 @@ impl StartTally {
         Self { starts: vec![None; points], has_begun: false }
     }
 
-    /// Counts a tick.
+    /// Counts a tick. A point that began inside costs an evaluation of the bodies about it in
+    /// each tick until it has left.
     ///
-    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does.
     pub(crate) fn tick<const D: usize>(&mut self, servo: &Servo<D>) {
         let is_first = !std::mem::replace(&mut self.has_begun, true);
         let radius = if servo.tool().is_some() { 0.0 } else { servo.options().probe.radius() };
         for ((point, touch), start) in (0..).zip(servo.touches()).zip(&mut self.starts) {
             if is_first && touch.device.is_finite() {
                 let (value, nearest) = servo.bodies().everything().nearest(touch.device);
-                let (depth, body) = if touch.contact {
-                    (touch.depth(), touch.body)
-                } else {
-                    (radius - value, nearest)
-                };
-                let (ticks_without_force, time_without_force) = (0, 0.0);
-                let (is_felt, has_left) = (false, false);
-                *start = (touch.contact || value < 0.0).then_some(StartInside {
+                *start = (value < 0.0).then_some(StartInside {
                     point,
-                    body,
-                    depth,
-                    ticks_without_force,
-                    time_without_force,
-                    is_felt,
-                    has_left,
+                    body: nearest,
+                    depth: -value,
+                    ticks_without_force: 0,
+                    time_without_force: 0.0,
+                    is_felt: false,
+                    has_left: false,
                 });
             }
             let Some(start) = start.as_mut().filter(|start| !start.has_left) else { continue };

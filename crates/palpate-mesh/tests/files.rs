@@ -280,7 +280,7 @@ fn errors_of_text_name_their_line() {
     assert_eq!(said, "line 5: a second property \"x\"");
     let more = format!("{}1 0 0\n3 2 1 0\n", ply.replace("oops", "0"));
     let said = wrong(more.as_bytes(), Format::Ply);
-    assert_eq!(said, "byte 180: 13 bytes follow the last row that its header counts");
+    assert_eq!(said, "line 14: 13 bytes follow the last row that its header counts");
     let cut = ply.replace("oops\n0 1 0\n3 0 1 2\n", "0\n");
     let said = wrong(cut.as_bytes(), Format::Ply);
     assert!(said.ends_with("; the file ends there: it is cut off"), "{said}");

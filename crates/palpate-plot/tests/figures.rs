@@ -294,7 +294,7 @@ fn directions_are_those_of_a_method() {
     let picture = isolines(100).unwrap().with_directions("dichotomy", slopes).unwrap();
     let svg = Figure::new("").with_isolines(picture).to_svg();
     let words = words(&svg);
-    assert!(words.contains(&"direction in which the field grows, as dichotomy finds it"));
+    assert!(words.contains(&"direction that dichotomy finds"));
     assert!(words.contains(&"none, or leaning out of the plane"), "{words:?}");
     assert!(!words.iter().any(|word| word.contains("steeper") || word.contains("rim")));
 }

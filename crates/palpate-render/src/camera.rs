@@ -67,8 +67,8 @@ impl Sight {
         Ok(Self { right, up: back.cross(right), back })
     }
 
-    /// Perpendicular to a plane with this direction to the right, and with one that goes up,
-    /// perhaps askew.
+    /// Perpendicular to the plane of `right` and `up`, which may have any length; of `up`, the part
+    /// across `right` counts.
     ///
     /// ```
     /// use palpate_render::Sight;
@@ -87,10 +87,9 @@ impl Sight {
     ) -> Result<Self, RenderError> {
         let (right, up) = (right.into(), up.into());
         let wrong = |what, got: Vector<f64, 3>| RenderError::NoPlane { what, got: got.0 };
-        let right =
-            right.normalized().ok_or(wrong("what is to the right of a camera", right))?;
+        let right = right.normalized().ok_or(wrong("the right of a camera", right))?;
         let back = up.normalized().and_then(|up| right.cross(up).normalized());
-        let back = back.ok_or(wrong("what is up for a camera", up))?;
+        let back = back.ok_or(wrong("the up of a camera, across its right,", up))?;
         Ok(Self { right, up: back.cross(right), back })
     }
 

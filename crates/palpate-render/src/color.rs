@@ -10,10 +10,11 @@ use std::ops::{Add, AddAssign, Mul};
 pub struct Color(pub [u8; 3]);
 
 impl Color {
-    /// The colours of bodies, in their order; a ninth body has the first again.
+    /// The colours of bodies, in their order; a thirteenth body has the first again.
     ///
-    /// Those of Okabe and Ito ("Color Universal Design", 2008), ordered so that neighbours
-    /// differ most, and lightened where shading would make them black.
+    /// The first eight are those of Okabe and Ito ("Color Universal Design", 2008), ordered so that
+    /// neighbours differ most, and lightened where shading would make them black. The last four lie
+    /// between their hues, and differ in lightness too.
     pub const BODIES: [Self; 12] = [
         Self([0x4A, 0x9B, 0xD4]),
         Self([0xE8, 0xA3, 0x1E]),

@@ -34,7 +34,7 @@ pub enum RenderError {
         at: [f64; 3],
     },
     /// A direction that has no length, or two that lie on one line.
-    #[error("{what} must have a direction of its own, got {got:?}")]
+    #[error("{what} must have a direction, got {got:?}")]
     NoPlane {
         /// What the direction was for.
         what: &'static str,

@@ -235,11 +235,11 @@ fn wrong_input_says_what_is_wrong() {
     );
     assert_eq!(
         Sight::onto_plane([1.0, 0.0, 0.0], [-2.0, 0.0, 0.0]).unwrap_err().to_string(),
-        "what is up for a camera must have a direction of its own, got [-2.0, 0.0, 0.0]"
+        "the up of a camera, across its right, must have a direction, got [-2.0, 0.0, 0.0]"
     );
     assert_eq!(
         Cut::new([0.0; 3], [f64::NAN; 3]).unwrap_err().to_string(),
-        "the normal of a cut must have a direction of its own, got [NaN, NaN, NaN]"
+        "the normal of a cut must have a direction, got [NaN, NaN, NaN]"
     );
     assert_eq!(
         Subject::new(Vec::new()).unwrap_err().to_string(),

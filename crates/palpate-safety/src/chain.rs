@@ -15,6 +15,7 @@ use crate::device::DeviceProfile;
 use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::impedance::Impedance;
+use crate::limit::cut;
 use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
@@ -284,13 +285,53 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
+        self.tick(wanted, 0.0, state)
+    }
+
+    /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
+    /// which counts as the force limit's doing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_safety::{DeviceProfile, Impedance, PortState, SafetyChain, SafetyOptions};
+    ///
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
+    /// let device = DeviceProfile::unlimited("example");
+    /// let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.0);
+    /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
+    /// let force = chain.step_within(Vector([3.0, 4.0]), 1.0, &PortState::at_rest());
+    /// assert_eq!(force, Vector([0.6, 0.8]));
+    /// let limit = chain.report().force_limit;
+    /// assert_eq!((limit.ticks, limit.largest), (1, 4.0));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn step_within(
+        &mut self,
+        wanted: Vector<f64, D>,
+        max_force: f64,
+        state: &PortState<D>,
+    ) -> Vector<f64, D> {
+        let (wanted, cut) = cut(wanted, max_force);
+        self.tick(wanted, cut, state)
+    }
+
+    fn tick(
+        &mut self,
+        wanted: Vector<f64, D>,
+        cut: f64,
+        state: &PortState<D>,
+    ) -> Vector<f64, D> {
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
         let PortState { position, velocity, is_late, start, .. } = *state;
         let seen = PortMotion { position, velocity, has_start: start < 1.0 };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
-        let input = TickInput { is_sound, is_late, start };
+        let input = TickInput { is_sound, is_late, start, cut };
         let (force, left) = self.channel.step(observed, state.free_force, &input);
         self.passivity.written(left);
         force

@@ -26,6 +26,8 @@ pub(crate) struct TickInput {
     pub(crate) is_late: bool,
     /// As [`PortState::start`](super::PortState::start).
     pub(crate) start: f64,
+    /// How much a limit took from the wanted force before the stages.
+    pub(crate) cut: f64,
 }
 
 /// The stages from the observed force or torque to the written one: slew limit, force limit,
@@ -90,7 +92,7 @@ impl<const D: usize> Channel<D> {
         let is_sound = input.is_sound;
         let all = with_free(observed, free);
         let slewed = if is_sound { self.slewed(all) } else { all };
-        let force = if is_sound { self.limited(slewed) } else { slewed };
+        let force = if is_sound { self.limited(slewed, input.cut) } else { slewed };
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
         let force = self.faded(force, input);
         // The share that limits, ramp, watchdog and stop leave of both parts.
@@ -155,10 +157,14 @@ impl<const D: usize> Channel<D> {
         self.effects.slew.count(force, self.slew.limit(force))
     }
 
-    /// A force after the limits on its size.
-    fn limited(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
+    /// A force after the limits on its size, of which `cut` was taken before.
+    fn limited(&mut self, force: Vector<f64, D>, cut: f64) -> Vector<f64, D> {
         let effects = &mut self.effects;
-        let force = effects.force_limit.count(force, self.force_limit.limit(force));
+        let limit = self.force_limit.limit(force);
+        if limit.is_none() && cut > 0.0 {
+            effects.force_limit.count_size(cut);
+        }
+        let force = effects.force_limit.count(force, limit);
         effects.continuous.count(force, self.continuous.limit(force))
     }
 

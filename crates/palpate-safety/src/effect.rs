@@ -31,6 +31,14 @@ impl Effect {
         }
     }
 
+    /// Counts an action that was taken before, by its size.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn count_size(&mut self, change: f64) {
+        self.ticks += 1;
+        self.largest = self.largest.max(change);
+    }
+
     /// Out of line, because forces usually pass unchanged.
     #[cold]
     fn note<V: InnerProduct>(&mut self, before: V, after: V) -> V {

@@ -37,6 +37,24 @@ pub(crate) fn shortened<const D: usize>(
     (!passes).then(|| of_length(force, most))
 }
 
+/// `force` shortened to `max_force` [N], and how much that took from its length [N]; what is not
+/// finite becomes zero, and counts as nothing.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+#[inline]
+pub(crate) fn cut<const D: usize>(
+    force: Vector<f64, D>,
+    max_force: f64,
+) -> (Vector<f64, D>, f64) {
+    match shortened(force, max_force) {
+        None => (force, 0.0),
+        Some(short) => {
+            let taken = force.norm() - short.norm();
+            (short, if taken <= f64::MAX { taken } else { 0.0 })
+        }
+    }
+}
+
 /// A vector of length `length` along `force`; zero if `force` is not finite.
 #[cold]
 fn of_length<const D: usize>(force: Vector<f64, D>, length: f64) -> Vector<f64, D> {

@@ -15,6 +15,7 @@ use palpate_field::Vector;
 
 use crate::channel::{Channel, TickInput};
 use crate::error::{NumberError, SafetyError};
+use crate::limit::cut;
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
@@ -224,6 +225,29 @@ impl<const D: usize> WrenchChain<D> {
         wanted: SpatialVector<D>,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
+        self.tick(wanted, 0.0, state)
+    }
+
+    /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
+    /// which counts as the force limit's doing.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub fn step_within(
+        &mut self,
+        wanted: SpatialVector<D>,
+        max_force: f64,
+        state: &WrenchState<D>,
+    ) -> SpatialVector<D> {
+        let (along, cut) = cut(wanted.along, max_force);
+        self.tick(SpatialVector { along, ..wanted }, cut, state)
+    }
+
+    fn tick(
+        &mut self,
+        wanted: SpatialVector<D>,
+        cut: f64,
+        state: &WrenchState<D>,
+    ) -> SpatialVector<D> {
         let WrenchState { position, velocity, free_force, is_late } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
@@ -236,8 +260,9 @@ impl<const D: usize> WrenchChain<D> {
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
-        let input = TickInput { is_sound, is_late, start: 1.0 };
+        let input = TickInput { is_sound, is_late, start: 1.0, cut };
         let (along, force_left) = self.force.step(allowed.along, free_force, &input);
+        let input = TickInput { cut: 0.0, ..input };
         let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);
         let left = SpatialVector { along: force_left, about: torque_left };
         self.passivity.written(left.turning(1.0 / unit));

@@ -3,6 +3,7 @@
 
 //! The tool of a scene, as a file gives it.
 
+use palpate_field::LARGEST_LENGTH;
 use palpate_haptics::ToolOptions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -122,8 +123,13 @@ impl WrittenTool {
         });
         let is_both = self.shape.is_some() && !self.points.is_empty();
         let both = Problem::new("a tool has either contact points or a shape").under("points");
+        let radius = self.radius;
+        let far =
+            Problem::new(format!("must be at most {LARGEST_LENGTH:e} m, got {radius:e} m"));
+        let far = far.under("radius");
         let numbers = [
             at_least("radius", self.radius, 0.0, "m"),
+            if self.radius > LARGEST_LENGTH { Err(far) } else { Ok(()) },
             if is_both { Err(both) } else { Ok(()) },
             positive_if("max_force", self.max_force, "N"),
         ];

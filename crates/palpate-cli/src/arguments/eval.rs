@@ -34,11 +34,11 @@ pub(crate) struct EvalOptions {
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) radius: Option<f64>,
     /// The file for the answers to many points; standard output if left out.
-    #[arg(long, value_name = "FILE", requires = "points")]
+    #[arg(long, value_name = "FILE", requires = "points", conflicts_with = "at")]
     pub(crate) output: Option<PathBuf>,
     /// The number of threads; as many as the machine has if left out. Answers have the same
     /// bits for any number.
-    #[arg(long, requires = "points", allow_negative_numbers = true, value_parser = count(1, 1_000_000_usize))]
+    #[arg(long, requires = "points", conflicts_with = "at", allow_negative_numbers = true, value_parser = count(1, 1_000_000_usize))]
     pub(crate) threads: Option<usize>,
     /// Print JSON: one object, or one per line for many points.
     #[arg(long)]

@@ -30,11 +30,13 @@ pub(crate) struct FeelOptions {
     /// Ticks a second [Hz].
     #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("Hz"))]
     pub(crate) rate: f64,
-    /// How long to feel [s]; the length of the hand path, or else 10 s, if left out.
+    /// How long to feel [s]; the length of the hand path, or else 10 s, if left out. A built-in tour
+    /// is made for that time: with less, the hand is faster.
     #[arg(long, allow_negative_numbers = true, value_parser = positive("s"))]
     pub(crate) duration: Option<f64>,
     /// The hand's path, with the columns time_s,x_m,y_m[,z_m] and optionally point; a built-in
-    /// tour of the bodies if left out. A path of one point carries the points of the scene's tool.
+    /// tour of the bodies if left out. A path of one contact point carries all those of the
+    /// scene's tool.
     #[arg(long, value_name = "CSV")]
     pub(crate) path: Option<PathBuf>,
     /// What the hand holds: recorded (the hand follows its path whatever the force),
@@ -45,7 +47,7 @@ pub(crate) struct FeelOptions {
     pub(crate) device: Option<DeviceChoice>,
     /// The number of contact points of the built-in hand; if left out, that of the scene's
     /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
-    #[arg(long, alias = "contacts", conflicts_with = "path", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
+    #[arg(long, alias = "contacts", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
     pub(crate) points: Option<usize>,
     /// Refuse bodies that the device cannot render stably, instead of making them softer. A
     /// glove, which has no forces, takes neither this nor --stiffness, --damping and --max-force.
@@ -68,10 +70,11 @@ pub(crate) struct FeelOptions {
     /// Run the ticks without waiting for the clock.
     #[arg(long)]
     pub(crate) fast: bool,
-    /// Write every tick to a CSV file: .csv.
+    /// Write every tick to this CSV file, whose name ends in .csv.
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
-    /// Write what actuators play to a WAV file, with a channel for each contact point: .wav.
+    /// Write what actuators play to this WAV file, whose name ends in .wav, with a channel for each
+    /// contact point.
     #[arg(long, value_name = "WAV")]
     pub(crate) wav: Option<PathBuf>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.

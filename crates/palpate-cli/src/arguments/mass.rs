@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::numbers::{count, positive};
+use super::numbers::{count, positive, within};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -25,7 +25,7 @@ pub(crate) struct MassOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     /// The density of all bodies [kg/m³].
-    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = positive("kg/m³"))]
+    #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1e-15, 1e15, "kg/m³"))]
     pub(crate) density: f64,
     /// The relative error of the volume at which to stop.
     #[arg(long, allow_negative_numbers = true, default_value = "0.001", value_parser = positive(""))]

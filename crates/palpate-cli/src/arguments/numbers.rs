@@ -49,7 +49,7 @@ pub(super) fn within(
     unit: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let rule = format!("from {least} to {most} {unit}");
+        let rule = format!("from {} to {} {unit}", plain(least), plain(most));
         ruled(text, &rule, unit, |x| (least..=most).contains(&x))
     }
 }

@@ -11,7 +11,6 @@ use palpate::query::Verdict;
 use palpate::scene::{AnyScene, BuiltScene};
 
 use crate::arguments::ContactOptions;
-use crate::emptiness;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -49,7 +48,6 @@ fn answer<const D: usize>(
              its `bodies`"
         )));
     }
-    emptiness::warn(scene);
     let question = Question::of(&options.question, scene);
     let bodies = input::bodies(&options.body, &names)?;
     let moved = options.time.map(|time| views::at(scene, time)).transpose()?;

@@ -33,7 +33,8 @@ impl<const D: usize> Touched<D> {
         let question = Question::of(asked, scene);
         let asked = Asked { bodies: &[], is_every: scene.bodies.len() <= FEW };
         // Not interruptible: a picture of some pairs would be taken for one of all pairs.
-        let pairs = question.pairs(scene, &asked, &Interrupt::new())?.unwrap_or_default();
+        let pairs = question.pairs(scene, &asked, &Interrupt::new())?;
+        let pairs = pairs.ok_or_else(|| Failure::input("the search for contacts was ended"))?;
         let shown = pairs.iter().filter(|pair| with_proof && pair.separation.is_some());
         let proofs = shown.map(|pair| question.proof(scene, pair.bodies));
         let proofs = proofs.collect::<Result<_, _>>()?;

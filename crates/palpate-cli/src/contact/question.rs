@@ -12,13 +12,15 @@ use palpate::query::{
 use palpate::scene::{BuiltBody, BuiltScene};
 
 use crate::arguments::ContactQuestion;
-use crate::emptiness::empty_bodies;
+use crate::emptiness;
 use crate::interrupt::Interrupt;
 use crate::outcome::Failure;
 
 /// The settings of a contact search in a scene.
 pub(crate) struct Question {
     pub(crate) settings: WorldSettings,
+    /// Which bodies are proven to have no point.
+    empty: Vec<bool>,
 }
 
 /// The answer for two bodies, by their indices in the scene.
@@ -55,8 +57,27 @@ impl Asked<'_> {
     }
 }
 
+impl ContactQuestion {
+    /// Refuses options of a search for contacts where none is made.
+    pub(crate) fn refuse_unless(&self, is_asked: bool) -> Result<(), Failure> {
+        let given = [
+            ("--margin", self.margin.is_some()),
+            ("--spacing", self.spacing.is_some()),
+            ("--tolerance", self.tolerance.is_some()),
+            ("--budget", self.budget.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given && !is_asked) {
+            Some((option, _)) => {
+                Err(Failure::input(format!("{option} is about contacts, and needs --contacts")))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
 impl Question {
-    /// Lengths that the command line leaves out are shares of the smallest body.
+    /// Lengths that the command line leaves out are shares of the smallest body. Warns of bodies
+    /// that are empty.
     pub(crate) fn of<const D: usize>(asked: &ContactQuestion, scene: &BuiltScene<D>) -> Self {
         let usual = scene.world_settings().manifold;
         let margin = asked.margin.unwrap_or(usual.margin);
@@ -64,7 +85,7 @@ impl Question {
         let tolerance = asked.tolerance.unwrap_or(0.5 * margin);
         let manifold = usual.with_margin(margin).with_spacing(spacing);
         let limits = Limits::new(tolerance).with_budget(asked.budget.unwrap_or(Limits::BUDGET));
-        Self { settings: WorldSettings::new(manifold, limits) }
+        Self { settings: WorldSettings::new(manifold, limits), empty: emptiness::warn(scene) }
     }
 
     /// The pairs that touch or are undecided; and, if asked for, those that are apart: fewer of
@@ -77,11 +98,10 @@ impl Question {
     ) -> Result<Option<Vec<Pair<D>>>, Failure> {
         let mut world = scene.world_with(self.settings).map_err(Failure::input)?;
         let ids = world.bodies().collect::<Vec<_>>();
-        let empty = empty_bodies(scene);
         for (i, id) in ids.iter().enumerate() {
             // Bodies of the second group touch those of the first alone, empty ones none.
             let is_asked = asked.bodies.is_empty() || asked.bodies.contains(&i);
-            let (groups, mask) = match (empty[i], is_asked) {
+            let (groups, mask) = match (self.empty[i], is_asked) {
                 (true, _) => (0, 0),
                 (false, true) => (1, u32::MAX),
                 (false, false) => (2, 1),
@@ -98,12 +118,12 @@ impl Question {
             let known: BTreeSet<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
             let is_left = |bodies: &[usize; 2]| asked.has(*bodies) && !known.contains(bodies);
             let lower = |[i, k]: [usize; 2]| world.lower_bound(ids[i], ids[k]);
-            let all = (0..empty.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
+            let all = (0..self.empty.len()).flat_map(|k| (0..k).map(move |i| [i, k]));
             for bodies in all.filter(is_left) {
                 if interrupt.is_asked() {
                     break;
                 }
-                pairs.push(match bodies.into_iter().find(|body| empty[*body]) {
+                pairs.push(match bodies.into_iter().find(|body| self.empty[*body]) {
                     Some(body) => without_points(bodies, body),
                     None => {
                         self.apart(scene, bodies, lower(bodies).map_err(Failure::input)?)?

@@ -17,7 +17,7 @@ use super::ending::Ending;
 use super::search::Search;
 use super::{described, figure, limits};
 use crate::arguments::DescendOptions;
-use crate::input::{self, joined};
+use crate::input::{self, joined, longest_edge};
 use crate::outcome::{Failure, Outcome};
 use crate::output;
 use crate::picture::{self, Dimensions, Drawable, Picture};
@@ -72,15 +72,17 @@ where
 {
     let element = element::<N, D>(vertices)?;
     let search = Search::of::<D>(options)?;
-    let longest = element.longest_edge();
-    let limits = limits(options.tolerance, longest);
+    // Of a long element over a small scene, most is far away.
+    let scene_size = scene.bounds().map_or(f64::INFINITY, |bounds| longest_edge(&bounds));
+    let size = element.longest_edge().min(scene_size);
+    let limits = limits(options.tolerance, size);
     let shape = &scene.whole;
     let mut workspace = ElementWorkspace::new();
     let proof = Timed::of(|| minimum(shape, &element, &limits, &mut workspace));
     let certified = Timed { result: proof.result.map_err(Failure::input)?, ns: proof.ns };
     let found = Timed::of(|| search.run(shape, &element));
     let answer = Answer {
-        ending: Ending::of(shape, &found.result, &certified.result, longest),
+        ending: Ending::of(shape, &found.result, &certified.result, size),
         circles: Circles::of(shape, &element),
         certified,
         element,
@@ -170,7 +172,7 @@ impl<const N: usize, const D: usize> Answer<N, D> {
         let evaluations = certified.evaluations;
         writeln!(out, "proven       [{bounds}] m ({evaluations} evaluations, {proof_time})")?;
         writeln!(out, "lowest at    {} m", joined(&certified.best.0))?;
-        writeln!(out, "missed by    {} m", self.missed_by())?;
+        writeln!(out, "missed by    {} m, with the best point", self.missed_by())?;
         for circle in self.circles.all() {
             let words = circle.in_words(name_of::<N>(), metres);
             writeln!(out, "{} about {} m: {words}", circle.name, circle.centre())?;

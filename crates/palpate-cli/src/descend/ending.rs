@@ -8,7 +8,7 @@ use palpate::local::Descent;
 use palpate::query::Certified;
 use serde_json::{Value, json};
 
-/// Values nearer than this share of the longest edge count as equal: the tolerance of the
+/// Values nearer than this share of the size of element and scene count as equal: the tolerance of the
 /// proven bounds ten times.
 const NEAR: f64 = 10.0 * super::TOLERANCE;
 
@@ -36,16 +36,16 @@ enum Kind {
 }
 
 impl<const D: usize> Ending<D> {
-    /// The end of `found` over an element with this longest edge [m].
+    /// The end of `found` over an element of this size [m].
     pub(super) fn of(
         shape: &Shape<D>,
         found: &Descent<D>,
         certified: &Certified<Point<D>>,
-        longest: f64,
+        size: f64,
     ) -> Self {
         let point = found.path.last().copied().unwrap_or(found.best);
         let value = shape.distance(point);
-        let (near, above) = (NEAR * longest, (value - certified.upper).max(0.0));
+        let (near, above) = (NEAR * size, (value - certified.upper).max(0.0));
         let kind = if above <= near {
             Kind::Minimum
         } else if value.abs() <= near {

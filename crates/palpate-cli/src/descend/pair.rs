@@ -96,8 +96,8 @@ impl<const D: usize> Answer<'_, D> {
             writeln!(out, "  best point {} m", joined(&found.best.0))?;
             writeln!(
                 out,
-                "  value      {} m, the larger of both fields; twice it, {} m, compares with a \
-                 separation",
+                "  value      {} m, the larger of both fields; where both are exact, the separation \
+                 is at most twice that, {} m",
                 found.value,
                 2.0 * found.value
             )?;
@@ -138,11 +138,13 @@ impl<const D: usize> Answer<'_, D> {
             .with_markers(Markers::new("start", starts.map(on_plane))?)
             .with_markers(Markers::new("best found", best)?)
             .with_markers(Markers::new("proven", proven)?);
-        // The value at a point half way between two bodies is half their separation.
+        // Of exact fields, twice the larger value at any point is an upper bound of the separation.
         let found: Vec<_> = self.found.iter().map(|found| written(2.0 * found.value)).collect();
         let [lower, upper] = [self.certified.lower, self.certified.upper].map(written);
-        let caption =
-            format!("Separation found: {}; proven: {lower} to {upper}.", found.join(", "));
+        let caption = format!(
+            "Twice the value found: {}; proven separation: {lower} to {upper}.",
+            found.join(", ")
+        );
         Ok(Figure::new(title(name)).with_caption(caption).with_isolines(isolines))
     }
 }

@@ -6,7 +6,7 @@
 
 use std::io::{self, Write};
 
-use palpate::field::{LARGEST_LENGTH, Quality, Shape};
+use palpate::field::{LARGEST_LENGTH, Point, Quality, Shape};
 use palpate::query::{
     AtPoint, BallWorkspace, Certified, Contact, Limits, QueryError, contact_ball, touches_ball,
 };
@@ -87,6 +87,11 @@ impl<const D: usize> Ball<D> {
     /// Whether the ball meets the scene; `None` if neither is proven.
     pub(super) fn meets(&self) -> Option<bool> {
         self.found.is_hit()
+    }
+
+    /// The nearest point of the surface, if one was found [m].
+    pub(super) fn surface_point(&self) -> Option<Point<D>> {
+        self.found.best.map(|contact| contact.point_a)
     }
 
     /// The memoir's test.

@@ -71,7 +71,8 @@ fn evaluate<const D: usize>(
     } else {
         writeln!(out, "distance       {} m", answer.distance)?;
         writeln!(out, "gradient       {}", input::joined(&answer.gradient.0))?;
-        match answer.surface {
+        let proven = ball.as_ref().and_then(|ball| ball.surface_point());
+        match answer.surface.or(proven) {
             Some(surface) => writeln!(out, "surface point  {} m", input::joined(&surface.0))?,
             None => writeln!(out, "surface point  none found")?,
         }

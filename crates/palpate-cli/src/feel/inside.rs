@@ -36,6 +36,7 @@ pub(super) fn write<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std
     }
     match starts.len().saturating_sub(MOST_LINES) {
         0 => Ok(()),
+        1 => writeln!(out, "                 1 more contact point started inside a body"),
         more => {
             writeln!(out, "                 {more} more contact points started inside bodies")
         }

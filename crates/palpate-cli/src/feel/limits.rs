@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What a run may ask of time and memory, refused before any of it is taken.
+//! How many ticks, rows and samples of paths a run may have.
 
 use palpate::servo_loop::TraceRow;
 
+use crate::numbers::plain;
 use crate::outcome::Failure;
 
 /// The most rows that a run keeps: an hour of one contact point at 1 kHz.
@@ -13,14 +14,15 @@ const MOST_ROWS: f64 = 3.6e6;
 /// The most ticks of a run: eleven days at 1 kHz.
 const MOST_TICKS: f64 = 1e9;
 
-/// The most memory for the paths of a hand [bytes]: what any machine has beside the rows.
+/// The most memory for the paths of a hand [bytes]: beside the rows of [`MOST_ROWS`], which take
+/// half as much, a machine with 2 GB has room for it.
 const MOST_PATHS: f64 = 1e9;
 
 /// The ticks of a run.
 pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
     let ticks = (duration * rate).round();
     if ticks < 1.0 {
-        let least = 0.5 / rate;
+        let [duration, rate, least] = [duration, rate, 0.5 / rate].map(plain);
         return Err(Failure::input(format!(
             "a run of {duration} s has no tick at {rate} Hz; the least duration is {least} s"
         )));
@@ -35,7 +37,7 @@ pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 
 /// The rows of a run that are kept, if they are not too many, and the system has memory for them.
 pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
-    const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer --points";
+    const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer contact points";
     if count > MOST_ROWS {
         let problem = format!(
             "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}"
@@ -62,7 +64,7 @@ pub(super) fn paths<const D: usize>(points: usize, samples: usize) -> Result<(),
     if memory > MOST_PATHS {
         return Err(Failure::input(format!(
             "the paths of {points} contact points with {samples} samples each would take \
-             {:.1} GB of memory, more than {} GB; shorten --duration, or use fewer --points",
+             {:.1} GB of memory, more than {} GB; shorten the path, or use fewer contact points",
             1e-9 * memory,
             1e-9 * MOST_PATHS,
         )));

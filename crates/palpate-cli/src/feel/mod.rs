@@ -20,11 +20,11 @@ mod vibration;
 use std::io::{self, IsTerminal};
 use std::time::Duration;
 
-use palpate::devices::profile_named;
+use palpate::devices::{HandPath, profile_named};
 use palpate::field::Pose;
 use palpate::haptics::{Acceptance, Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
-use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, run as run_servo};
+use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
 use crate::arguments::{DeviceChoice, FeelOptions};
 use crate::emptiness;
@@ -69,24 +69,10 @@ where
     check_forces(&choice, options)?;
     let scene = &asked(scene, options).at(0.0).map_err(Failure::input)?;
     let tool = tool::of_scene(scene, options)?;
-    let touring = options.duration.unwrap_or(DURATION);
-    let paths = match (&options.path, &tool) {
-        (Some(file), _) => paths::in_file(scene, file)?,
-        (None, tool) => {
-            // Checked before a path of that length is made.
-            let ticks = limits::ticks(touring, options.rate)?;
-            let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
-            if outputs.keep_ticks() {
-                limits::rows::<D>(ticks * points as f64)?;
-            }
-            match tool {
-                Some(tool) => vec![tool.path(touring)?],
-                None => paths::on_tour(scene, options, touring)?,
-            }
-        }
-    };
+    let paths = hands(scene, options, tool.as_ref(), outputs)?;
     let longest = paths.iter().map(|p| p.start() + p.duration()).fold(0.0, f64::max);
-    let duration = options.duration.unwrap_or(longest);
+    let usual = if options.path.is_some() { longest } else { DURATION };
+    let duration = options.duration.unwrap_or(usual);
     let ticks = limits::ticks(duration, options.rate)?;
     let contacts = paths.len();
     let turns = match &tool {
@@ -153,6 +139,7 @@ where
         servo: &servo,
         device: device.profile(),
         accepted: &accepted,
+        nearest: is_missed(&outcome).then(|| paths::nearest(scene, &paths)),
         workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),
     };
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
@@ -164,6 +151,34 @@ where
         Ending::Interrupted => Outcome::Interrupted,
         _ => Outcome::No,
     })
+}
+
+/// The paths of the contact points, or of the tool: those of a file, or of a tour. What a tour would
+/// take is refused before the tour is made.
+fn hands<const D: usize>(
+    scene: &BuiltScene<D>,
+    options: &FeelOptions,
+    tool: Option<&tool::Held<D>>,
+    outputs: &Outputs,
+) -> Result<Vec<HandPath<D>>, Failure> {
+    if let Some(file) = &options.path {
+        return paths::in_file(scene, options, file);
+    }
+    let duration = options.duration.unwrap_or(DURATION);
+    let ticks = limits::ticks(duration, options.rate)?;
+    let points = if tool.is_some() { 1 } else { paths::count(scene, options) };
+    if outputs.keep_ticks() {
+        limits::rows::<D>(ticks * points as f64)?;
+    }
+    match tool {
+        Some(tool) => Ok(vec![tool.path(duration)?]),
+        None => paths::on_tour(scene, options, duration),
+    }
+}
+
+/// Whether a run felt nothing, no guide or magnet either.
+fn is_missed(report: &RunReport) -> bool {
+    report.contact_time == 0.0 && report.largest_force == 0.0
 }
 
 /// What the hand holds: what `--device` says; if it is left out, a device that yields on the

@@ -22,7 +22,8 @@ const LAG: f64 = 0.5;
 /// The contact points of the built-in hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
 
-/// The contact points of the built-in hand, and the tool's arms if these are its points.
+/// The contact points of a hand on a tour: `count` that follow each other, or those at the `arms` of
+/// the scene's tool.
 struct Fingers<const D: usize> {
     count: usize,
     arms: Vec<Vector<f64, D>>,
@@ -73,8 +74,15 @@ pub(super) fn on_tour<const D: usize>(
 /// If the file is no hand path, or has another number of contact points.
 pub(super) fn in_file<const D: usize>(
     scene: &BuiltScene<D>,
+    options: &FeelOptions,
     file: &Path,
 ) -> Result<Vec<HandPath<D>>, Failure> {
+    if options.points.is_some() {
+        return Err(Failure::input(
+            "--points is about the built-in hand; with --path, the column `point` of the file, or the \
+             `points` of the scene's tool, say how many there are",
+        ));
+    }
     let paths = hand_csv::read(file)?;
     let arms = arms(scene);
     match (&paths[..], arms.len()) {
@@ -93,6 +101,17 @@ pub(super) fn in_file<const D: usize>(
             Err(Failure::file(file, problem))
         }
     }
+}
+
+/// How near paths come to the scene, at some of their samples [m].
+pub(super) fn nearest<const D: usize>(scene: &BuiltScene<D>, paths: &[HandPath<D>]) -> f64 {
+    /// Samples of a path that are looked at.
+    const LOOKED_AT: usize = 1000;
+    let seen = paths.iter().flat_map(|path| {
+        let step = path.positions().len().div_ceil(LOOKED_AT).max(1);
+        path.positions().iter().step_by(step)
+    });
+    seen.map(|point| scene.whole.distance(*point)).fold(f64::INFINITY, f64::min)
 }
 
 /// A path that is `ahead` [s] of another, and beside it [m].

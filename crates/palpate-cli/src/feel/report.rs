@@ -37,9 +37,9 @@ pub(crate) fn live_line(progress: &Progress) -> String {
 
 pub(crate) fn title(name: &str, report: &RunReport) -> String {
     let points = match (&report.tool, report.points) {
-        (Some(_), _) => "a tool",
-        (None, 1) => "one point",
-        (None, _) => "several points",
+        (Some(_), _) => "a tool".to_owned(),
+        (None, 1) => "one point".to_owned(),
+        (None, points) => format!("{points} points"),
     };
     format!("{}, felt with {points}", crate::plot::title(Path::new(name)))
 }
@@ -52,6 +52,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) servo: &'a Servo<D>,
     pub(super) device: &'a DeviceProfile,
     pub(super) accepted: &'a [Accepted],
+    /// How near the path of a hand that felt nothing came to a body [m].
+    pub(super) nearest: Option<f64>,
     /// World metres for each metre of the device, if the program chose them.
     pub(super) workspace_scale: Option<f64>,
 }
@@ -140,7 +142,10 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             let plural = if tool.points == 1 { "" } else { "s" };
             writeln!(out, "{name}, felt with a tool of {} point{plural}", tool.points)?;
         }
-        None => writeln!(out, "{name}, felt with {} contact point(s)", report.points)?,
+        None => {
+            let plural = if report.points == 1 { "" } else { "s" };
+            writeln!(out, "{name}, felt with {} contact point{plural}", report.points)?;
+        }
     }
     let asked = felt.scene.bodies.iter().map(|body| &body.material);
     let stiffness = of_asked(
@@ -151,11 +156,16 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         &range(surfaces().map(Surface::damping)),
         &range(asked.map(|material| material.damping)),
     );
-    write!(
-        out,
-        "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
-        options.max_force,
-    )?;
+    let has_forces = device.max_force > 0.0;
+    if has_forces {
+        write!(
+            out,
+            "  stiffness {stiffness} N/m, damping {damping} N·s/m, at most {} N, ",
+            options.max_force,
+        )?;
+    } else {
+        write!(out, "  vibration alone, as the device gives no force; ")?;
+    }
     match &report.tool {
         Some(tool) => writeln!(
             out,
@@ -208,7 +218,17 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         "  contact time   {:.3} s of {:.3} s ({share:.0} %)",
         report.contact_time, report.duration
     )?;
-    writeln!(out, "  largest force  {:.3} N", report.largest_force)?;
+    if let Some(nearest) = felt.nearest {
+        let nearest = rounded(nearest);
+        writeln!(
+            out,
+            "  nothing felt   the hand came no nearer to a body than {nearest} m; is its path in metres, \
+             and in the coordinates of the scene?"
+        )?;
+    }
+    if has_forces {
+        writeln!(out, "  largest force  {:.3} N", report.largest_force)?;
+    }
     writeln!(out, "  largest depth  {:.3} mm", 1e3 * report.largest_depth)?;
     if let Some(tool) = &report.tool {
         write_tool(out, tool)?;
@@ -316,7 +336,7 @@ fn write_safety<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         ("largest force", ticks(|point| point.force_limit.ticks)),
         ("lasting force", ticks(|point| point.continuous.effect.ticks)),
         ("not a number", ticks(|point| point.guard.ticks)),
-        ("ramp", ticks(|point| point.ramp.ticks)),
+        ("rise from zero", ticks(|point| point.ramp.ticks)),
         ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
         ("torque rate", turns(|turning| turning.slew.ticks)),
         ("largest torque", turns(|turning| turning.torque_limit.ticks)),

@@ -23,6 +23,7 @@ use stage::Stage;
 
 pub(crate) fn run(options: &RenderOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let frames = Frames::of(options)?;
+    options.question.refuse_unless(options.contacts)?;
     let named = input::scene(Some(&options.scene))?;
     let AnyScene::Spatial(scene) = &named.scene else {
         let problem = "the scene is in the plane, which `palpate plot` draws; render needs \"dimension\": 3";

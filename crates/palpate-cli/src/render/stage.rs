@@ -10,6 +10,7 @@ use palpate::scene::{BuiltBody, BuiltScene, View};
 use super::{camera, overlay};
 use crate::arguments::{RenderOptions, ShadowChoice};
 use crate::contact::Touched;
+use crate::emptiness;
 use crate::outcome::Failure;
 use crate::{plane, views};
 
@@ -47,6 +48,9 @@ impl<'a> Stage<'a> {
         };
         let find = || Touched::find(&options.question, scene, false);
         let touched = options.contacts.then(find).transpose()?;
+        if touched.is_none() {
+            emptiness::warn(scene);
+        }
         let settings = settings.with_ground(ground(options, &subject, &camera));
         let mut stage = Self { options, names, subject, camera, settings, touched };
         stage.settings.cut = stage.cut(view)?;

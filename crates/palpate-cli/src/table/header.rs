@@ -40,6 +40,11 @@ impl Header {
     /// If the fields are separated by something else than commas, or are numbers.
     pub(super) fn new(fields: &StringRecord, line: u64) -> Result<Self, String> {
         let names: Vec<String> = fields.iter().map(str::to_owned).collect();
+        if names.first().is_some_and(|first| first.starts_with('#')) {
+            return Err(format!(
+                "line {line}: comments are not read; the first line names the columns"
+            ));
+        }
         if let [all] = &names[..] {
             let separators = [(';', "semicolons"), ('\t', "tabs"), (' ', "spaces")];
             let found = separators.iter().find(|(separator, _)| all.contains(*separator));
@@ -125,7 +130,8 @@ impl Header {
                 }
                 Written::None => {
                     return format!(
-                        "`{found}` says no unit: if it is in {unit}, call it {name}"
+                        "`{found}` says no unit: if it is in {unit}, call it {name}; if not, \
+                         convert it first"
                     );
                 }
                 Written::Unit(..) => {}
@@ -195,7 +201,10 @@ mod tests {
             (&["X (in)", "y_m"], "`X (in)` is in in: multiply by 0.0254, and call it x_m"),
             (&["x_m [mm]", "y_m"], "`x_m [mm]` is in mm: divide by 1000, and call it x_m"),
             (&["X [m]", "y_m"], "rename `X [m]` to x_m"),
-            (&["x", "y_m"], "`x` says no unit: if it is in m, call it x_m"),
+            (
+                &["x", "y_m"],
+                "`x` says no unit: if it is in m, call it x_m; if not, convert it first",
+            ),
             (&["x_m", "yy_m"], "there is no y_m, did you mean `yy_m`?"),
             (&["x_m", "z_m"], "there is no y_m, did you mean `z_m`?"),
             (&["left", "right"], "there is no x_m; there is no y_m"),
@@ -223,6 +232,8 @@ mod tests {
         assert_eq!(columns(&["x_m;y_m"]), separated("semicolons"));
         assert_eq!(columns(&["x_m\ty_m"]), separated("tabs"));
         assert_eq!(columns(&["x_m y_m"]), separated("spaces"));
+        let comment = "line 1: comments are not read; the first line names the columns";
+        assert_eq!(columns(&["# of the hand"]), comment);
         let none = "line 1: there is no header; the first line names the columns";
         assert_eq!(columns(&["0.5", "-1e3"]), none);
     }

@@ -52,7 +52,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let hand = folder.write("hand.csv", rows);
     let feel = ["feel", &scene, "--path", &hand, "--fast"];
     let said = text(&palpate(&feel));
-    let expected = "  start          contact point 0 started 3.2 mm inside body \"ball\": \
+    let expected = "  start          contact point 0 started 1.2 mm inside body \"ball\": \
                     its force rose from zero\n";
     assert!(said.contains(expected), "{said}");
     let soft = [&feel[..], &["--stiffness", "0", "--damping", "0"]].concat();
@@ -64,7 +64,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
     let time = start["time_without_force"].as_f64().unwrap();
     let said = text(&palpate(&soft));
     let expected = format!(
-        "  start          contact point 0 started 3.2 mm inside body \"ball\": no force for \
+        "  start          contact point 0 started 1.2 mm inside body \"ball\": no force for \
          {time} s, until it left\n"
     );
     assert!(said.contains(&expected), "{said}");
@@ -83,18 +83,18 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
     };
     feel(
         &["--duration", "1e-9"],
-        "a run of 0.000000001 s has no tick at 1000 Hz; the least duration is 0.0005 s",
+        "a run of 1e-9 s has no tick at 1000 Hz; the least duration is 0.0005 s",
     );
     feel(
         &["--duration", "40000", "--trace", &trace],
         "--trace, --plot and --wav keep 3600000 rows at most, got 40000000; \
-         shorten --duration, lower --rate, or use fewer --points",
+         shorten --duration, lower --rate, or use fewer contact points",
     );
     let output = palpate(&["feel", &scene, "--fast", "--points", "1000", "--duration", "100"]);
     let said = errors(&output);
     assert_eq!(status(&output), 2);
     assert!(said.starts_with("palpate: the paths of 1000 contact points with "), "{said}");
-    let end = " GB of memory, more than 1 GB; shorten --duration, or use fewer --points\n";
+    let end = " GB of memory, more than 1 GB; shorten the path, or use fewer contact points\n";
     assert!(said.contains(" samples each would take ") && said.ends_with(end), "{said}");
     let short = folder.write("short.csv", "time_s,x_m,y_m,z_m\n0,0,1,0\n0.01,0,0.9,0\n");
     assert_refused(
@@ -120,7 +120,7 @@ fn rows_that_the_system_has_no_memory_for_are_refused() {
     let said = errors(&output);
     let start = "palpate: --trace, --plot and --wav keep 3600000 rows of this run, ";
     let end = " GB of memory, which the system does not give; shorten --duration, lower --rate, \
-               or use fewer --points\n";
+               or use fewer contact points\n";
     assert!(said.starts_with(start) && said.ends_with(end), "{said}");
     assert_eq!(status(&output), 2);
 }

@@ -56,8 +56,15 @@ fn where_the_gradient_jumps_none_is_called_exact() {
     let scene = r#"{ "palpate": 1, "dimension": 2, "bodies":
         [{ "name": "a", "shape": { "rectangle": { "size": [2, 2] } } }] }"#;
     let scene = folder.write("square.json", scene);
-    let note = "note                 the gradient jumps within the offset of this point: there is \
-                none here, and `exact` is that of one side\n";
+    let note = "note                 the gradient jumps here: there is none, and `exact` is that of \
+                one side\n";
+    let bead = r#"{ "palpate": 1, "dimension": 2, "bodies": [
+        { "name": "a", "shape": { "rectangle": { "size": [100, 100] } } },
+        { "name": "b", "shape": { "translate": [0, 60], "of": { "circle": { "radius": 0.005 } } } } ] }"#;
+    // Within the offset of this point, the gradient turns by a tenth, smoothly.
+    let bead = folder.write("bead.json", bead);
+    let turned = text(&palpate(&["gradients", &bead, "--at", "0,60.0051"]));
+    assert!(!turned.contains("note"), "{turned}");
     for (at, jumps) in [("0.5,0.5", true), ("0.5,0.2", false), ("1.5,0.2", false)] {
         let said = text(&palpate(&["gradients", &scene, "--at", at]));
         assert_eq!(said.contains(note), jumps, "{at}: {said}");

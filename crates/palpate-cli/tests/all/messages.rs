@@ -231,7 +231,42 @@ fn mass_says_of_each_body_what_it_is() {
     let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
     let floor = json!({ "name": "floor", "problem": "mass needs a shape with bounds" });
     assert_eq!(answer["bodies"][0], floor);
-    assert_eq!(answer["bodies"][1]["volume"], 0.0);
+    let wire = &answer["bodies"][1];
+    assert_eq!((&wire["volume"], &wire["empty"]), (&json!(0.0), &json!(false)));
+}
+
+/// Options and numbers that were ignored, or refused for another reason.
+#[test]
+fn what_has_no_effect_is_refused() {
+    let folder = Folder::new();
+    let ball = r#"{ "palpate": 1, "dimension": 3, "bodies":
+        [{ "name": "b", "shape": { "ball": { "radius": 0.5 } } }]"#;
+    folder.write("ball.json", &format!("{ball} }}"));
+    folder.write("tool.json", &format!("{ball}, \"tool\": {{ \"radius\": 1e300 }} }}"));
+    let scaled = ball
+        .replace("\"ball\"", "\"scale\": 1e10, \"of\": { \"scale\": 1e10, \"of\": { \"ball\"");
+    folder.write(
+        "scaled.json",
+        &format!("{} }}", scaled.replace("0.5 } } }]", "0.5 } } } } }]")),
+    );
+    let refused = |arguments: &[&str]| refused(&folder, arguments);
+    for (option, value) in [("--output", "x.csv"), ("--threads", "2")] {
+        let said = refused(&["eval", "ball.json", "--at", "0,0,0", option, value]);
+        assert!(said.contains("cannot be used with"), "{said}");
+    }
+    assert_eq!(
+        refused(&["render", "ball.json", "--budget", "5"]),
+        "palpate: --budget is about contacts, and needs --contacts\n"
+    );
+    let check = |name| text(&folder.run(&["check", name]));
+    assert_eq!(
+        check("tool.json"),
+        "tool.json: tool.radius, line 2: must be at most 1e15 m, got 1e300 m\n"
+    );
+    let said = check("scaled.json");
+    let expected =
+        "scale must be such that the shape stays within 1e16 m of the origin, got 10000000000";
+    assert!(said.contains(expected), "{said}");
 }
 
 /// The search for contacts took the surface of an empty body for one that can be touched.
@@ -349,7 +384,12 @@ fn every_number_of_the_command_line_keeps_a_rule_that_is_said() {
             "0",
             "must be a whole number from 64 to 16384, got 0".into(),
         ),
-        ("mass", "--density <DENSITY>", "-1", format!("{positive}, got -1 kg/m³")),
+        (
+            "mass",
+            "--density <DENSITY>",
+            "-1",
+            "must be from 1e-15 to 1e15 kg/m³, got -1 kg/m³".into(),
+        ),
         ("mass", "--tolerance <TOLERANCE>", "0", format!("{positive}, got 0")),
         (
             "mass",

@@ -79,7 +79,10 @@ fn columns_that_are_missing_are_told_with_those_that_may_be_meant() {
              `y [cm]` is in cm: divide by 100, and call it y_m; \
              `z (in)` is in in: multiply by 0.0254, and call it z_m",
         ),
-        ("x,y [m],z_m", "`x` says no unit: if it is in m, call it x_m; rename `y [m]` to y_m"),
+        (
+            "x,y [m],z_m",
+            "`x` says no unit: if it is in m, call it x_m; if not, convert it first; rename `y [m]` to y_m",
+        ),
     ] {
         let said = refused(format!("{header}\n0,0,0\n").as_bytes());
         assert_eq!(said, format!("palpate: points.csv: {has} {header}: {expected}\n"));
@@ -167,7 +170,9 @@ fn every_bad_value_of_a_hand_path_is_told() {
         ),
         (
             "t,x_m,y_m,z_m\n0,0,0,0\n",
-            format!("{has} t,x_m,y_m,z_m: `t` says no unit: if it is in s, call it time_s"),
+            format!(
+                "{has} t,x_m,y_m,z_m: `t` says no unit: if it is in s, call it time_s; if not, convert it first"
+            ),
         ),
         ("time_s,x_m,y_m,z_m\n", "there are no rows".to_owned()),
         (

@@ -21,8 +21,9 @@ use crate::hand_path::{HandPath, Interpolation};
 /// goes round the whole scene.
 const SHORTEST_VISIT: f64 = 0.1;
 
-/// Rays for which a body is looked at from a direction: 81 in a row, or nine rows of nine. A body
-/// of which less than a ninth of the width is free may be missed.
+/// Rays along which a body is looked at from a direction: 81 in a row in the plane, nine rows of
+/// nine in space. A body of which less than an 81st of the width is free in the plane, or less
+/// than a ninth in space, may be missed.
 const ROW: [usize; 2] = [81, 9];
 
 /// The part of these rays that must see a body at first; then any will do.
@@ -35,8 +36,9 @@ const VISIT_DEPTH: f64 = 0.03;
 /// The grain of what is seen of a body, as a part of its extents: the hand lands on rims that wide.
 const VISIT_GRAIN: f64 = 0.5;
 
-/// The steepest that the hand goes down to a surface in a visit: down a steeper wall, it would
-/// leave its proxy behind at the edge. It flies over what a steeper place hides.
+/// The steepest way, height over length, that the hand goes down to a surface in a visit. Down a
+/// steeper wall the hand would leave its proxy behind at the edge, so it flies over the foot of
+/// the wall.
 const STEEPEST_WAY: f64 = 2.0;
 
 /// The least part of a visit's time that flights leave, as a part of the equal share.
@@ -54,10 +56,11 @@ const WAY_POINTS: usize = 2000;
 /// The most points of a flight: more than a hand needs over any scene.
 const MOST_FLIGHT_POINTS: f64 = 20_000.0;
 
-/// The fewest points of a flight: two that speed up and slow down.
+/// The fewest points of a flight: the hand takes some dozens to speed up, and as many to slow down.
 const FEWEST_FLIGHT_POINTS: f64 = 100.0;
 
-/// Points over which the corners of a flight are rounded: less than its clearance.
+/// Points over which the corners of a flight are rounded: so few that a rounded corner stays
+/// within the clearance.
 const ROUNDED: usize = 8;
 
 /// Points of a flight round the scene.
@@ -81,13 +84,14 @@ impl<const D: usize> Target<D> {
 }
 
 impl<const D: usize> Tour<D> {
-    /// The path over a scene, `whole`, that touches each of its `bodies`.
+    /// The path over a scene, `whole`, that touches as many of its `bodies` as it can.
     ///
     /// If the path of [`over`](Self::over) touches all of them, it is that path. Otherwise the
     /// time is divided equally among the bodies: the hand aims at each from outside, from above if
     /// it is seen from there, winds over the part that is seen, and flies above everything to the
-    /// next. A body that no ray from outside reaches is left out; and with less than 0.1 s for
-    /// each body, the path is that of `over`.
+    /// next. A body that no ray from outside reaches, or no flight, is left out. If that path
+    /// touches no more bodies than that of `over`, or there is less than 0.1 s for each body, the
+    /// path is that of `over`.
     ///
     /// # Errors
     ///
@@ -373,8 +377,7 @@ impl<const D: usize> Outlook<'_, D> {
             point + up * (root.max(0.0).sqrt() - along)
         };
         let (out, back) = (leave(from, ups[0]), leave(to, ups[1]));
-        let top = centre
-            + Vector(std::array::from_fn(|axis| f64::from(u8::from(axis == 1)) * radius));
+        let top = centre + Vector::unit(1) * radius;
         let arc = |from: Point<D>, to: Point<D>| on_ball([from, to], centre, radius);
         let ways = [arc(out, back), [arc(out, top), arc(top, back)].concat()];
         let is_free = |way: &Vec<Point<D>>| {
@@ -428,8 +431,9 @@ fn across<const D: usize>(up: Vector<f64, D>) -> Vec<Vector<f64, D>> {
     let mut axes = vec![up];
     // x and z before y: seen from above, they are the axes themselves.
     for axis in [0, 2, 1] {
-        let unit = Vector(std::array::from_fn(|i| f64::from(u8::from(i == axis))));
-        let rest = axes.iter().fold(unit, |rest, other| rest - *other * rest.dot(*other));
+        let rest = axes
+            .iter()
+            .fold(Vector::unit(axis), |rest, other| rest - *other * rest.dot(*other));
         if rest.norm() > 0.5 && axes.len() < D {
             axes.push(rest * (1.0 / rest.norm()));
         }
@@ -451,8 +455,8 @@ fn wound<const D: usize>(target: &Target<D>, way: f64) -> Vec<Point<D>> {
     (0..=WAY_POINTS).map(place).collect()
 }
 
-/// Takes away what rays see beside a place from which the way down is steeper than `fall` [m] from
-/// ray to ray.
+/// Removes each sight that lies lower than a neighbour by more than `fall` [m] for each ray between
+/// them.
 fn hide<const D: usize>(sights: &mut [Sight<D>], fall: f64) {
     let mut cover: Vec<f64> = sights.iter().map(|sight| sight.height).collect();
     for i in 1..cover.len() {

@@ -59,12 +59,27 @@ impl<const D: usize> Warp<D, D> for AxisScale<D> {
     }
 }
 
+/// The farthest that a scaled shape may be from the origin [m]: a shape of the largest length, at
+/// the largest coordinates.
+const FARTHEST: f64 = 10.0 * LARGEST_LENGTH;
+
 fn check_factor(factor: f64) -> Result<f64, ShapeError> {
     if (1.0 / LARGEST_LENGTH..=LARGEST_LENGTH).contains(&factor) {
         Ok(factor)
     } else {
         Err(ShapeError::number("scale", "positive, from 1e-15 to 1e15", factor, Unit::One))
     }
+}
+
+/// How far what a promise bounds is from the origin, after it is scaled [m]. Beyond all lengths that
+/// questions accept, a shape could not be asked about.
+fn size_of<const D: usize>(of: &Promise<D>, factor: f64) -> Result<f64, ShapeError> {
+    let size = of.bounds.map_or(0.0, |bounds| bounds.radius_about_origin()) * factor;
+    if size <= FARTHEST {
+        return Ok(size);
+    }
+    let rule = "such that the shape stays within 1e16 m of the origin";
+    Err(ShapeError::number("scale", rule, factor, Unit::One))
 }
 
 /// The `child` scaled by `factor` about the origin.
@@ -74,7 +89,7 @@ pub(crate) fn scaled<const D: usize>(
 ) -> Result<SharedField<D>, ShapeError> {
     let factor = check_factor(factor)?;
     let of = child.promise();
-    let size = of.bounds.map_or(0.0, |b| b.radius_about_origin()) * factor;
+    let size = size_of(of, factor)?;
     let own = Rounding::of_operations(2.0 * of.lipschitz.max(1.0), size);
     let promise = Promise {
         bounds: of.bounds.map(|b| b.scaled([factor; D])),
@@ -101,7 +116,7 @@ pub(crate) fn stretched<const D: usize>(
     let smallest = factors.iter().fold(f64::INFINITY, |m, f| m.min(*f));
     let of = child.promise();
     let largest = factors.iter().fold(0.0_f64, |m, f| m.max(*f));
-    let size = of.bounds.map_or(0.0, |b| b.radius_about_origin()) * largest;
+    let size = size_of(of, largest)?;
     let own = Rounding::of_operations(2.0 * of.lipschitz.max(1.0), size);
     let promise = Promise {
         bounds: of.bounds.map(|b| b.scaled(factors)),

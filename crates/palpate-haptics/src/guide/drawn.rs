@@ -19,7 +19,7 @@ const CROSS: f64 = 0.03;
 const CORNERS: u32 = 96;
 
 impl<const D: usize> Guide<D> {
-    /// What a picture calls the guide: `"point"`, `"line"`, `"plane"`, `"curve"` (segments too),
+    /// What reports call the guide: `"point"`, `"line"`, `"plane"`, `"curve"` (segments too),
     /// `"well"` or `"slope"`.
     ///
     /// ```
@@ -40,9 +40,9 @@ impl<const D: usize> Guide<D> {
         }
     }
 
-    /// Lines that show where the guide is [m], each a list of its corners: a cross at a point, a
-    /// line and the lines of a plane as far as they are in the box `within`, the curve itself,
-    /// and circles at the reach of a well. A slope has none: its shape shows it.
+    /// Lines that show where the guide is [m], each a list of its corners: a cross at a point, of
+    /// 6 % of the diagonal of the box `within`; a line and the lines of a plane, cut off at that
+    /// box; a curve, and circles at the reach of a well, whole. A slope has none.
     ///
     /// ```
     /// use palpate_field::{Aabb, Vector};
@@ -58,7 +58,9 @@ impl<const D: usize> Guide<D> {
         match &self.kind {
             Kind::Target(Target::Point(point)) => {
                 let arm = CROSS * within.half_extents().norm();
-                let cross = |axis| vec![*point - unit(axis) * arm, *point + unit(axis) * arm];
+                let cross = |axis| {
+                    vec![*point - Vector::unit(axis) * arm, *point + Vector::unit(axis) * arm]
+                };
                 (0..D).map(cross).collect()
             }
             Kind::Target(Target::Line { through, direction }) => {
@@ -77,16 +79,12 @@ impl<const D: usize> Guide<D> {
     }
 }
 
-fn unit<const D: usize>(axis: usize) -> Vector<f64, D> {
-    Vector(std::array::from_fn(|i| f64::from(u8::from(i == axis))))
-}
-
 /// Directions in the plane with this normal, those nearest to axes: one in 2D, two in 3D.
 fn in_plane<const D: usize>(normal: Vector<f64, D>) -> Vec<Vector<f64, D>> {
     let mut known = vec![normal];
     for axis in 0..D {
-        let rest = known.iter().fold(unit(axis), |rest, k| rest - *k * rest.dot(*k));
-        // Half of an axis is left of one of any D axes; less would be rounding.
+        let rest = known.iter().fold(Vector::unit(axis), |rest, k| rest - *k * rest.dot(*k));
+        // Of at least one axis half or more is left; a rest of rounding has no direction.
         if rest.norm() > 0.5 && known.len() < D {
             known.extend(rest.normalized());
         }
@@ -123,7 +121,7 @@ fn circles<const D: usize>(centre: Point<D>, radius: f64) -> Vec<Vec<Point<D>>> 
     let circle = |(a, b): (usize, usize)| {
         let corner = |i: u32| {
             let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(CORNERS));
-            centre + (unit(a) * cos + unit(b) * sin) * radius
+            centre + (Vector::unit(a) * cos + Vector::unit(b) * sin) * radius
         };
         (0..=CORNERS).map(corner).collect()
     };

@@ -60,8 +60,7 @@ fn a_point_that_begins_inside_is_told_with_its_depth_and_its_time_without_force(
     let report = told(&mut servo, vec![leaves, stays, outside], 1.0);
     let [first, second] = &report.starts_inside[..] else { panic!("{report:?}") };
     assert_eq!((first.point, first.body, first.has_left), (0, 1, true));
-    // 1 mm and the probe's radius of 2 mm.
-    assert!((first.depth - 0.003).abs() < 1e-15, "{first:?}");
+    assert!((first.depth - 0.001).abs() < 1e-15, "{first:?}");
     // Half the budget, 32 evaluations, leads a proxy up by 3 mm each; near 0.41 m that is enough to
     // come to where the field has a gradient.
     assert!(first.is_felt && (400..=420).contains(&first.ticks_without_force), "{first:?}");
@@ -78,9 +77,12 @@ fn a_point_that_is_led_out_is_felt() {
     let still = || vec![hand(&[0.0, 1.0], &[0.4988, 0.4988])];
     let report = told(&mut without_limits(servo()), still(), 0.1);
     let [start] = &report.starts_inside[..] else { panic!("{report:?}") };
-    // 1.2 mm, and the probe's radius.
-    assert!((start.depth - 0.0032).abs() < 1e-12, "{start:?}");
+    assert!((start.depth - 0.0012).abs() < 1e-12, "{start:?}");
     assert_eq!((start.is_felt, start.has_left, start.body), (true, false, 0));
+    // Outside, with the probe's 2 mm alone in the body.
+    let beside = vec![hand(&[0.0, 1.0], &[0.5015, 0.5015])];
+    let report = told(&mut without_limits(servo()), beside, 0.1);
+    assert!(report.starts_inside.is_empty() && report.contact_time > 0.09, "{report:?}");
     let above = vec![hand(&[0.0, 1.0], &[0.503, 0.4])];
     let report = told(&mut without_limits(servo()), above, 1.0);
     assert!(report.starts_inside.is_empty() && report.contact_time > 0.9);

@@ -140,8 +140,13 @@ impl TriangleMesh {
 fn from_path(path: &Path) -> Result<TriangleMesh, ReadProblem> {
     let ending = || path.extension().unwrap_or_default().to_string_lossy().into_owned();
     let format = Format::of(path).ok_or_else(|| ReadProblem::Ending { ending: ending() })?;
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    if length > LARGEST_FILE {
+        return Err(ReadProblem::TooLarge { bytes: length });
+    }
     let mut bytes = Vec::new();
-    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     read(&bytes, format)
 }
 

@@ -92,9 +92,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
     }
     let rest = reader.get_ref().trim_ascii();
     if !rest.is_empty() {
-        let byte = bytes.len() - reader.get_ref().len();
+        let read = &bytes[..bytes.len() - rest.len()];
+        let place = if is_binary(bytes) {
+            format!("byte {}", read.len())
+        } else {
+            format!("line {}", 1 + read.iter().filter(|byte| **byte == b'\n').count())
+        };
         return Err(Format::Ply.malformed(format_args!(
-            "byte {byte}: {} bytes follow the last row that its header counts",
+            "{place}: {} bytes follow the last row that its header counts",
             rest.len()
         )));
     }
@@ -131,9 +136,8 @@ fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadPr
     let byte = bytes.len() - reader.get_ref().len();
     let message = error.to_string().replace("\n\t", " ");
     let numbered = message.strip_prefix("Line ").and_then(|rest| rest.split_once(": "));
-    let is_binary = bytes.windows(13).take(1000).any(|window| window == b"format binary");
     let (place, problem) = match numbered {
-        Some((_, problem)) if is_binary => (format!("byte {byte}"), problem),
+        Some((_, problem)) if is_binary(bytes) => (format!("byte {byte}"), problem),
         Some((line, problem)) => (format!("line {line}"), problem),
         None => (format!("byte {byte}"), message.as_str()),
     };
@@ -141,6 +145,11 @@ fn malformed(error: &ParseError, bytes: &[u8], reader: &Reader<&[u8]>) -> ReadPr
         || byte == bytes.len() && !bytes.ends_with(b"\n");
     let cut = if is_end { "; the file ends there: it is cut off" } else { "" };
     Format::Ply.malformed(format_args!("{place}: {problem}{cut}"))
+}
+
+/// Whether the header says that rows are binary.
+fn is_binary(bytes: &[u8]) -> bool {
+    bytes.windows(13).take(1000).any(|window| window == b"format binary")
 }
 
 fn number(property: &Property) -> Option<f64> {

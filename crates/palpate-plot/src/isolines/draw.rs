@@ -248,10 +248,11 @@ impl Isolines {
 
     fn gradient_legend(&self, method: Option<&str>, bodies: &Bodies<'_>) -> Vec<Entry> {
         let wheel = Key::Wheel(self.axis_arrows());
-        let grows = "direction in which the field grows";
         let direction = match method {
-            Some(method) => format!("{grows}, as {method} finds it"),
-            None => format!("{grows}; at the rim its gradient is 1"),
+            Some(method) => format!("direction that {method} finds"),
+            None => {
+                "direction in which the field grows; at the rim its gradient is 1".to_owned()
+            }
         };
         let mut entries = vec![Entry::new(wheel, direction)];
         entries.extend(self.surface_entries(bodies));

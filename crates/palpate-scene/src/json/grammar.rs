@@ -403,7 +403,7 @@ impl<'a> Walk<'a> {
 
     fn after_end(&mut self, token: Token<'_>) -> Option<()> {
         let message = if token.text.starts_with('\0') {
-            "zero bytes follow the end of the scene: the file is damaged; save it anew"
+            "bytes of value 0 follow the end of the scene: the file is damaged; save it anew"
         } else {
             "there is more after the end of the scene; is there a closing bracket too many before it?"
         };
@@ -560,7 +560,7 @@ mod tests {
             ),
             (
                 "{} |\0\0",
-                "zero bytes follow the end of the scene: the file is damaged; save it anew",
+                "bytes of value 0 follow the end of the scene: the file is damaged; save it anew",
             ),
             (
                 "{\n\"a\": [1|",
