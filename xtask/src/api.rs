@@ -21,6 +21,7 @@ const CRATES: &[&str] = &[
     "palpate-haptics",
     "palpate-local",
     "palpate-loop",
+    "palpate-material",
     "palpate-mesh",
     "palpate-plot",
     "palpate-query",

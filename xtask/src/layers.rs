@@ -8,12 +8,13 @@ use serde_json::Value;
 use crate::command::Failure;
 
 /// The crates from the lowest layer to the highest.
-const LAYERS: [&str; 16] = [
+const LAYERS: [&str; 17] = [
     "palpate-field",
     "palpate-mesh",
     "palpate-query",
     "palpate-local",
     "palpate-safety",
+    "palpate-material",
     "palpate-haptics",
     "palpate-vibration",
     "palpate-loop",

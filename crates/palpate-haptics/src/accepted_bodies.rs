@@ -118,6 +118,8 @@ impl<const D: usize> Protection<D> {
         mut coupling: Coupling,
         rate: f64,
     ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
+        let most = self.most_stiffness(rate)?;
+        bodies.bodies_mut().iter_mut().for_each(|body| body.stiffen(most));
         let in_series = layers(&bodies)?.into_iter().map(|layer| coupling.on(layer));
         let in_series: Vec<_> = in_series.collect::<Result<_, _>>()?;
         let along = self.accepted(&in_series, rate)?;

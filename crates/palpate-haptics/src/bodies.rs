@@ -114,6 +114,11 @@ impl<const D: usize> Body<D> {
         &self.world_from_body
     }
 
+    /// Gives the surface the stiffness that it has on a device which renders at most `most` [N/m].
+    pub(crate) fn stiffen(&mut self, most: f64) {
+        self.surface = self.surface.on_device(most);
+    }
+
     /// Leaves these shares of the surface's stiffness and of its damping.
     pub(crate) fn scale_surface(&mut self, stiffness: f64, damping: f64) {
         self.surface = self.surface.scaled(stiffness, damping);

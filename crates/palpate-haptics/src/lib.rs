@@ -53,7 +53,6 @@ mod guide;
 mod half_spaces;
 mod handoff;
 mod live;
-mod material;
 mod nearby;
 mod options;
 mod planes;
@@ -77,11 +76,11 @@ pub use handoff::{
     latest_value,
 };
 pub use live::{Progress, Snapshot};
-pub use material::{
-    Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
-};
 pub use nearby::Nearby;
 pub use options::ServoOptions;
+pub use palpate_material::{
+    Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind, UnknownMaterial,
+};
 pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
     Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,

@@ -102,13 +102,21 @@ impl<const D: usize> Protection<D> {
         rate: f64,
     ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
+        let most = self.most_stiffness(rate)?;
         for body in bodies.bodies_mut() {
+            body.stiffen(most);
             let layers: Vec<_> = body.surface().impedances().collect::<Result<_, _>>()?;
             let accepted = self.accepted(&layers, rate)?;
             body.scale_surface(accepted.stiffness_factor, accepted.damping_factor);
             all.push(accepted);
         }
         Ok((bodies, all))
+    }
+
+    /// The largest stiffness that the device renders, in the world [N/m].
+    pub(crate) fn most_stiffness(&self, rate: f64) -> Result<f64, HapticsError> {
+        let limits = DeviceLimits::along(&self.profile);
+        Ok(Accepted::most_stiffness(&limits, self.acceptance, rate)? / self.map.scale())
     }
 
     /// What the device renders of layers.

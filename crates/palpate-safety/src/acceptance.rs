@@ -30,8 +30,9 @@ pub enum Acceptance {
     /// What needs no controller in any hand: beside the rules of [`Device`](Self::Device), the
     /// physical damping alone dissipates what sampling generates, `K ≤ 2 b / T`.
     Passive,
-    /// As stiff as the device renders well at this rate, and as damped as its physical damping
-    /// leaves room for. The passivity controller takes care of what is left.
+    /// As stiff as the device's maker says it renders at this rate, and as damped as its physical
+    /// damping leaves room for. The passivity controller takes care of what is left. If the maker
+    /// states no largest stiffness, that of [`Passive`](Self::Passive) counts.
     #[default]
     Device,
     /// As it is: the passivity controller alone keeps the hand safe.
@@ -44,7 +45,8 @@ pub enum Acceptance {
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Rule {
-    /// `K ≤ 2 b / T`, Colgate and Schenkel (1997); with [`Acceptance::Passive`] alone.
+    /// `K ≤ 2 b / T`, Colgate and Schenkel (1997); with [`Acceptance::Passive`], and for devices
+    /// without a largest stiffness.
     Passivity,
     /// `K ≤ 2 f_c / Δ`, Abbott and Okamura (2005).
     Quantisation,
@@ -107,11 +109,12 @@ impl Rule {
 /// damping `b`, friction `f_c` and encoder step `Δ`, the device renders
 ///
 /// ```text
-/// K = min(K asked for, K_max(T), 2 f_c / Δ)         and ≤ 2 b / T with Acceptance::Passive
+/// K = min(K asked for, K_max(T), 2 f_c / Δ)         and ≤ 2 b / T, see below
 /// B = min(B asked for, B_max(T), max(0, b − K T / 2))
 /// ```
 ///
-/// A profile states its largest stiffness and damping for 1 kHz; both grow with the rate, as the
+/// The rule `K ≤ 2 b / T` holds with [`Acceptance::Passive`], and for profiles without a largest
+/// stiffness. A profile states its largest stiffness and damping for 1 kHz; both grow with the rate, as the
 /// energy does that a wall generates between two samples: `K_max(T) = K_max · 1 ms / T`. The rule
 /// with `f_c` does not apply without encoder steps or with infinite friction. Some numbers of the
 /// profile may be [`assumed`](Self::assumed).
@@ -262,6 +265,37 @@ impl Accepted {
         })
     }
 
+    /// The largest stiffness that a device with these limits renders at `rate` [Hz], at the device
+    /// [N/m]; infinite if nothing limits it, as with [`Acceptance::AsIs`].
+    ///
+    /// # Errors
+    ///
+    /// [`SafetyError::Number`] if the rate is out of range, or a number of the profile that a rule
+    /// needs is not positive.
+    ///
+    /// ```
+    /// use palpate_safety::{Acceptance, Accepted, DeviceLimits, DeviceProfile};
+    ///
+    /// # fn main() -> Result<(), palpate_safety::SafetyError> {
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1500.0);
+    /// let limits = DeviceLimits::along(&device);
+    /// let most = |rate| Accepted::most_stiffness(&limits, Acceptance::Device, rate);
+    /// assert_eq!((most(1000.0)?, most(2000.0)?), (1500.0, 3000.0));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn most_stiffness(
+        limits: &DeviceLimits,
+        acceptance: Acceptance,
+        rate: f64,
+    ) -> Result<f64, SafetyError> {
+        if acceptance == Acceptance::AsIs {
+            return Ok(f64::INFINITY);
+        }
+        let bounds = stiffness_bounds(limits, acceptance, NumberError::check_rate(rate)?)?;
+        Ok(bounds.iter().fold(f64::INFINITY, |least, (bound, _)| least.min(*bound)))
+    }
+
     /// This, unless the device renders less than was asked for.
     ///
     /// # Errors
@@ -330,10 +364,12 @@ fn stiffness_bounds(
     acceptance: Acceptance,
     rate: f64,
 ) -> Result<[(f64, Rule); 3], SafetyError> {
-    let least_damping = limits.least_damping.positive()?;
+    let sampled = 2.0 * limits.least_damping.positive()? * rate;
+    let is_stated = limits.max_stiffness.positive()? < f64::INFINITY;
+    // Of a device whose maker says nothing, only physics is known.
     let passive = match acceptance {
-        Acceptance::Passive => 2.0 * least_damping * rate,
-        Acceptance::Device | Acceptance::AsIs => f64::INFINITY,
+        Acceptance::Device if is_stated => f64::INFINITY,
+        _ => sampled,
     };
     let step = limits.encoder_step.not_negative()?;
     let seen =
@@ -409,6 +445,8 @@ mod tests {
         let thin = with(&|d| d.max_damping = 0.0625);
         let stated = (0.0625, Some(Rule::MaxDamping));
         assert_eq!(of_damping(accept(100.0, 0.25, &thin)), stated);
+        let unstated = with(&|d| d.max_stiffness = f64::INFINITY);
+        assert_eq!(of_stiffness(accept(2000.0, 0.0, &unstated)), sampled);
         let free = with(&|d| d.friction = f64::INFINITY);
         assert_eq!(of_stiffness(accept(1000.0, 0.0, &free)), (1000.0, None));
     }

@@ -33,6 +33,17 @@ fn refused(key: &str, rule: &str, value: f64, unit: &str) -> Result<(), Problem>
     Err(Problem::about(format!("must be {rule}, got {value}{space}{unit}")).under(key))
 }
 
+/// Checks that `value`, if it is given, is a part of a whole: more than 0 and at most 1.
+pub(crate) fn part_if(key: &str, value: Option<f64>) -> Result<(), Problem> {
+    match value {
+        // Written so that NaN fails.
+        Some(part) if !(part > 0.0 && part <= 1.0) => {
+            refused(key, "more than 0 and at most 1", part, "")
+        }
+        _ => Ok(()),
+    }
+}
+
 /// `true` if `value` is the default of its key, which is then left out.
 pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()

@@ -5,7 +5,7 @@
 
 use palpate_haptics::{Impact, Layer, Magnet, Material, PopThrough, Texture};
 
-use crate::check::{at_least, positive, positive_if};
+use crate::check::{at_least, part_if, positive, positive_if};
 use crate::problem::Problem;
 use crate::problems::Problems;
 
@@ -21,6 +21,7 @@ pub(crate) fn check(material: &Material, dimension: usize) -> Result<(), Problem
         at_least("damping", material.damping, 0.0, DAMPING),
         at_least("static_friction", material.static_friction, 0.0, ""),
         at_least("dynamic_friction", material.dynamic_friction, 0.0, ""),
+        part_if("relative_stiffness", material.relative_stiffness),
         at_least("viscosity", material.viscosity, 0.0, DAMPING),
         check_frictions(material.static_friction, material.dynamic_friction),
     ];

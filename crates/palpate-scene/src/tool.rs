@@ -4,7 +4,7 @@
 //! The tool of a scene, as a file gives it.
 
 use palpate_field::LARGEST_LENGTH;
-use palpate_haptics::ToolOptions;
+use palpate_haptics::{Acceptance, ToolOptions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -61,6 +61,33 @@ pub struct WrittenTool {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub max_force: Option<f64>,
+    /// What a device renders of materials; `device` if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceptance: Option<WrittenAcceptance>,
+}
+
+/// What a device renders of materials, as
+/// [`Acceptance`](palpate_haptics::Acceptance) says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Acceptance", inline)]
+pub enum WrittenAcceptance {
+    /// What needs no passivity controller in any hand.
+    Passive,
+    /// As stiff as the device renders well at its rate, and as damped as that leaves room for.
+    Device,
+    /// As it is.
+    AsIs,
+}
+
+impl From<WrittenAcceptance> for Acceptance {
+    fn from(written: WrittenAcceptance) -> Self {
+        match written {
+            WrittenAcceptance::Passive => Self::Passive,
+            WrittenAcceptance::Device => Self::Device,
+            WrittenAcceptance::AsIs => Self::AsIs,
+        }
+    }
 }
 
 /// A virtual coupling: the spring and damper between the hand and a tool with a

@@ -22,17 +22,18 @@ const POINTS: usize = 500;
 pub struct ServoSettings {
     /// Ticks a second [Hz].
     pub rate: f64,
-    /// What the device renders of materials.
-    pub acceptance: Acceptance,
+    /// What the device renders of materials; what the scene says, or else
+    /// [`Acceptance::Device`], if `None`.
+    pub acceptance: Option<Acceptance>,
     /// Whether materials are refused of which the device renders less than all.
     pub is_strict: bool,
 }
 
 impl Default for ServoSettings {
-    /// 1 kHz; the device renders what it can of materials.
+    /// 1 kHz; the device renders of materials what the scene says.
     fn default() -> Self {
         let rate = ServoOptions::default().rate;
-        Self { rate, acceptance: Acceptance::Device, is_strict: false }
+        Self { rate, acceptance: None, is_strict: false }
     }
 }
 
@@ -46,7 +47,7 @@ impl ServoSettings {
     /// With another choice of what the device renders of materials.
     #[must_use]
     pub fn with_acceptance(self, acceptance: Acceptance) -> Self {
-        Self { acceptance, ..self }
+        Self { acceptance: Some(acceptance), ..self }
     }
 
     /// Refusing materials of which the device renders less than all, or not.
@@ -235,12 +236,12 @@ impl<const D: usize> BuiltScene<D> {
                 UnprotectedServo::with_tool(self.bodies()?, tool, options)?
             }
         };
-        let ServoSettings { acceptance, is_strict, .. } = settings;
-        let protection =
-            Protection::new(profile.clone())
-                .with_map(map)
-                .with_acceptance(acceptance)
-                .with_strictness(is_strict);
+        let of_scene = || self.tool.as_ref().and_then(|tool| tool.acceptance);
+        let acceptance = settings.acceptance.or_else(of_scene).unwrap_or_default();
+        let protection = Protection::new(profile.clone())
+            .with_map(map)
+            .with_acceptance(acceptance)
+            .with_strictness(settings.is_strict);
         let mut servo = servo.protected(&protection)?;
         servo.guide(&self.guides);
         Ok(servo)

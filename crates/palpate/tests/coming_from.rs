@@ -57,7 +57,7 @@ fn openhaptics() -> Outcome {
     servo.step(&[]);
     device.write(servo.forces())?;
     assert!(device.profile().max_force > 0.0);
-    assert!(servo.accepted()[0].factor <= 1.0);
+    assert!(servo.accepted()[0].stiffness_factor <= 1.0);
     let _ = WorkspaceMap::fitting(bounds, profile.workspace_radius)?;
     assert!(servo.events().is_empty());
     let thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;

@@ -6,11 +6,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use palpate::devices::{DeviceProfile, PROFILES, profile_named};
+use palpate::haptics::Acceptance;
 use palpate::scene::unknown_name;
 
-use super::numbers::{count, length_or_zero, positive, zero_or_more};
+use super::numbers::{count, length_or_zero, positive, within, zero_or_more};
 
 /// The most contact points: more than any device has.
 const MOST_CONTACTS: usize = 1000;
@@ -49,13 +50,20 @@ pub(crate) struct FeelOptions {
     /// tool, 10 on the built-in gallery, or else 1. Not for a tool with a shape.
     #[arg(long, alias = "contacts", allow_negative_numbers = true, value_parser = count(1, MOST_CONTACTS))]
     pub(crate) points: Option<usize>,
-    /// Refuse bodies that the device cannot render stably, instead of making them softer. A
-    /// glove, which has no forces, takes neither this nor --stiffness, --damping and --max-force.
+    /// What the device renders of materials; what the scene says, or else device, if left out.
+    #[arg(long, value_enum)]
+    pub(crate) acceptance: Option<AcceptanceChoice>,
+    /// Refuse bodies of which the device renders less than all. A glove, which has no forces, takes
+    /// neither this nor the options of stiffness, damping, acceptance and force.
     #[arg(long)]
     pub(crate) strict: bool,
     /// Stiffness of the surface [N/m]; that of each body if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N/m"))]
     pub(crate) stiffness: Option<f64>,
+    /// Stiffness of the surface as a part of what the device renders, up to 1; for a device
+    /// without limits, --stiffness or that of each body counts.
+    #[arg(long, value_name = "PART", allow_negative_numbers = true, value_parser = within(1e-6, 1.0, ""))]
+    pub(crate) relative_stiffness: Option<f64>,
     /// Damping of the surface [N·s/m]; that of each body if left out.
     #[arg(long, allow_negative_numbers = true, value_parser = zero_or_more("N·s/m"))]
     pub(crate) damping: Option<f64>,
@@ -125,5 +133,26 @@ impl FeelOptions {
             options: FeelOptions,
         }
         Nothing::parse_from(["palpate"]).options
+    }
+}
+
+/// What a device renders of materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum AcceptanceChoice {
+    /// What needs no passivity controller in any hand.
+    Passive,
+    /// As stiff as the device renders well at this rate, and as damped as that leaves room for.
+    Device,
+    /// As they are.
+    AsIs,
+}
+
+impl From<AcceptanceChoice> for Acceptance {
+    fn from(choice: AcceptanceChoice) -> Self {
+        match choice {
+            AcceptanceChoice::Passive => Self::Passive,
+            AcceptanceChoice::Device => Self::Device,
+            AcceptanceChoice::AsIs => Self::AsIs,
+        }
     }
 }

@@ -22,7 +22,7 @@ use std::time::Duration;
 
 use palpate::devices::{HandPath, profile_named};
 use palpate::field::Pose;
-use palpate::haptics::{Acceptance, Probe, Progress};
+use palpate::haptics::{Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
@@ -82,8 +82,9 @@ where
     let map = held::map(scene, tool.as_ref(), &choice)?;
     let device = held::device(&choice, &paths, turns.as_ref(), &map);
     let mut device = device.map_err(Failure::input)?;
-    let acceptance = if options.strict { Acceptance::Strict } else { Acceptance::Scaled };
-    let settings = ServoSettings::default().with_rate(options.rate).with_acceptance(acceptance);
+    let mut settings =
+        ServoSettings::default().with_rate(options.rate).with_strictness(options.strict);
+    settings.acceptance = options.acceptance.map(Into::into);
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
     let accepted = servo.accepted().to_vec();
 
@@ -200,7 +201,9 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
             let given = [
                 ("--max-force", options.max_force.is_some()),
                 ("--stiffness", options.stiffness.is_some()),
+                ("--relative-stiffness", options.relative_stiffness.is_some()),
                 ("--damping", options.damping.is_some()),
+                ("--acceptance", options.acceptance.is_some()),
                 ("--strict", options.strict),
             ];
             let given = given.iter().filter(|(_, is_given)| *is_given);
@@ -228,7 +231,11 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
     let mut scene = scene.clone();
     for body in &mut scene.bodies {
         let material = &mut body.material;
-        material.stiffness = options.stiffness.unwrap_or(material.stiffness);
+        if let Some(stiffness) = options.stiffness {
+            (material.stiffness, material.relative_stiffness) = (stiffness, None);
+        }
+        material.relative_stiffness =
+            options.relative_stiffness.or(material.relative_stiffness);
         material.damping = options.damping.unwrap_or(material.damping);
     }
     if options.radius.is_some() || options.max_force.is_some() {

@@ -184,20 +184,26 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         let moving: Vec<_> = felt.moving().map(|name| shown(name).to_string()).collect();
         writeln!(out, "  moving         {}", moving.join(", "))?;
     }
+    // A workspace that is larger in the world makes a body stiffer at the hand.
+    let along = if report.tool.is_some() { accepted.len().min(1) } else { accepted.len() };
+    let along = &accepted[..along];
+    if along.iter().any(|a| a.device_stiffness != a.impedance.stiffness()) {
+        writeln!(
+            out,
+            "  at the hand    stiffness {} N/m, damping {} N·s/m",
+            range(along.iter().map(|a| a.device_stiffness)),
+            range(along.iter().map(|a| a.device_damping)),
+        )?;
+    }
     match (&report.tool, accepted.split_first()) {
         (Some(_), Some((coupling, turning))) => {
-            write_accepted(
-                out,
-                std::slice::from_ref(coupling),
-                "coupling and bodies made softer",
-            )?;
-            write_accepted(out, turning, "coupling made softer about axes")?;
+            let coupling = std::slice::from_ref(coupling);
+            write_accepted(out, coupling, |_| "coupling and bodies".to_owned())?;
+            write_accepted(out, turning, |_| "coupling about axes".to_owned())?;
         }
         _ => {
-            let count = accepted.iter().filter(|accepted| accepted.factor < 1.0).count();
-            let bodies = accepted.len();
-            let what = format!("{count} of {bodies} bodies made softer, at most");
-            write_accepted(out, accepted, &what)?;
+            let all = accepted.len();
+            write_accepted(out, accepted, |count| format!("{count} of {all} bodies"))?;
         }
     }
     match &report.ending {
@@ -269,16 +275,32 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     Ok(())
 }
 
-/// What was made softer because the device cannot render it, and which limit is exceeded.
-fn write_accepted(out: &mut String, accepted: &[Accepted], what: &str) -> std::fmt::Result {
-    let scaled = accepted.iter().filter(|accepted| accepted.factor < 1.0);
-    let Some(softest) = scaled.min_by(|a, b| a.factor.total_cmp(&b.factor)) else {
-        return Ok(());
-    };
-    let condition = softest.rule.map_or("", Rule::condition);
-    let factor = softest.factor;
-    writeln!(out, "                 {what} {factor:.3} times as stiff: {condition}")?;
-    if softest.assumed.contains(&"least_damping") {
+/// Why stiffness and damping are less than what is asked for.
+fn write_accepted(
+    out: &mut String,
+    accepted: &[Accepted],
+    whose: impl Fn(usize) -> String,
+) -> std::fmt::Result {
+    type Share = fn(&Accepted) -> (f64, Option<Rule>);
+    let shares: [(&str, &str, Share); 2] = [
+        ("softer", "stiffness", |a| (a.stiffness_factor, a.stiffness_rule)),
+        ("less damped", "damping", |a| (a.damping_factor, a.damping_rule)),
+    ];
+    for (how, what, share) in shares {
+        let less =
+            accepted.iter().map(share).filter_map(|(factor, rule)| Some((factor, rule?)));
+        let least = less.clone().min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((factor, rule)) = least else { continue };
+        let (count, factor) = (less.count(), rounded(factor));
+        let (whose, condition) = (whose(count), rule.condition());
+        let least = if count > 1 { ", at least" } else { "," };
+        writeln!(
+            out,
+            "                 {whose} {how} than asked{least} {factor} of the {what}: {condition}"
+        )?;
+    }
+    let relies = |a: &Accepted| a.stiffness_rule.or(a.damping_rule).is_some();
+    if accepted.iter().any(|a| relies(a) && a.assumed.contains(&"least_damping")) {
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())

@@ -175,11 +175,11 @@ fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f6
     let mut servo = servo
         .protected(
             &Protection::new(profile.clone())
-                .with_acceptance(Acceptance::AsItIs)
+                .with_acceptance(Acceptance::AsIs)
                 .with_rise_time(0.0),
         )
         .unwrap();
-    assert_eq!(servo.accepted()[0].factor, 1.0);
+    assert_eq!(servo.accepted()[0].stiffness_factor, 1.0);
     let hand = Hand::resting(Vector([0.0, height])).unwrap();
     let hand = hand.with_mass(0.0).unwrap().with_spring(0.0, grip).unwrap();
     let hand = hand.with_push(Vector([0.0, -1.0])).unwrap();

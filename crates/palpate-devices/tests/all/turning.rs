@@ -329,7 +329,7 @@ impl Leaning {
 
 #[test]
 fn force_and_torque_of_a_passive_lever_are_never_changed_and_give_nothing() {
-    let mut leaning = Leaning::new(0.99, Acceptance::Strict);
+    let mut leaning = Leaning::new(0.99, Acceptance::AsIs);
     let mut contacts = 0;
     for tick in 0..4000 {
         leaning.tick(tick);
@@ -348,8 +348,8 @@ fn force_and_torque_of_a_passive_lever_are_never_changed_and_give_nothing() {
 
 #[test]
 fn a_lever_too_stiff_is_made_softer_or_kept_in_bounds() {
-    let mut softer = Leaning::new(3.0, Acceptance::Scaled);
-    let mut as_it_is = Leaning::new(3.0, Acceptance::AsItIs);
+    let mut softer = Leaning::new(3.0, Acceptance::Passive);
+    let mut as_it_is = Leaning::new(3.0, Acceptance::AsIs);
     let mut most = 0.0_f64;
     for tick in 0..8000 {
         softer.tick(tick);

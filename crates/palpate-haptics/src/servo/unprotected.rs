@@ -154,7 +154,7 @@ impl<const D: usize> UnprotectedServo<D> {
     ///
     /// # Errors
     ///
-    /// [`HapticsError::MaterialRefused`] if a body is refused; [`HapticsError::Number`] if a
+    /// [`HapticsError::Safety`] if a body is refused; [`HapticsError::Number`] if a
     /// limit of the profile is not positive.
     ///
     /// # Examples
@@ -168,11 +168,10 @@ impl<const D: usize> UnprotectedServo<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let ball = Shape::<3>::from_kernel(Ball::new(0.05)?);
     /// let bodies = Bodies::new(vec![Body::new(ball, Surface::smooth(2000.0, 0.0)?)?])?;
-    /// // A damping of 0.5 N·s/m makes 1000 N/m passive at 1 kHz.
-    /// let device = DeviceProfile::unlimited("example").with_least_damping(0.5);
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
     /// let servo = UnprotectedServo::new(bodies, 1, Default::default())?
     ///     .protected(&Protection::new(device))?;
-    /// assert_eq!(servo.accepted()[0].factor, 0.5);
+    /// assert_eq!(servo.accepted()[0].stiffness_factor, 0.5);
     /// assert_eq!(servo.bodies().bodies()[0].surface().stiffness(), 1000.0);
     /// # Ok(())
     /// # }

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::material::Magnet;
+use palpate_material::Magnet;
 
 use crate::error::HapticsError;
 use palpate_safety::NumberError;

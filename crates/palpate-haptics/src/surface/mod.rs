@@ -10,8 +10,8 @@ mod ring;
 mod ripples;
 mod strata;
 
-use crate::material::{Material, TextureKind};
 use palpate_field::{Point, Shape, Vector};
+use palpate_material::{Material, TextureKind};
 
 use crate::curvature::surface_displacement;
 use crate::error::HapticsError;
@@ -86,6 +86,7 @@ pub(crate) struct Press<const D: usize> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface<const D: usize> {
     pub(crate) strata: Strata,
+    relative_stiffness: Option<f64>,
     pub(crate) magnet: Option<Pull>,
     /// A texture of kind *height*.
     ripples: Option<Ripples<D>>,
@@ -125,8 +126,14 @@ impl<const D: usize> Surface<D> {
                 TextureKind::Displacement => relief = waves,
             }
         }
+        let part = material.relative_stiffness;
+        if let Some(part) = part.filter(|part| !(0.0 < *part && *part <= 1.0)) {
+            let rule = "more than 0 and at most 1";
+            return Err(NumberError::new("relative_stiffness", rule, part, "").into());
+        }
         Ok(Self {
             strata: Strata::new(material)?,
+            relative_stiffness: part,
             magnet: material.magnet.as_ref().map(Pull::new).transpose()?,
             ripples,
             relief,
@@ -167,6 +174,15 @@ impl<const D: usize> Surface<D> {
     #[must_use]
     pub fn damping(&self) -> f64 {
         self.strata.damping()
+    }
+
+    /// This surface on a device that renders at most a stiffness of `most` [N/m]: if the material
+    /// asks for a part of that, the stiffest layer has it, and the others are in proportion.
+    pub(crate) fn on_device(&self, most: f64) -> Self {
+        let Some(part) = self.relative_stiffness.filter(|_| most < f64::INFINITY) else {
+            return self.clone();
+        };
+        self.scaled(part * most / self.strata.stiffest(), 1.0)
     }
 
     /// Stiffness and damping of each layer.
@@ -250,6 +266,13 @@ impl<const D: usize> Default for Surface<D> {
         let material =
             Material { static_friction: 0.0, dynamic_friction: 0.0, ..Material::default() };
         let strata = Strata::of(&material);
-        Self { strata, magnet: None, ripples: None, relief: None, impact: None }
+        Self {
+            strata,
+            relative_stiffness: None,
+            magnet: None,
+            ripples: None,
+            relief: None,
+            impact: None,
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::material::Impact;
+use palpate_material::Impact;
 
 use crate::error::HapticsError;
 use palpate_safety::NumberError;

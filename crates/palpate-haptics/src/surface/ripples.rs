@@ -5,9 +5,9 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::material::Texture;
 use palpate_field::scalar::Scalar;
 use palpate_field::{Kernel, Point, Promise, Vector};
+use palpate_material::Texture;
 
 use crate::error::HapticsError;
 use palpate_safety::NumberError;
@@ -103,8 +103,8 @@ impl<const D: usize> Kernel<D> for Ripples<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::material::TextureKind;
     use palpate_field::Shape;
+    use palpate_material::TextureKind;
 
     use super::*;
     use palpate_testkit::cases::each as cases;

@@ -5,7 +5,7 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::material::Material;
+use palpate_material::Material;
 
 use crate::error::HapticsError;
 use palpate_safety::{Impedance, NumberError};
@@ -79,7 +79,7 @@ impl Strata {
     /// The layers of a material, unchecked. A property that a layer omits is inherited from the
     /// layer above.
     pub(crate) fn of(material: &Material) -> Self {
-        let pop_through = |pop: &Option<crate::material::PopThrough>| {
+        let pop_through = |pop: &Option<palpate_material::PopThrough>| {
             pop.as_ref().map(|pop| PopThrough { force: pop.force, distance: pop.distance })
         };
         let outermost = Stratum {
@@ -128,6 +128,11 @@ impl Strata {
 
     pub(crate) fn stiffness(&self) -> f64 {
         self.outermost.stiffness
+    }
+
+    /// The largest stiffness of a layer [N/m].
+    pub(crate) fn stiffest(&self) -> f64 {
+        self.all().map(|layer| layer.stiffness).fold(LEAST_STIFFNESS, f64::max)
     }
 
     pub(crate) fn damping(&self) -> f64 {
@@ -200,7 +205,7 @@ impl Strata {
 
 #[cfg(test)]
 mod tests {
-    use crate::material::Layer;
+    use palpate_material::Layer;
 
     use super::*;
 

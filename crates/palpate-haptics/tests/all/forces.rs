@@ -5,9 +5,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use crate::common::{ball, body, cuboid, half_space};
-use palpate_field::{Point, Shape, Vector};
+use palpate_field::{Point, Pose, Shape, Vector};
 use palpate_haptics::{
-    HapticsError, PointState, Probe, ServoOptions, Surface, Touch, UnprotectedServo,
+    DeviceProfile, HapticsError, Layer, Material, PointState, Probe, Protection, ServoOptions,
+    Surface, Touch, UnprotectedServo, WorkspaceMap,
 };
 
 const STIFFNESS: f64 = 1000.0;
@@ -271,4 +272,50 @@ fn wrong_options_are_refused_with_their_numbers() {
     assert!(with(ServoOptions::default().with_rise_time(-1.0)).is_err());
     assert!(Probe::new(-0.1).is_err() && Probe::new(f64::NAN).is_err());
     assert!(Probe::new(0.1).and_then(|p| p.with_budget(3)).is_err());
+}
+
+#[test]
+fn every_preset_can_be_felt() {
+    for name in Material::preset_names() {
+        Surface::<3>::new(&Material::preset(name).unwrap()).unwrap();
+        Surface::<2>::new(&Material::preset(name).unwrap()).unwrap();
+    }
+}
+
+/// Half of what a device renders, at any rate and scale; layers keep their proportions.
+#[test]
+fn a_relative_stiffness_is_a_part_of_what_the_device_renders() {
+    let layer = Layer { depth: 0.005, stiffness: Some(900.0), ..Layer::default() };
+    let half = Material {
+        stiffness: 300.0,
+        damping: 0.0,
+        relative_stiffness: Some(0.5),
+        layers: vec![layer],
+        ..Material::default()
+    };
+    let accepted = |device: DeviceProfile, rate: f64, scale: f64| {
+        let bodies = body(&ball::<3>(0.05), Surface::new(&half).unwrap());
+        let options = ServoOptions::default().with_rate(rate);
+        let servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+        let map = WorkspaceMap::new(Pose::identity(), scale).unwrap();
+        let servo = servo.protected(&Protection::new(device).with_map(map)).unwrap();
+        (servo.accepted()[0].clone(), servo.bodies().bodies()[0].surface().stiffness())
+    };
+    let device = DeviceProfile::unlimited("example").with_max_stiffness(1800.0);
+    for (rate, scale) in [(1000.0, 1.0), (4000.0, 1.0), (1000.0, 3.0)] {
+        let (accepted, outermost) = accepted(device.clone(), rate, scale);
+        assert!((accepted.device_stiffness - 0.9 * rate).abs() < 1e-9, "{accepted:?}");
+        assert_eq!(accepted.stiffness_rule, None);
+        assert!((outermost - 0.3 * rate / scale).abs() < 1e-9, "{outermost}");
+    }
+    // Nothing limits an ideal device, and the numbers of the material count.
+    let (accepted, outermost) = accepted(DeviceProfile::unlimited("ideal"), 1000.0, 1.0);
+    assert_eq!((accepted.device_stiffness, outermost), (900.0, 300.0));
+    for part in [0.0, -0.5, 1.5, f64::NAN] {
+        let wrong = Material { relative_stiffness: Some(part), ..Material::default() };
+        let said = Surface::<3>::new(&wrong).unwrap_err().to_string();
+        let expected =
+            format!("relative_stiffness must be more than 0 and at most 1, got {part}");
+        assert_eq!(said, expected);
+    }
 }

@@ -27,7 +27,7 @@ fn device() -> DeviceProfile {
 
 fn at_once(stiffness: f64) -> SafetyOptions {
     let impedance = Impedance::new(stiffness, 0.0).unwrap();
-    let acceptance = Acceptance::AsItIs;
+    let acceptance = Acceptance::AsIs;
     SafetyOptions::new(impedance).with_rise_time(0.0).with_acceptance(acceptance)
 }
 
@@ -294,7 +294,10 @@ fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
 
 #[test]
 fn where_nothing_is_wrong_nothing_is_changed() {
-    let mut chain = chain::<3>(&device(), at_once(500.0).with_acceptance(Acceptance::Strict));
+    let mut chain = chain::<3>(
+        &device(),
+        at_once(500.0).with_acceptance(Acceptance::Passive).with_strictness(true),
+    );
     for tick in 0..2000 {
         let depth = 1e-3 * (1.0 - (0.01 * f64::from(tick)).cos());
         let wanted = Vector([0.3, 0.7, -0.2]) * (500.0 * depth);
@@ -302,7 +305,8 @@ fn where_nothing_is_wrong_nothing_is_changed() {
         assert_eq!(chain.step(wanted, &state), wanted);
     }
     let report = chain.report();
-    assert_eq!((report.impedance.factor, report.impedance.rule), (1.0, None));
+    let accepted = &report.impedance;
+    assert_eq!((accepted.stiffness_factor, accepted.stiffness_rule), (1.0, None));
     let idle = [
         report.passivity.effect,
         report.slew,
@@ -322,8 +326,8 @@ fn every_stage_can_be_made_to_act() {
     let impedance = Impedance::new(4000.0, 0.0).unwrap();
     // The controller would not let a force rise that far on a hand at rest.
     let stiff = options.with_impedance(impedance).with_passivity_control(false);
-    let mut chain = chain::<2>(&device(), stiff);
-    assert_eq!(chain.report().impedance.factor, 0.25);
+    let mut chain = chain::<2>(&device(), stiff.with_acceptance(Acceptance::Passive));
+    assert_eq!(chain.report().impedance.stiffness_factor, 0.25);
     let mut run = |ticks: u32, force: [f64; 2], state: PortState<2>| {
         (0..ticks).map(|_| chain.step(Vector(force), &state)).last().unwrap()
     };
@@ -363,7 +367,8 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
         let device = device();
         let impedance = Impedance::new(f64::from(u.int_in_range(1..=5000)?), 0.0).unwrap();
         let options = SafetyOptions::new(impedance).with_rise_time(0.05);
-        let acceptance = *u.choose(&[Acceptance::Scaled, Acceptance::AsItIs])?;
+        let acceptance =
+            *u.choose(&[Acceptance::Passive, Acceptance::Device, Acceptance::AsIs])?;
         let mut chain = chain::<3>(&device, options.with_acceptance(acceptance));
         let mut last = Vector::ZERO;
         for _ in 0..150 {
@@ -433,7 +438,11 @@ fn wrong_numbers_are_named() {
         "reserve must be zero or more and finite, got NaN J"
     );
     let weak = fine.clone().with_least_damping(0.1);
-    let strict = options.with_acceptance(Acceptance::Strict);
-    assert!(refuses(weak, strict).contains("K ≤ 2 (b − |B|) / T"));
+    let strict = options.with_strictness(true);
+    let stated = weak.clone().with_max_stiffness(1000.0);
+    assert!(refuses(stated, strict).ends_with("B ≤ b − K T / 2"));
+    assert!(
+        refuses(weak, strict.with_acceptance(Acceptance::Passive)).ends_with("K ≤ 2 b / T")
+    );
     assert!(SafetyChain::<3>::new(&fine, f64::INFINITY, options).is_err());
 }

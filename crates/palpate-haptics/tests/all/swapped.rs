@@ -105,7 +105,10 @@ fn a_softer_material_and_the_same_one_are_felt_at_once() {
 /// It bears a coupling alone, hardly, and not with bodies that damp.
 fn device() -> DeviceProfile {
     let turning = TurningProfile::unlimited().with_least_damping(1.2e-3);
-    DeviceProfile::unlimited("example").with_least_damping(0.7).with_turning(turning)
+    DeviceProfile::unlimited("example")
+        .with_max_stiffness(300.0)
+        .with_least_damping(0.7)
+        .with_turning(turning)
 }
 
 fn with_rod(bodies: Bodies<3>) -> Servo<3> {

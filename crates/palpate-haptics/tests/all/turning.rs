@@ -12,9 +12,9 @@ use crate::common::{AnyServo, body, cases, half_space};
 use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Pose, Rotation, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material, PointState,
-    Protection, Rule, SafetyError, Servo, ServoOptions, Shell, Surface, Tool, ToolOptions,
-    TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
+    Acceptance, Accepted, Bodies, Device, DeviceLost, DeviceProfile, HapticsError, Material,
+    PointState, Protection, Rule, SafetyError, Servo, ServoOptions, Shell, Surface, Tool,
+    ToolOptions, TurnState, TurningProfile, UnprotectedServo, WorkspaceMap,
 };
 use palpate_loop::{
     Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, VirtualClock, run,
@@ -168,36 +168,44 @@ fn for_device(servo: UnprotectedServo<3>, device: &dyn Device<3>) -> Servo<3> {
 
 #[test]
 fn what_turns_is_accepted_by_the_same_law() {
-    let accept = |turning: TurningProfile, options: ToolOptions, acceptance| {
+    let accept = |turning: TurningProfile, options: ToolOptions, is_strict| {
         let servo = servo::<3>(rigid(), options);
-        let protection = Protection::new(device(turning)).with_acceptance(acceptance);
+        let protection = Protection::new(device(turning))
+            .with_acceptance(Acceptance::Passive)
+            .with_strictness(is_strict);
         let servo = servo.protected(&protection)?;
-        Ok((servo.accepted()[0].factor, servo.accepted()[1].clone()))
+        Ok((servo.accepted()[0].stiffness_factor, servo.accepted()[1].clone()))
     };
-    let scaled = |turning, options| accept(turning, options, Acceptance::Scaled).unwrap();
+    let scaled = |turning, options| accept(turning, options, false).unwrap();
     let base = TurningProfile::unlimited();
     let damped = coupling().with_angular_damping(0.001);
-    // b / (κ T / 2 + β) = 0.0005 / (0.001 + 0.001)
+    let of_stiffness = |about: &Accepted| (about.stiffness_factor, about.stiffness_rule);
+    // 2 b / (κ T) = 0.001 / 0.002, which leaves no damping.
     let passive = base.clone().with_least_damping(5e-4);
     let (along, about) = scaled(passive.clone(), damped);
-    assert_eq!((along, about.factor), (1.0, 0.25));
-    assert_eq!(about.rule, Some(Rule::AngularPassivity));
-    assert_eq!((about.device_stiffness, about.device_damping), (0.5, 2.5e-4));
+    assert_eq!(along, 1.0);
+    assert_eq!(of_stiffness(&about), (0.5, Some(Rule::AngularPassivity)));
+    assert_eq!(about.damping_rule, Some(Rule::AngularDampingLeft));
+    assert_eq!((about.device_stiffness, about.device_damping), (1.0, 0.0));
     // 2 f_c / (Δ κ) = 2 · 1e-3 / (2e-3 · 2)
     let seen = base.clone().with_friction(1e-3).with_encoder_step(2e-3);
     let (_, about) = scaled(seen, coupling());
-    assert_eq!((about.factor, about.rule), (0.5, Some(Rule::AngularQuantisation)));
+    assert_eq!(of_stiffness(&about), (0.5, Some(Rule::AngularQuantisation)));
     let soft = base.clone().with_max_stiffness(0.25);
     let (_, about) = scaled(soft, coupling());
-    assert_eq!((about.factor, about.rule), (0.125, Some(Rule::MaxAngularStiffness)));
+    assert_eq!(of_stiffness(&about), (0.125, Some(Rule::MaxAngularStiffness)));
     let thin = base.with_max_damping(5e-4);
     let (_, about) = scaled(thin, damped);
-    assert_eq!((about.factor, about.rule), (0.5, Some(Rule::MaxAngularDamping)));
-    let refused = accept(passive, damped, Acceptance::Strict).unwrap_err();
-    assert!(matches!(
-        refused,
-        HapticsError::Safety(SafetyError::TurningRefused { factor: 0.25, .. })
-    ));
+    assert_eq!(of_stiffness(&about), (1.0, None));
+    let of_damping = (about.damping_factor, about.damping_rule);
+    assert_eq!(of_damping, (0.5, Some(Rule::MaxAngularDamping)));
+    let refused: HapticsError = accept(passive, damped, true).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the device renders angular stiffness and damping of 1 N·m/rad and 0 N·m·s/rad, not the 2 \
+         N·m/rad and 0.001 N·m·s/rad that are asked for: κ ≤ 2 b / T about axes"
+    );
+    assert!(matches!(refused, HapticsError::Safety(SafetyError::MaterialRefused(_))));
 }
 
 #[test]
@@ -205,9 +213,11 @@ fn a_softer_coupling_turns_the_hand_less() {
     // κ T / 2 = 1e-3 [N·m·s/rad].
     let turning = TurningProfile::unlimited().with_least_damping(2.5e-4);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning)).with_rise_time(0.0);
+    let protection = Protection::new(device(turning))
+        .with_acceptance(Acceptance::Passive)
+        .with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
-    assert_eq!(servo.accepted()[1].factor, 0.25);
+    assert_eq!(servo.accepted()[1].stiffness_factor, 0.25);
     // Pressed flat by so much that the rod stays level: κ/4 times the angle.
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.25 * ANGULAR * 0.2])).norm() < 1e-6, "{torque:?}");
@@ -303,7 +313,7 @@ fn the_energy_of_force_and_torque_is_counted_together() {
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(profile).with_rise_time(0.0);
     let mut servo = servo.protected(&protection).unwrap();
-    assert!(servo.accepted().iter().all(|a| a.factor == 1.0));
+    assert!(servo.accepted().iter().all(|a| a.stiffness_factor == 1.0));
     let mut given = 0.0;
     let mut wanted = 0.0_f64;
     let mut last: Option<(Vector<f64, 3>, Vector<f64, 3>)> = None;

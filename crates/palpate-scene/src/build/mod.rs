@@ -16,7 +16,7 @@ use std::collections::hash_map::Entry;
 
 use palpate_field::{Point, Pose, Shape};
 
-use palpate_haptics::{Guide, Material, ToolOptions, WorkspaceMap};
+use palpate_haptics::{Acceptance, Guide, Material, ToolOptions, WorkspaceMap};
 
 use crate::names::shortened;
 use crate::pose::{Turning, Turns, vector};
@@ -71,13 +71,21 @@ pub struct BuiltTool<const D: usize> {
     /// The coupling of a tool with a shape, and the largest force on the hand, which the scene may
     /// leave to the device.
     pub options: ToolOptions,
+    /// What a device renders of materials, if the scene says so.
+    pub acceptance: Option<Acceptance>,
 }
 
 impl<const D: usize> BuiltTool<D> {
     /// One contact point at the origin, of this radius [m].
     #[must_use]
     pub fn of_radius(radius: f64) -> Self {
-        Self { radius, points: Vec::new(), shape: None, options: ToolOptions::default() }
+        Self {
+            radius,
+            points: Vec::new(),
+            shape: None,
+            options: ToolOptions::default(),
+            acceptance: None,
+        }
     }
 }
 
@@ -237,6 +245,7 @@ where
         points: tool.points.iter().map(|point| vector(point)).collect::<Result<_, _>>()?,
         shape,
         options: tool.options(),
+        acceptance: tool.acceptance.map(Into::into),
     }))
 }
 

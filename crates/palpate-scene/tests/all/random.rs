@@ -385,6 +385,7 @@ fn material(u: Random, d: usize) -> Result<Material> {
     Ok(Material {
         description: text(u)?,
         stiffness: length(u)?,
+        relative_stiffness: maybe(u, |u| Ok(f64::from(u.int_in_range(1..=64_u8)?) / 64.0))?,
         damping: length(u)?,
         static_friction: dynamic_friction + length(u)?,
         dynamic_friction,

@@ -9,7 +9,7 @@
 //! judge hardness through a tool (Okamura, Cutkosky and Dennerlein 2001; Kuchenbecker, Fiene
 //! and Niemeyer 2006).
 
-use super::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
+use crate::{Impact, Layer, Magnet, Material, PopThrough, Texture, TextureKind};
 
 /// A material with a name.
 struct Preset {
@@ -110,7 +110,7 @@ impl Material {
     /// The names of the presets.
     ///
     /// ```
-    /// use palpate_haptics::Material;
+    /// use palpate_material::Material;
     ///
     /// assert!(Material::preset_names().any(|name| name == "glass"));
     /// ```
@@ -126,9 +126,9 @@ impl Material {
     /// [`UnknownMaterial`], which lists the known names.
     ///
     /// ```
-    /// use palpate_haptics::Material;
+    /// use palpate_material::Material;
     ///
-    /// # fn main() -> Result<(), palpate_haptics::UnknownMaterial> {
+    /// # fn main() -> Result<(), palpate_material::UnknownMaterial> {
     /// assert_eq!(Material::preset("wood")?, Material::wood());
     /// assert!(Material::preset("glas").is_err());
     /// # Ok(())
@@ -174,7 +174,6 @@ mod tests {
     fn every_preset_is_a_material_of_its_own_that_says_where_it_is_from() {
         for (i, one) in PRESETS.iter().enumerate() {
             let material = (one.material)();
-            assert!(crate::Surface::<3>::new(&material).is_ok(), "{}", one.name);
             assert!(material.stiffness <= 1000.0, "{}", one.name);
             let source = material.description.as_deref().unwrap_or_default();
             let says = |word: &str| source.contains(word);

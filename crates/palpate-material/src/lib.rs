@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Materials: stiffness, friction, layers and texture of a surface.
+//! What surfaces feel like, as data: stiffness, friction, layers and textures, and presets with the
+//! sources of their numbers. `palpate-haptics` prepares a [`Material`] for the servo, and scene
+//! files hold one for each body.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test that cannot be set up fails"))]
 
 mod presets;
 
@@ -12,7 +16,7 @@ pub use presets::UnknownMaterial;
 /// Stiffness and damping are requested; a device that cannot render them stably accepts less.
 ///
 /// ```
-/// use palpate_haptics::Material;
+/// use palpate_material::Material;
 ///
 /// let gum = Material { stiffness: 300.0, static_friction: 0.9, ..Material::default() };
 /// assert_eq!(gum.damping, 1.0);
@@ -30,6 +34,15 @@ pub struct Material {
     /// out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     pub stiffness: f64,
+    /// The part of the stiffness that a device renders at most, from above 0 to 1, that the stiffest
+    /// layer has, with the others in proportion. `stiffness` counts if this is left out, or if
+    /// nothing limits the stiffness of the device.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(range(max = 1.0), extend("exclusiveMinimum" = 0))
+    )]
+    pub relative_stiffness: Option<f64>,
     /// Force for each metre per second towards the surface [N·s/m]; 1 if left
     /// out.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
@@ -68,6 +81,7 @@ impl Default for Material {
         Self {
             description: None,
             stiffness: 500.0,
+            relative_stiffness: None,
             damping: 1.0,
             static_friction: 0.4,
             dynamic_friction: 0.3,
