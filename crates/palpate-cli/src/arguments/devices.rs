@@ -5,11 +5,24 @@
 
 use clap::Args;
 
-pub(super) const EXAMPLES: &str = "Examples:\n  palpate devices\n  palpate devices --json";
+use super::numbers::positive;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  palpate devices
+  palpate devices --json
+  palpate devices --materials --rate 4000";
 
 /// The options of `palpate devices`.
 #[derive(Args, Debug)]
 pub(crate) struct DevicesOptions {
+    /// What each device with forces renders of each material by name: stiffness [N/m] / damping
+    /// [N·s/m].
+    #[arg(long)]
+    pub(crate) materials: bool,
+    /// Ticks a second, on which that depends [Hz].
+    #[arg(long, requires = "materials", default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
+    pub(crate) rate: f64,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

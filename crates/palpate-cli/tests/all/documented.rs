@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Folder, json, root};
+use crate::common::{Folder, json, palpate, root, text};
 use serde_json::Value;
 
 type Names = BTreeSet<String>;
@@ -116,4 +116,33 @@ fn the_keys_of_devices_and_jitter_are_documented() {
         keys(&json(command), &mut printed);
         assert_same(&documented(heading, true), &printed);
     }
+}
+
+/// `PALPATE_UPDATE_GUIDE=1` writes the table of materials on devices anew.
+#[test]
+fn the_table_of_materials_on_devices_is_current() {
+    let page =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/touch.md");
+    let written = std::fs::read_to_string(&page).unwrap();
+    let (begin, end) = ("<!-- palpate devices --materials -->\n", "<!-- end -->\n");
+    let (before, rest) = written.split_once(begin).unwrap();
+    let (_, after) = rest.split_once(end).unwrap();
+    let table = text(&palpate(&["devices", "--materials"]));
+    let current = format!("{before}{begin}\n{table}\n{end}{after}");
+    if std::env::var_os("PALPATE_UPDATE_GUIDE").is_some() {
+        std::fs::write(&page, &current).unwrap();
+    }
+    assert!(std::fs::read_to_string(&page).unwrap() == current, "renew it");
+    let faster = json(&["devices", "--materials", "--rate", "4000", "--json"]);
+    let of = |rows: &Value, device: &str, material: &str| {
+        let rows = rows.as_array().unwrap();
+        let row = rows.iter().find(|row| row["device"] == device).unwrap().clone();
+        let materials = row["materials"].as_array().unwrap();
+        let found = materials.iter().find(|found| found["name"] == material).unwrap();
+        found["device_stiffness"].as_f64().unwrap()
+    };
+    // 400 N/m at 1 kHz, and 1600 N/m at 4 kHz: glass has 1000 N/m.
+    let usual = json(&["devices", "--materials", "--json"]);
+    assert_eq!(of(&usual, "touch", "glass"), 400.0);
+    assert_eq!(of(&faster, "touch", "glass"), 1000.0);
 }

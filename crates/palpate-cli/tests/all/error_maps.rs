@@ -118,7 +118,7 @@ fn directions_are_drawn_by_any_method() {
     };
     let scene = folder.write("disc.json", &disc(0.3));
     let exact = plot(&scene, "exact");
-    assert!(words(&exact).iter().any(|word| *word == "direction that exact finds"));
+    assert!(words(&exact).contains(&"direction that exact finds"));
     // By differences the directions are the same to the eye, by the closest vector they are not.
     assert_ne!(exact, plot(&scene, "closest_vector"));
     let in_space = plot("scenes/s1.json", "differences");

@@ -254,10 +254,21 @@ fn the_stiffness_that_a_device_renders_is_told_beside_the_one_asked_for() {
     let feel = ["feel", &scene, "--fast", "--duration", "1", "--plot", &plot];
     let soft = palpate(&[&feel[..], &["--device", "simulated:omega"]].concat());
     let said = text(&soft);
-    assert!(said.contains("\n  stiffness 86.6 (asked 500) N/m, damping "), "{said}");
+    assert!(said.contains("\n  stiffness 433 (asked 500) N/m, damping "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     let has = |svg: &str, word: &str| words(svg).iter().any(|found| found.contains(word));
-    assert!(has(&svg, "86.6 N/m, asked 500 N/m"), "{:?}", words(&svg));
+    assert!(has(&svg, "433 N/m, asked 500 N/m"), "{:?}", words(&svg));
+    let why = "                 1 of 1 bodies softer than asked, 0.866 of the stiffness: K ≤ the \
+               device's largest stiffness at this rate\n";
+    assert!(said.contains(why) && said.contains("\n  at the hand    stiffness "), "{said}");
+    // At ten times the rate the device renders all.
+    let fast = [&feel[..], &["--device", "simulated:omega", "--rate", "10000"]].concat();
+    let said_fast = text(&palpate(&fast));
+    assert!(said_fast.contains("\n  stiffness 500 N/m, damping "), "{said_fast}");
+    // Half of what it renders.
+    let half = ["--device", "simulated:omega", "--relative-stiffness", "0.5"];
+    let said_half = text(&palpate(&[&feel[..], &half].concat()));
+    assert!(said_half.contains("\n  stiffness 216.5 (asked 500) N/m, damping "), "{said_half}");
     let said = text(&palpate(&feel));
     assert!(said.contains("\n  stiffness 500 N/m, damping 1 N·s/m, "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();

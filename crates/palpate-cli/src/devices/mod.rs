@@ -3,6 +3,8 @@
 
 //! `palpate devices`: the profiles of known devices.
 
+mod rendered;
+
 use std::io::Write;
 
 use palpate::devices::{DeviceProfile, PROFILES, TurningProfile};
@@ -115,6 +117,9 @@ const TURNING: [Column<TurningProfile>; 9] = [
 ];
 
 pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
+    if options.materials {
+        return rendered::report(options);
+    }
     let mut out = output::answer();
     if options.json {
         let rows = PROFILES.iter().map(|(name, profile)| described(name, profile)).collect();
