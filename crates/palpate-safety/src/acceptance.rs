@@ -114,9 +114,9 @@ impl Rule {
 /// ```
 ///
 /// The rule `K ≤ 2 b / T` holds with [`Acceptance::Passive`], and for profiles without a largest
-/// stiffness. A profile states its largest stiffness and damping for 1 kHz; both grow with the rate, as the
-/// energy does that a wall generates between two samples: `K_max(T) = K_max · 1 ms / T`. The rule
-/// with `f_c` does not apply without encoder steps or with infinite friction. Some numbers of the
+/// stiffness. A profile states its largest stiffness and damping for 1 kHz. Both grow with the
+/// rate, because a wall generates less energy between two samples the shorter the period is:
+/// `K_max(T) = K_max · 1 ms / T`, and `B_max(T)` alike. The rule with `f_c` does not apply without encoder steps or with infinite friction. Some numbers of the
 /// profile may be [`assumed`](Self::assumed).
 ///
 /// Rotation follows the same rules, with the numbers of the

@@ -8,8 +8,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, PassivityReport, Progress, Rule, SafetyReport, Servo,
-    Surface, TurningReport,
+    Accepted, Body, DeviceProfile, Material, PassivityReport, Progress, Rule, SafetyReport,
+    Servo, Surface, TurningReport,
 };
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Ending, RunReport, ToolReport};
@@ -148,10 +148,8 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         }
     }
     let asked = felt.scene.bodies.iter().map(|body| &body.material);
-    let stiffness = of_asked(
-        &range(surfaces().map(Surface::stiffness)),
-        &range(asked.clone().map(|material| material.stiffness)),
-    );
+    let stiffness =
+        of_asked(&range(surfaces().map(Surface::stiffness)), &asked_stiffness(asked.clone()));
     let damping = of_asked(
         &range(surfaces().map(Surface::damping)),
         &range(asked.map(|material| material.damping)),
@@ -372,6 +370,15 @@ fn write_safety<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     writeln!(out, "  safety, ticks  {acted}")?;
     writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
+}
+
+/// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one.
+fn asked_stiffness<'a>(asked: impl Iterator<Item = &'a Material> + Clone) -> String {
+    let parts = asked.clone().map(|material| material.relative_stiffness);
+    if parts.clone().all(|part| part.is_some()) {
+        return format!("{} of what the device renders", range(parts.flatten()));
+    }
+    range(asked.map(|material| material.stiffness))
 }
 
 /// What is rendered, and what was asked for if that is another.

@@ -268,7 +268,12 @@ fn the_stiffness_that_a_device_renders_is_told_beside_the_one_asked_for() {
     // Half of what it renders.
     let half = ["--device", "simulated:omega", "--relative-stiffness", "0.5"];
     let said_half = text(&palpate(&[&feel[..], &half].concat()));
-    assert!(said_half.contains("\n  stiffness 216.5 (asked 500) N/m, damping "), "{said_half}");
+    assert!(
+        said_half.contains(
+            "\n  stiffness 216.5 (asked 0.5 of what the device renders) N/m, damping "
+        ),
+        "{said_half}"
+    );
     let said = text(&palpate(&feel));
     assert!(said.contains("\n  stiffness 500 N/m, damping 1 N·s/m, "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();
