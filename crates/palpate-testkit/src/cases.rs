@@ -29,6 +29,19 @@ pub fn check(
     count: u64,
     mut property: impl FnMut(&mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
 ) {
+    numbered(count, |_, u| property(u));
+}
+
+/// As [`check`], for a property that takes things in turn: by its seed, so that a seed alone
+/// repeats its case.
+///
+/// # Panics
+///
+/// As [`check`].
+pub fn numbered(
+    count: u64,
+    mut property: impl FnMut(usize, &mut Unstructured<'_>) -> arbitrary::Result<Result<(), String>>,
+) {
     let mut failures = Vec::new();
     let first = number_in("PALPATE_FIRST_SEED").unwrap_or(0);
     let count = count * number_in("PALPATE_SEEDS").unwrap_or(1);
@@ -36,7 +49,7 @@ pub fn check(
         let bytes = entropy(seed);
         let guard = Seed(seed);
         let mut input = Unstructured::new(&bytes);
-        let outcome = property(&mut input);
+        let outcome = property(seed as usize, &mut input);
         // Past its end an input draws zeros: the same case again and again.
         assert!(!input.is_empty(), "{ENTROPY} bytes are too few");
         std::mem::forget(guard);
@@ -78,11 +91,8 @@ pub fn on_trees<const D: usize>(
 ) where
     Space: Solid<D> + Turn<D>,
 {
-    let mut drawn = 0;
-    check(count, |u| {
-        let depth = 1 + drawn % deepest;
-        drawn += 1;
-        let tree = draw::tree(u, depth)?;
+    numbered(count, |seed, u| {
+        let tree = draw::tree(u, 1 + seed % deepest)?;
         let outcome = match tree.shape() {
             Ok(shape) => property(u, &tree, &shape)?,
             Err(error) => Err(error.to_string()),

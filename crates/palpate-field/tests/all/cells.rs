@@ -30,10 +30,8 @@ fn on_primitives<const D: usize>(
     Space: Dimension<D>,
 {
     let catalogue = <Space as Dimension<D>>::CATALOGUE;
-    let mut seed = 0;
-    cases::check(ARGUMENTS * catalogue.len() as u64, |u| {
+    cases::numbered(ARGUMENTS * catalogue.len() as u64, |seed, u| {
         let entry = &catalogue[seed % catalogue.len()];
-        seed += 1;
         let drawn = draw::arguments::<D>(u, entry.name, entry.parameters)?;
         let Some(Ok(shape)) = drawn.as_ref().map(|all| entry.build(all)) else {
             return Ok(Err(format!("no arguments found for {}", entry.name)));

@@ -29,11 +29,9 @@ where
 {
     let catalogue = <Space as Dimension<D>>::CATALOGUE;
     let mut counts = vec![(0, 0); catalogue.len()];
-    let mut seed = 0;
-    cases::check(ARGUMENTS * catalogue.len() as u64, |u| {
+    cases::numbered(ARGUMENTS * catalogue.len() as u64, |seed, u| {
         let which = seed % catalogue.len();
         let entry = &catalogue[which];
-        seed += 1;
         let Some(arguments) = draw::arguments::<D>(u, entry.name, entry.parameters)? else {
             return Ok(Err(format!("no arguments found for {}", entry.name)));
         };

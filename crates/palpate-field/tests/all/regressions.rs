@@ -133,6 +133,19 @@ fn models_at_the_corners_of_a_triangle_enclose() -> Outcome {
     Ok(())
 }
 
+/// Sixteen metres above a corner of 45°, a point a nanometre outside of one edge is as near to both
+/// edges within a rounding. The gradient was that of the other edge, off by 3e-10, and models that
+/// took it for a normal were too high by as much of their cell.
+#[test]
+fn a_triangle_in_space_has_the_right_normal_far_above_a_sharp_corner() -> Outcome {
+    let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0]].map(Vector);
+    let shape = Shape::triangle_sheet(points.to_vec(), 0.0)?;
+    let gradient = shape.distance_gradient(Vector([4.0 - 1e-8, 16.0, -1e-9])).1;
+    let exact = Vector([0.0, 1.0, -1e-9 / 16.0]);
+    assert!((gradient - exact).norm() <= 4.0 * f64::EPSILON, "{gradient:?}");
+    Ok(())
+}
+
 /// In the plane of its widest section a thin ellipsoid needs more Newton steps
 /// than it took: the pole of the thin axis is next to the start.
 #[test]

@@ -97,9 +97,8 @@ where
         Ok(tree.shape().ok().filter(|shape| shape.promise().bounds.is_some()))
     }
     let mut workspace = PairWorkspace::new();
-    let (mut seed, mut asked) = (0, 0);
-    cases::check(count, |u| {
-        seed += 1;
+    let mut asked = 0;
+    cases::numbered(count, |seed, u| {
         let (a, b) = (bounded::<D>(u, 1 + seed % 3)?, bounded::<D>(u, 1 + seed % 3)?);
         let (Some(a), Some(b)) = (a, b) else { return Ok(Ok(())) };
         let size = draw::size(&a);

@@ -79,9 +79,8 @@ fn on_trees<const D: usize>(
     Space: Solid<D> + Turn<D>,
 {
     let mut workspace = PairWorkspace::new();
-    let (mut seed, mut asked) = (0, 0);
-    cases::check(count, |u| {
-        seed += 1;
+    let mut asked = 0;
+    cases::numbered(count, |seed, u| {
         let Some(bodies) = draw::two::<D>(u, 1 + seed % 3)? else { return Ok(Ok(())) };
         let [a, b] = &bodies;
         let size = draw::size(a);

@@ -20,9 +20,8 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let mut workspace = PairWorkspace::new();
-    let (mut seed, mut asked, mut spent) = (0, 0, 0);
-    cases::check(count, |u| {
-        seed += 1;
+    let (mut asked, mut spent) = (0, 0);
+    cases::numbered(count, |seed, u| {
         let outcome = pair_answers::check::<D>(u, 1 + seed % 3, &mut workspace)?;
         Ok(outcome.map(|stop| {
             asked += u64::from(stop.is_some());

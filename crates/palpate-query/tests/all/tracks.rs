@@ -231,9 +231,7 @@ where
     Space: Solid<D> + Turn<D>,
 {
     let (mut warm, mut cold) = (PairWorkspace::new(), PairWorkspace::new());
-    let mut seed = 0;
-    cases::check(count, |u| {
-        seed += 1;
+    cases::numbered(count, |seed, u| {
         let trees: [Tree<D>; 2] = [draw::tree(u, 1 + seed % 3)?, draw::tree(u, 1 + seed % 2)?];
         let [Ok(a), Ok(b)] = trees.map(|tree| tree.shape()) else { return Ok(Ok(())) };
         if a.promise().bounds.or(b.promise().bounds).is_none() {

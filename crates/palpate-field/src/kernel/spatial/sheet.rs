@@ -17,9 +17,6 @@ use crate::vector::{Point, Vector};
 /// The largest number of rounded operations of the distance.
 const OPERATIONS: f64 = 12.0;
 
-/// A factor by more than the rounding of a distance.
-const FARTHER: f64 = 1.0 + 8.0 * f64::EPSILON;
-
 /// A point that is no farther from the line of its neighbours than this share of the size is
 /// refused as a corner: the direction of the plane would be rounding.
 const FLAT: f64 = 1e-9;
@@ -36,8 +33,8 @@ const PLANAR: f64 = 1e-6;
 ///
 /// In a frame whose y axis is across the plane, the polygon is at `y = 0`, its edges in
 /// `(x, z)`. Where `p` is above or below the polygon, behind the lines of all its edges, the
-/// distance is `|y|`. Elsewhere it is the least distance to an edge: the norm of the offsets
-/// from the edge's line, past its end, and from the plane, which are at right angles.
+/// distance is `|y|`. Elsewhere it is the norm of `y` and the least distance to an edge in the
+/// plane, which are at right angles.
 ///
 /// ```
 /// use palpate_field::{Shape, Vector, kernel::Sheet};
@@ -202,12 +199,17 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
         let [x, y, z] = self.placement.to_body(p).0;
         let q = Vector([x, z]);
         let zero = S::constant(0.0);
-        // An edge that the point is beside goes before one whose end is as near to within a
-        // rounding: next to a corner their distances differ by less, but their directions do not.
+        // The nearest edge is chosen by its distance in the plane, since far above it a rounding of
+        // the whole distance hides the distance in the plane, and with it the direction.
+        // It is one of those that the point is not behind. Next to a corner two are as near to
+        // within a rounding, but their directions differ: the one that the point is beside goes
+        // first.
+        let farther = 1.0 + 8.0 * S::EPSILON;
         let of = |edge: &Edge| {
             let [across, past] = edge.offsets(q);
-            let distance = S::norm([y, across, past]);
-            (across, distance, S::select_less(zero, past, distance.scale(FARTHER), distance))
+            let distance = S::norm([across, past]);
+            let rank = S::select_less(zero, past, distance.scale(farther), distance);
+            (across, distance, S::select_less(across, zero, S::constant(f64::INFINITY), rank))
         };
         let (mut behind, mut beside, mut rank) = of(&self.edges[0]);
         for edge in &self.edges[1..] {
@@ -217,7 +219,7 @@ impl<const N: usize> Kernel<3> for Sheet<N> {
             rank = rank.min(its_rank);
         }
         let above = y.abs();
-        let beside = face_if_on_it(beside, above, self.size);
+        let beside = face_if_on_it(S::norm([y, beside]), above, self.size);
         S::select_less(behind, zero, above, beside) - S::constant(self.radius)
     }
 
