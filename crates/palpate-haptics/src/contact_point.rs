@@ -93,7 +93,8 @@ pub(crate) struct Setting<const D: usize> {
     pub(crate) map: WorkspaceMap<D>,
     /// The increase of [`ContactPoint::rise`] in a tick.
     pub(crate) rise_step: f64,
-    pub(crate) is_late: bool,
+    /// By how much this tick began too late [s].
+    pub(crate) late: f64,
 }
 
 /// The state of a tick that all contact points share.
@@ -218,14 +219,14 @@ impl<const D: usize> ContactPoint<D> {
         free: FreeForce<D>,
     ) -> Vector<f64, D> {
         let FreeForce { force: free, placed } = free;
-        let Setting { options, map, rise_step, is_late } = setting;
+        let Setting { options, map, rise_step, late } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
-            let (free_force, is_late) = (map.force_to_device(free), *is_late);
-            let state = PortState { position, velocity, free_force, is_late, start };
+            let (free_force, late) = (map.force_to_device(free), *late);
+            let state = PortState { position, velocity, free_force, late, start };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
             force

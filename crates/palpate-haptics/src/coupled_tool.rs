@@ -160,7 +160,7 @@ impl<const D: usize> CoupledTool<D> {
                 position: SpatialVector { along: at_device.position, about: angle },
                 velocity: SpatialVector { along: at_device.velocity, about: spin },
                 free_force: map.force_to_device(free),
-                is_late: setting.is_late,
+                late: setting.late,
             };
             let wanted = SpatialVector { along: force, about: torque };
             let given = chain.step_within(wanted, setting.options.max_force, &state);

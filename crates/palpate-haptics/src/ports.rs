@@ -63,7 +63,8 @@ impl<const D: usize> Protection<D> {
             .with_scale(self.map.scale())
             .with_acceptance(Acceptance::AsIs)
             .with_passivity_control(self.has_passivity_control)
-            .with_rise_time(self.rise_time)
+            .with_recovery(self.recovery)
+            .with_rise_rate(self.rise_rate)
     }
 }
 

@@ -100,7 +100,7 @@ impl<const D: usize> Renderer<D> {
             setting: Setting {
                 options,
                 map: WorkspaceMap::default(),
-                is_late: false,
+                late: 0.0,
                 rise_step: 1.0 / (rate * rise_time),
             },
             is_stopped: false,
@@ -291,8 +291,8 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    pub(crate) fn set_late(&mut self, is_late: bool) {
-        self.setting.is_late = is_late;
+    pub(crate) fn set_late(&mut self, late: f64) {
+        self.setting.late = late;
     }
 
     pub(crate) fn stop(&mut self, is_stopped: bool) {
