@@ -83,8 +83,8 @@ pub use palpate_material::{
 };
 pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
-    Impedance, NumberError, PassivityReport, PointState, PortState, Recovery, Rule,
-    SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
+    Impedance, NumberError, PassivityReport, PointState, PortState, ReadingsReport, Recovery,
+    Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
     TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;

@@ -22,6 +22,9 @@ const PERIOD: f64 = 1.0 / RATE;
 /// [N/m]: more than any device renders.
 const WANTED: f64 = 1e5;
 
+/// How far a glitch is off [m].
+const GLITCH: f64 = 0.05;
+
 /// How fast a force may come back [N/s].
 const RISE: f64 = 20.0;
 
@@ -36,6 +39,8 @@ struct Held {
     /// Of the wall [m].
     height: f64,
     is_lost: bool,
+    /// How far the readings are below the device [m].
+    off: f64,
 }
 
 /// The force on the hand.
@@ -79,7 +84,7 @@ impl Held {
         let at_rest = part * profile.max_force.min(profile.continuous_force);
         let target = Vector([0.0, -at_rest / stiffness - at_rest / grip]);
         let device = held_at(profile, target, target, grip);
-        Self { device, servo, tick: 0, target, grip, height: 0.0, is_lost: false }
+        Self { device, servo, tick: 0, target, grip, height: 0.0, is_lost: false, off: 0.0 }
     }
 
     fn stiffness(&self) -> f64 {
@@ -103,6 +108,7 @@ impl Held {
     fn step(&mut self) -> Felt {
         let mut points = [PointState::at_rest(Vector::ZERO)];
         self.device.read(f64::from(self.tick) * PERIOD, &mut points).unwrap();
+        points[0].position[1] -= self.off;
         if self.is_lost {
             points[0].position = Vector([f64::NAN; 2]);
         }
@@ -133,17 +139,20 @@ enum Fault {
     Stop(u32),
     /// The device is lost for so many ticks: its readings are no numbers.
     Lost(u32),
+    /// The encoders are off by 50 mm for so many ticks.
+    Glitch(u32),
     /// The bodies are swapped, and the wall is higher by so much [µm].
     Swap(u32),
 }
 
 fn fault(u: &mut Unstructured<'_>) -> Result<Fault> {
     let ticks = u.int_in_range(1..=300)?;
-    Ok(match u.int_in_range(0..=4_u8)? {
+    Ok(match u.int_in_range(0..=5_u8)? {
         0 => Fault::Stall(ticks),
         1 => Fault::Late(ticks),
         2 => Fault::Stop(ticks),
         3 => Fault::Lost(ticks),
+        4 => Fault::Glitch(1 + ticks / 10),
         _ => Fault::Swap(10 * ticks),
     })
 }
@@ -175,6 +184,11 @@ impl Held {
                 self.is_lost = true;
                 self.run(ticks);
                 self.is_lost = false;
+            }
+            Fault::Glitch(ticks) => {
+                self.off = GLITCH;
+                self.run(ticks);
+                self.off = 0.0;
             }
             Fault::Swap(micrometres) => {
                 self.height += 1e-6 * f64::from(micrometres);
@@ -257,4 +271,23 @@ fn a_wall_may_wait_until_the_hand_is_out() {
     assert!(credited < NOTICED, "{credited}");
     held.start_outside();
     assert!(held.run(2000).force > 0.45 * profile.max_force);
+}
+
+/// Once a glitch of three ticks kicked with all the force that the device has.
+#[test]
+fn a_glitch_of_the_encoders_cannot_kick() {
+    for (name, profile) in PROFILES.iter().filter(|(_, p)| p.max_force < f64::INFINITY) {
+        let mut held = Held::new(profile, Protection::new(profile.clone()), 300.0, 0.5);
+        held.start_outside();
+        let before = held.run(3000).force;
+        for off in [GLITCH, -GLITCH] {
+            held.off = off;
+            for tick in 0..6 {
+                held.off = if tick < 3 { off } else { 0.0 };
+                let force = held.step().force;
+                assert!((force - before).abs() < 0.1, "{name}: {before} N, then {force} N");
+            }
+        }
+        assert_eq!(held.servo.safety()[0].readings.held, 6);
+    }
 }

@@ -231,7 +231,9 @@ impl<const D: usize> Renderer<D> {
     pub fn safety(&self) -> Vec<SafetyReport> {
         let port = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
         if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
-            return vec![chain.report()];
+            let port = self.contacts.points.first().and_then(|point| point.port.as_ref());
+            let readings = port.map(Port::readings).unwrap_or_default();
+            return vec![chain.report().with_readings(readings)];
         }
         self.contacts
             .points
