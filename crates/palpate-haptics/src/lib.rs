@@ -44,6 +44,7 @@ mod bodies;
 mod contact;
 mod contact_point;
 mod coupled_tool;
+mod crease;
 mod curvature;
 mod energy;
 mod error;

@@ -415,10 +415,11 @@ impl<const D: usize> Renderer<D> {
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
             *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
-            let touched = nearby.body(touch.body).filter(|_| touch.contact);
-            let reaction = reactions.get_mut(touch.body as usize);
-            if let Some((body, reaction)) = touched.zip(reaction) {
-                reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
+            for (index, push) in point.pushes(touch) {
+                let reaction = reactions.get_mut(index as usize);
+                if let Some((body, reaction)) = nearby.body(index).zip(reaction) {
+                    reaction.add(-push, touch.proxy - body.world_from_body().translation);
+                }
             }
         }
         bodies.put_back(list, reactions);
