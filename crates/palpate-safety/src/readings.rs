@@ -162,13 +162,11 @@ mod tests {
         let mut readings = readings();
         for tick in 0..10 {
             let time = 1e-3 * f64::from(tick);
-            // From rest forwards, and from 2 m/s back.
+            // From rest forwards, and from 1.99 m/s back.
             let since = time - 0.004;
-            let x = if since < 0.0 {
-                250.0 * time * time
-            } else {
-                0.004 + 2.0 * since - 250.0 * since * since
-            };
+            let forwards = 249.0 * time * time;
+            let back = 249.0 * (1.6e-5 + since * (0.008 - since));
+            let x = if since < 0.0 { forwards } else { back };
             assert!(readings.counts(Vector([x, 0.0]), 0.0), "{tick}");
         }
     }

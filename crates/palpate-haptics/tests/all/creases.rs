@@ -16,6 +16,7 @@ const RADIUS: f64 = 0.002;
 
 /// Walls through the origin for the probe's centre, with these inner normals, stiffnesses [N/m] and
 /// frictions.
+#[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
     let bodies = walls.iter().map(|(normal, stiffness, friction)| {
         let normal = Vector(*normal).normalized().unwrap();
@@ -32,6 +33,7 @@ fn walls<const D: usize>(walls: &[([f64; D], f64, f64)]) -> Bodies<D> {
     Bodies::new(bodies.collect()).unwrap()
 }
 
+#[expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 fn servo<const D: usize>(bodies: Bodies<D>) -> UnprotectedServo<D> {
     let options = ServoOptions::default()
         .with_probe(Probe::new(RADIUS).unwrap())
