@@ -119,6 +119,12 @@ impl<const D: usize> Body<D> {
         self.surface = self.surface.on_device(most);
     }
 
+    /// Multiplies the pull of the surface's magnet.
+    pub(crate) fn scale_magnet(&mut self, part: f64) {
+        let magnet = self.surface.magnet.map(|pull| pull.scaled(part));
+        self.surface.magnet = magnet;
+    }
+
     /// Leaves these shares of the surface's stiffness and of its damping.
     pub(crate) fn scale_surface(&mut self, stiffness: f64, damping: f64) {
         self.surface = self.surface.scaled(stiffness, damping);
