@@ -10,6 +10,7 @@ use crate::hand_path::HandPath;
 use palpate_field::Vector;
 use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState};
 use palpate_safety::internal::limited;
+use palpate_vibration::Actuator;
 
 /// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
 /// point.
@@ -47,6 +48,7 @@ use palpate_safety::internal::limited;
 pub struct Glove<const D: usize> {
     fingers: Vec<Finger<D>>,
     profile: DeviceProfile,
+    actuator: Option<Actuator>,
 }
 
 #[derive(Clone, Debug)]
@@ -100,7 +102,7 @@ impl<const D: usize> Glove<D> {
             return Err(DeviceError::NoContactPoint);
         }
         let profile = DeviceProfile::unlimited("glove").with_max_force(0.0);
-        Ok(Self { fingers, profile })
+        Ok(Self { fingers, profile, actuator: None })
     }
 
     /// This glove with a force limit for each finger [N]; 0 for no force feedback.
@@ -123,7 +125,41 @@ impl<const D: usize> Glove<D> {
         Ok(self)
     }
 
-    /// Both gloves as one device: the fingers of this one, then those of `other`.
+    /// This glove with an actuator in each finger, which shakes it.
+    ///
+    /// The glove says what shakes; a `Synthesiser` for that actuator makes what it plays:
+    ///
+    /// ```
+    /// use palpate_devices::{Glove, HandPath, Interpolation};
+    /// use palpate_field::Vector;
+    /// use palpate_vibration::{Mapping, MappingOptions, Synthesiser, actuator_named};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![Vector([0.0, 0.1, 0.0]), Vector([0.0, 0.0, 0.0])];
+    /// let hand = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Linear)?;
+    /// let glove = Glove::new(vec![hand])?.with_actuator(actuator_named("lra")?);
+    ///
+    /// let Some(actuator) = glove.actuator() else { unreachable!() };
+    /// let mapping = Mapping::new(actuator.options(MappingOptions::default()))?;
+    /// let synthesiser = Synthesiser::for_actuator(&mapping, actuator, 8000.0, 1)?;
+    /// assert_eq!(synthesiser.sample_rate(), 8000.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_actuator(mut self, actuator: Actuator) -> Self {
+        self.actuator = Some(actuator);
+        self
+    }
+
+    /// The actuator in each finger, if the glove names one.
+    #[must_use]
+    pub fn actuator(&self) -> Option<&Actuator> {
+        self.actuator.as_ref()
+    }
+
+    /// Both gloves as one device: the fingers of this one, then those of `other`, with the actuators
+    /// of this one.
     #[must_use]
     pub fn joined(mut self, other: Self) -> Self {
         self.fingers.extend(other.fingers);

@@ -141,6 +141,7 @@ impl Strengths {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::threshold_db;

@@ -237,32 +237,21 @@ pub(crate) fn check_sample_rate(sample_rate: f64, highest: f64) -> Result<f64, H
 mod tests {
     use super::*;
 
-    const MOTOR: Mechanism = Mechanism::RotatingMass {
-        frequency: 200.0,
-        start_level: 0.5,
-        overdrive: 1.5,
-        rise: 0.05,
-        fall: 0.1,
-    };
-
     #[test]
     fn wrong_figures_are_named() {
         let refused = |mechanism| Actuator::new("a", "b", mechanism).unwrap_err().to_string();
-        let Mechanism::RotatingMass { frequency, overdrive, rise, fall, .. } = MOTOR else {
-            panic!("a motor")
-        };
         let motor = |start_level, overdrive| Mechanism::RotatingMass {
-            frequency,
+            frequency: 200.0,
             start_level,
             overdrive,
-            rise,
-            fall,
+            rise: 0.05,
+            fall: 0.1,
         };
-        assert_eq!(refused(motor(1.25, overdrive)), "start_level must be at most 1, got 1.25");
+        assert_eq!(refused(motor(1.25, 1.5)), "start_level must be at most 1, got 1.25");
         assert_eq!(refused(motor(0.5, 0.5)), "overdrive must be at least 1, got 0.5");
         let lra = Mechanism::Resonant { resonance: f64::NAN, bandwidth: 10.0, overdrive: 1.0 };
         assert_eq!(refused(lra), "resonance must be positive and finite, got NaN Hz");
-        assert!(Actuator::new("a", "b", MOTOR).is_ok());
+        assert!(Actuator::new("a", "b", motor(0.5, 1.5)).is_ok());
     }
 
     #[test]

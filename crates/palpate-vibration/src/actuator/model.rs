@@ -159,6 +159,7 @@ impl ActuatorModel {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests know their lengths")]
 mod tests {
     use super::*;
     use crate::actuator_named;
