@@ -349,7 +349,8 @@ impl<const D: usize> ContactPoint<D> {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let press = Press { stretch: pull, velocity, proxy: in_body };
+        let rate = tick.setting.options.rate;
+        let press = Press { stretch: pull, velocity, proxy: in_body, rate };
         let force = surface.force(level, press, turn);
         let force = body.vector_in_world(force);
         if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {

@@ -12,7 +12,7 @@ use palpate::haptics::{
     Servo, Surface, TurningReport,
 };
 use palpate::scene::BuiltScene;
-use palpate::servo_loop::{Ending, RunReport, ToolReport};
+use palpate::servo_loop::{Ending, RunReport, TextureReport, ToolReport};
 use serde_json::Value;
 
 use crate::numbers::rounded;
@@ -263,6 +263,9 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         events.touches, events.slips, events.sticks, events.pops
     )?;
     guides::write(out, felt)?;
+    if let Some(texture) = report.texture.as_ref().filter(|texture| texture.faded_ticks > 0) {
+        write_texture(out, texture)?;
+    }
     if let Some(played) = felt.played {
         played.write(out)?;
     }
@@ -311,6 +314,17 @@ fn write_accepted(
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())
+}
+
+/// What was not rendered of height textures.
+fn write_texture(out: &mut String, texture: &TextureReport) -> std::fmt::Result {
+    let [crests, rate] = [texture.highest_frequency, texture.wanted_rate].map(rounded);
+    writeln!(
+        out,
+        "  texture        faded in {} of {} ticks: up to {crests} crests a second want a --rate of \
+         {rate} Hz",
+        texture.faded_ticks, texture.ticks
+    )
 }
 
 /// The lines of a tool's report that contact points do not have.

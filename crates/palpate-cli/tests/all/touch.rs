@@ -194,6 +194,92 @@ fn a_glove_feels_what_it_vibrates_like() {
 }
 
 #[test]
+fn ten_fingers_are_felt_on_every_actuator_and_none_is_clipped() {
+    let folder = Folder::new();
+    let wav = folder.name("touch.wav");
+    let run = ["feel", "--device", "glove", "--duration", "2", "--fast", "--wav", &wav];
+    let mut files = Vec::new();
+    for (name, kind) in [("erm", "ERM"), ("lra", "LRA"), ("voice_coil", "voice coil")] {
+        let report = json(&[&run[..], &["--actuator", name, "--json"]].concat());
+        let vibration = &report["vibration"];
+        assert_eq!((&vibration["kind"], &vibration["channels"]), (&kind.into(), &10.into()));
+        let levels = vibration["sensation_levels_db"].as_array().unwrap();
+        assert_eq!(levels.len(), 10);
+        for level in levels.iter().filter_map(serde_json::Value::as_f64) {
+            assert!(level > 6.0, "{name}: {level} dB");
+        }
+        assert!(levels.iter().any(|level| !level.is_null()), "{name}: silence");
+        files.push(std::fs::read(&wav).unwrap());
+        let said = text(&palpate(&[&run[..], &["--actuator", name]].concat()));
+        assert!(said.contains(&format!("10 actuators: {kind}, ")), "{said}");
+        assert!(said.contains(" dB above the threshold of the skin"), "{said}");
+    }
+    assert!(files[0] != files[1] && files[1] != files[2]);
+    // Pressure and taps together are more than the largest level: they are limited, not cut off.
+    let report = json(&[&run[..], &["--json"]].concat());
+    let vibration = &report["vibration"];
+    assert!(vibration["limited_ticks"].as_u64().unwrap() > 0);
+    assert!(vibration["largest_reduction_db"].as_f64().unwrap() > 1.0);
+    let bytes = std::fs::read(&wav).unwrap();
+    let (samples, _) = bytes[68..].as_chunks::<2>();
+    let samples: Vec<i16> = samples.iter().map(|bytes| i16::from_le_bytes(*bytes)).collect();
+    let channel = |number: usize| samples.iter().skip(number).step_by(10).copied();
+    for number in 0..10 {
+        let samples: Vec<i16> = channel(number).collect();
+        // What is cut off stays at the largest value for several samples.
+        let is_cut = |five: &[i16]| five.iter().all(|sample| sample.unsigned_abs() >= 32767);
+        assert!(!samples.windows(5).any(is_cut), "actuator {number}");
+    }
+    let unknown = palpate(&[&run[..], &["--actuator", "lar"]].concat());
+    assert_eq!(status(&unknown), 2);
+    assert!(errors(&unknown).contains("unknown actuator `lar`, did you mean `lra`?"));
+}
+
+#[test]
+fn the_actuator_of_a_scene_plays_unless_the_command_line_names_another() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 3, "tool": { "actuator": "lra" },
+      "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.05 } } } ] }"#;
+    let (scene, wav) = (folder.write("ball.json", scene), folder.name("touch.wav"));
+    let run = ["feel", &scene, "--fast", "--duration", "0.5", "--wav", &wav, "--json"];
+    assert_eq!(json(&run)["vibration"]["kind"], "LRA");
+    let other = json(&[&run[..], &["--actuator", "erm"]].concat());
+    assert_eq!(other["vibration"]["kind"], "ERM");
+}
+
+#[test]
+fn a_texture_that_is_too_fast_for_the_rate_says_which_rate_it_wants() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "plate",
+      "shape": { "box": { "half_extents": [1, 0.1, 1] } }, "material": { "texture":
+        { "kind": "height", "amplitude": 1e-4, "wavelength": 1e-3, "direction": [1, 0, 0] } } } ] }"#;
+    let scene = folder.write("plate.json", scene);
+    let hand = "time_s,x_m,y_m,z_m\n0,0,0.1,0\n1,0.4,0.1,0\n";
+    let hand = folder.write("hand.csv", hand);
+    let run = |rate: &'static str| {
+        ["feel", &scene, "--path", &hand, "--fast", "--rate", rate].map(str::to_owned)
+    };
+    let asked = |rate: &'static str, more: &[&str]| {
+        let run = run(rate);
+        let all: Vec<&str> =
+            run.iter().map(String::as_str).chain(more.iter().copied()).collect();
+        palpate(&all)
+    };
+    let said = text(&asked("1000", &[]));
+    assert!(said.contains("  texture        faded in "), "{said}");
+    let report: serde_json::Value =
+        serde_json::from_str(&text(&asked("1000", &["--json"]))).unwrap();
+    // 0.4 m/s over crests 1 mm apart: 400 a second, which want 1600 Hz.
+    let texture = &report["texture"];
+    assert!((texture["highest_frequency"].as_f64().unwrap() - 400.0).abs() < 1.0, "{texture}");
+    assert!((texture["wanted_rate"].as_f64().unwrap() - 1600.0).abs() < 4.0);
+    assert!(texture["faded_ticks"].as_u64().unwrap() > 900);
+    let report: serde_json::Value =
+        serde_json::from_str(&text(&asked("2000", &["--json"]))).unwrap();
+    assert_eq!(report["texture"]["faded_ticks"], 0);
+}
+
+#[test]
 fn a_device_is_simulated_with_its_limits() {
     let arguments = ["feel", "--device", "simulated:touch", "--points", "2", "--duration", "1"];
     let report = json(&[&arguments[..], &["--fast", "--json"]].concat());
