@@ -66,10 +66,10 @@ pub struct WrittenTool {
     /// What a device renders of materials; `device` if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<WrittenAcceptance>,
-    /// What shakes each contact point, by its name in
-    /// [`ACTUATORS`](palpate_vibration::ACTUATORS); one that plays every frequency if left out.
+    /// What shakes each contact point, by its name in `palpate devices --actuators`; an actuator
+    /// that plays every frequency if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<ActuatorSchema>")]
+    #[schemars(with = "ActuatorSchema")]
     pub actuator: Option<String>,
 }
 

@@ -32,7 +32,16 @@ fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
     let cells: Vec<_> = rows[1].split_whitespace().collect();
     assert_eq!(cells[1..5], ["0.2", "~0.2", "~100", "1"]);
     assert!(table.contains("\nomega: Force Dimension omega; source: "));
-    assert!(table.ends_with(&format!("{} devices\n", all.len())));
+    assert!(table.contains(&format!("\n{} devices\n\nactuators", all.len())));
+    let alone = text(&palpate(&["devices", "--actuators"]));
+    assert!(table.ends_with(&alone) && alone.ends_with("\n4 actuators\n"));
+    let lra = "\nlra: LRA, Vybronics VG1040003D, a coin of 10 mm: resonance 170 Hz, \
+               bandwidth ~10 Hz, overdrive ~1.2\nlra: source: ";
+    assert!(alone.contains(lra), "{alone}");
+    let actuators = json(&["devices", "--actuators", "--json"]);
+    let voltage = serde_json::json!({ "value": 1.5, "unit": "", "assumed": false });
+    assert_eq!(actuators[0]["overdrive"], voltage);
+    assert_eq!(actuators[2]["bandwidth"]["assumed"], true);
 }
 
 /// The built-in scene, felt without waiting for the clock, twice the same.
@@ -251,32 +260,24 @@ fn the_actuator_of_a_scene_plays_unless_the_command_line_names_another() {
 fn a_texture_that_is_too_fast_for_the_rate_says_which_rate_it_wants() {
     let folder = Folder::new();
     let scene = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "plate",
-      "shape": { "box": { "half_extents": [1, 0.1, 1] } }, "material": { "texture":
+      "shape": { "box": { "size": [2, 0.2, 2] } }, "material": { "texture":
         { "kind": "height", "amplitude": 1e-4, "wavelength": 1e-3, "direction": [1, 0, 0] } } } ] }"#;
     let scene = folder.write("plate.json", scene);
     let hand = "time_s,x_m,y_m,z_m\n0,0,0.1,0\n1,0.4,0.1,0\n";
     let hand = folder.write("hand.csv", hand);
-    let run = |rate: &'static str| {
-        ["feel", &scene, "--path", &hand, "--fast", "--rate", rate].map(str::to_owned)
-    };
-    let asked = |rate: &'static str, more: &[&str]| {
-        let run = run(rate);
-        let all: Vec<&str> =
-            run.iter().map(String::as_str).chain(more.iter().copied()).collect();
-        palpate(&all)
-    };
-    let said = text(&asked("1000", &[]));
-    assert!(said.contains("  texture        faded in "), "{said}");
-    let report: serde_json::Value =
-        serde_json::from_str(&text(&asked("1000", &["--json"]))).unwrap();
-    // 0.4 m/s over crests 1 mm apart: 400 a second, which want 1600 Hz.
+    let run = |rate| ["feel", &scene, "--path", &hand, "--fast", "--rate", rate];
+    let said = text(&palpate(&run("1000")));
+    assert!(said.contains("crests a second want a --rate of 2400 Hz"), "{said}");
+    // The hand goes 0.4 m in a second along a cubic: up to 0.6 m/s over crests 1 mm apart.
+    let report = json(&[&run("1000")[..], &["--json"]].concat());
     let texture = &report["texture"];
-    assert!((texture["highest_frequency"].as_f64().unwrap() - 400.0).abs() < 1.0, "{texture}");
-    assert!((texture["wanted_rate"].as_f64().unwrap() - 1600.0).abs() < 4.0);
-    assert!(texture["faded_ticks"].as_u64().unwrap() > 900);
-    let report: serde_json::Value =
-        serde_json::from_str(&text(&asked("2000", &["--json"]))).unwrap();
+    assert!((texture["highest_frequency"].as_f64().unwrap() - 600.0).abs() < 1.0, "{texture}");
+    assert!((texture["wanted_rate"].as_f64().unwrap() - 2400.0).abs() < 4.0);
+    // 2.4 t (1 − t) m/s is more than 0.25 m/s for 764 ms.
+    assert!((760..=768).contains(&texture["faded_ticks"].as_u64().unwrap()), "{texture}");
+    let report = json(&[&run("4000")[..], &["--json"]].concat());
     assert_eq!(report["texture"]["faded_ticks"], 0);
+    assert!(!text(&palpate(&run("4000"))).contains("faded"));
 }
 
 #[test]
