@@ -14,9 +14,7 @@ use super::adaptation::{Adaptation, Faded};
 use super::cue::{Mapping, MappingOptions, Sensation, Tap, Tone};
 use super::limiter::{Limiter, Limiting, delay};
 use super::ringing::Ringing;
-use super::strength::{
-    CLEARLY_FELT, Strengths, amplitude, hold_strength, slide_strength, tap_strength,
-};
+use super::strength::{Strengths, amplitude, hold_strength, slide_strength, tap_strength};
 use palpate_haptics::HapticsError;
 
 /// The time over which an amplitude rises from zero to one [s]: a jump would click, a slower
@@ -89,7 +87,7 @@ struct Player {
 ///   not follow.
 /// - A rotating mass gets a level, positive to turn and negative to brake. Hold, slide and tap are
 ///   played by the speed at which their strength is felt, at least that of the start level, below
-///   which the motor does not turn; what is weaker than 4 dB above the threshold stops it.
+///   which the motor does not turn. It starts at 4 dB above the threshold, and stops at 2 dB.
 /// - Both are pushed beyond their rated level until they are as strong as wanted, and pushed
 ///   backwards to stop; a tap begins to decay when the actuator has reached it.
 ///
@@ -307,9 +305,7 @@ impl Synthesiser {
                     touch.begin(sensation, count, |strength| drive.reach(strength));
                 }
                 for place in samples {
-                    let strength = together(touches);
-                    let is_felt = strength >= 0.5 * CLEARLY_FELT;
-                    put(place, drive.step(is_felt.then_some(strength)));
+                    put(place, drive.step(together(touches)));
                 }
             }
         }

@@ -17,6 +17,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::rotor::Rotor;
 use crate::cue::level;
+use crate::strength::CLEARLY_FELT;
 use crate::threshold::perceptual_weight;
 
 /// The speeds of a motor whose strengths are listed: between two of them the strength is a straight
@@ -31,9 +32,16 @@ const LONGEST_REACH: f64 = 0.15;
 /// slowly.
 const REACHED: f64 = 0.95;
 
+/// The strengths at which a motor starts and stops, 4 dB and 2 dB above the threshold: apart, so that
+/// a strength that trembles does not start and brake it in turns.
+const STARTS: f64 = 0.5 * CLEARLY_FELT;
+const STOPS: f64 = 0.4 * CLEARLY_FELT;
+
 /// Drives a rotating mass by a level, negative to brake; 1 is the largest level.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorDrive {
+    /// Whether the motor is to turn.
+    is_on: bool,
     rotor: Rotor,
     overdrive: f64,
     start_level: f64,
@@ -64,6 +72,7 @@ impl MotorDrive {
             (strongest, speed)
         });
         Self {
+            is_on: false,
             strengths: strengths.collect(),
             rotor: Rotor::new(start_level, rise, fall, 1.0 / sample_rate),
             overdrive,
@@ -86,10 +95,11 @@ impl MotorDrive {
         }
     }
 
-    /// The level of this step for a wanted strength, or to stop, in [−1, 1]; and the part of the
-    /// strength that the motor has at its rated speed, at most 1.
-    pub(crate) fn step(&mut self, strength: Option<f64>) -> (f64, f64) {
-        let wanted = strength.map_or(0.0, |strength| self.speed(strength));
+    /// The level of this step for a wanted strength, in [−1, 1]; and the part of the strength that
+    /// the motor has at its rated speed, at most 1.
+    pub(crate) fn step(&mut self, strength: f64) -> (f64, f64) {
+        self.is_on = strength >= if self.is_on { STOPS } else { STARTS };
+        let wanted = if self.is_on { self.speed(strength) } else { 0.0 };
         let mut level = self.rotor.level_for(wanted, self.overdrive);
         // A motor at rest needs its start level, and one that has stopped must not turn back.
         if self.rotor.speed == 0.0 {
@@ -97,8 +107,7 @@ impl MotorDrive {
         }
         self.rotor.advance(level);
         let largest = self.strengths.last().map_or(0.0, |(largest, _)| *largest);
-        let part = strength.map_or(1.0, |strength| (largest / strength).min(1.0));
-        (level / self.overdrive, part)
+        (level / self.overdrive, largest / strength.max(largest))
     }
 
     /// The time until the motor is felt with `strength`, at its largest level [s].
@@ -202,23 +211,33 @@ mod tests {
     #[test]
     fn a_motor_is_pushed_to_start_and_braked_to_stop_and_never_turns_back() {
         let mut drive = MotorDrive::new(MOTOR, 1000.0);
-        assert_eq!(drive.step(Some(100.0)), (1.0, 1.0));
-        let risen = (1..200).find(|_| drive.step(Some(100.0)).0 < 1.0).unwrap();
+        assert_eq!(drive.step(100.0), (1.0, 1.0));
+        let risen = (1..200).find(|_| drive.step(100.0).0 < 1.0).unwrap();
         // From rest to speed s at 1.5: rise · ln(1.5 / (1.5 − s)).
         let speed = drive.speed(100.0);
         let time = 0.04 * (1.5 / (1.5 - speed)).ln();
         assert!((f64::from(risen) * 1e-3 - time).abs() <= 2e-3, "{risen} ms, not {time} s");
-        let (steady, _) = drive.step(Some(100.0));
+        let (steady, _) = drive.step(100.0);
         assert!((steady - speed / 1.5).abs() < 1e-9);
-        assert_eq!(drive.step(None).0, -1.0);
+        assert_eq!(drive.step(0.0).0, -1.0);
         let stopped = (1..200).find(|_| {
-            drive.step(None);
+            drive.step(0.0);
             drive.rotor.speed == 0.0
         });
         // From s to rest at −1.5: rise · ln((1.5 + s) / 1.5).
         let time = 0.04 * ((1.5 + speed) / 1.5).ln();
         assert!((f64::from(stopped.unwrap()) * 1e-3 - time).abs() <= 2e-3);
-        assert_eq!((drive.step(None).0, drive.rotor.speed), (0.0, 0.0));
+        assert_eq!((drive.step(0.0).0, drive.rotor.speed), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_strength_that_trembles_does_not_start_and_stop_a_motor() {
+        let mut drive = MotorDrive::new(MOTOR, 1000.0);
+        let trembling = |tick: u32| STARTS * if tick.is_multiple_of(2) { 1.05 } else { 0.95 };
+        let levels: Vec<_> = (0..400).map(|tick| drive.step(trembling(tick)).0).collect();
+        assert!(levels.iter().all(|level| *level > 0.0));
+        drive.step(0.95 * STOPS);
+        (0..400).for_each(|_| assert!(drive.step(0.95 * STARTS).0 <= 0.0));
     }
 
     #[test]
