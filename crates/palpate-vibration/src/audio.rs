@@ -170,7 +170,8 @@ impl Synthesiser {
     /// # Errors
     ///
     /// [`HapticsError::NoContactPoint`] without a point; [`HapticsError::Number`] if the sample
-    /// rate is less than twice the mapping's highest frequency, which would alias.
+    /// rate is less than twice the mapping's highest frequency, which would alias, or more than
+    /// 1 MHz.
     pub fn new(
         mapping: &Mapping,
         sample_rate: f64,
@@ -207,10 +208,18 @@ impl Synthesiser {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
+        mechanism.map(Mechanism::check).transpose()?;
         let options = mapping.options();
+        let highest_frequency = match mechanism {
+            None | Some(Mechanism::VoiceCoil { .. }) => options.highest_frequency,
+            Some(Mechanism::Resonant { resonance, .. }) => *resonance,
+            // A level has no frequency.
+            Some(Mechanism::RotatingMass { .. }) => 0.0,
+        };
+        check_sample_rate(sample_rate, highest_frequency)?;
         let touches =
             |has_rhythm| vec![Strengths::new(options, sample_rate, has_rhythm); points];
-        let (output, highest_frequency) = match mechanism.copied() {
+        let output = match mechanism.copied() {
             None | Some(Mechanism::VoiceCoil { .. }) => {
                 let band = match mechanism {
                     Some(Mechanism::VoiceCoil { lowest, highest }) => Some([*lowest, *highest]),
@@ -218,20 +227,18 @@ impl Synthesiser {
                 };
                 let players = vec![Player::new(options, sample_rate); points];
                 let limiter = Limiter::new(sample_rate);
-                (Output::Waves { players, limiter, band }, options.highest_frequency)
+                Output::Waves { players, limiter, band }
             }
             Some(Mechanism::Resonant { resonance, bandwidth, overdrive }) => {
                 let drive = CarrierDrive::new(resonance, bandwidth, overdrive, sample_rate);
-                (Output::Carrier { touches: touches(true), drive }, resonance)
+                Output::Carrier { touches: touches(true), drive }
             }
             Some(Mechanism::RotatingMass { frequency, start_level, overdrive, rise, fall }) => {
                 let motor = Motor { frequency, start_level, overdrive, rise, fall };
                 let drive = MotorDrive::new(motor, sample_rate);
-                (Output::Motor { touches: touches(false), drive }, 0.0)
+                Output::Motor { touches: touches(false), drive }
             }
         };
-        mechanism.map(Mechanism::check).transpose()?;
-        check_sample_rate(sample_rate, highest_frequency)?;
         Ok(Self { output, limiting: Limiting::default(), sample_rate, highest_frequency })
     }
 
@@ -454,5 +461,12 @@ mod tests {
             "sample_rate must be at least twice the highest frequency, got 700 Hz"
         );
         assert!(Synthesiser::new(&mapping(), 8000.0, 0).is_err());
+        for wrong in [f64::NAN, f64::INFINITY, 1e300, -1.0, 0.0] {
+            assert!(Synthesiser::new(&mapping(), wrong, 1).is_err(), "{wrong}");
+            for (name, actuator) in &crate::ACTUATORS {
+                let made = Synthesiser::for_actuator(&mapping(), actuator, wrong, 1);
+                assert!(made.is_err(), "{name}: {wrong}");
+            }
+        }
     }
 }

@@ -223,12 +223,18 @@ impl Mechanism {
     }
 }
 
+/// The highest sample rate [Hz]: what is kept of the last milliseconds stays small.
+const HIGHEST_SAMPLE_RATE: f64 = 1e6;
+
 /// Checks that `sample_rate` [Hz] is at least twice the `highest` frequency [Hz] that it carries.
 pub(crate) fn check_sample_rate(sample_rate: f64, highest: f64) -> Result<f64, HapticsError> {
     NumberError::check_positive("sample_rate", sample_rate, "Hz")?;
+    let wrong = |rule| Err(NumberError::new("sample_rate", rule, sample_rate, "Hz").into());
     if sample_rate < 2.0 * highest {
-        let rule = "at least twice the highest frequency";
-        return Err(NumberError::new("sample_rate", rule, sample_rate, "Hz").into());
+        return wrong("at least twice the highest frequency");
+    }
+    if sample_rate > HIGHEST_SAMPLE_RATE {
+        return wrong("at most 1e6 Hz");
     }
     Ok(sample_rate)
 }
