@@ -4,7 +4,8 @@
 //! Profiles of known actuators.
 //!
 //! Makers publish the rated speed or resonance, and the range of voltages; hardly any publishes
-//! the width of a resonance or a time constant. What is not published is assumed: of the order of
+//! the width of a resonance or a time constant. The lowest voltage at which a motor may be operated
+//! counts as its start level, and the highest as its overdrive. What is not published is assumed: of the order of
 //! the rise and stop times in makers' data sheets of parts of that size, and listed as such.
 
 use std::borrow::Cow;
