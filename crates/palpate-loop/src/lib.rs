@@ -48,6 +48,7 @@ mod run;
 mod servo_loop;
 mod start_report;
 mod statistics;
+mod texture_report;
 mod thread;
 mod tool_report;
 
@@ -60,5 +61,6 @@ pub use report::{Ending, Evaluations, RunError, RunReport};
 pub use run::{Motion, Run, RunOptions, Seconds, Watch, run, run_on};
 pub use start_report::StartInside;
 pub use statistics::{Bucket, Distribution};
+pub use texture_report::TextureReport;
 pub use thread::{EndedThread, ServoThread, StartError, ThreadOptions};
 pub use tool_report::ToolReport;

@@ -12,7 +12,7 @@ use palpate::haptics::{
     Servo, Surface, TurningReport,
 };
 use palpate::scene::BuiltScene;
-use palpate::servo_loop::{Ending, RunReport, ToolReport};
+use palpate::servo_loop::{Ending, RunReport, TextureReport, ToolReport};
 use serde_json::Value;
 
 use crate::numbers::rounded;
@@ -20,6 +20,7 @@ use crate::outcome::Failure;
 use crate::output::{self, shown};
 use crate::times::{quantiles, write_histogram};
 
+use super::vibration::Played;
 use super::{guides, inside};
 
 /// The line that is shown while the servo runs.
@@ -56,6 +57,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) nearest: Option<f64>,
     /// World metres for each metre of the device, if the program chose them.
     pub(super) workspace_scale: Option<f64>,
+    /// What actuators played, if that was written to a file.
+    pub(super) played: Option<&'a Played>,
 }
 
 impl<const D: usize> Felt<'_, D> {
@@ -85,6 +88,9 @@ impl<const D: usize> Felt<'_, D> {
         }
         if let Some(scale) = self.workspace_scale {
             json["workspace_scale"] = scale.into();
+        }
+        if let Some(played) = self.played {
+            json["vibration"] = played.json();
         }
         if self.servo.tool().is_some() {
             json["coupling"] = serde_json::to_value(self.accepted.first())?;
@@ -257,6 +263,12 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         events.touches, events.slips, events.sticks, events.pops
     )?;
     guides::write(out, felt)?;
+    if let Some(texture) = report.texture.as_ref().filter(|texture| texture.faded_ticks > 0) {
+        write_texture(out, texture)?;
+    }
+    if let Some(played) = felt.played {
+        played.write(out)?;
+    }
     write_safety(out, felt)?;
     if let Some(cost) = &report.cost {
         writeln!(out, "  cost a tick    {}", quantiles(cost))?;
@@ -302,6 +314,17 @@ fn write_accepted(
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())
+}
+
+/// What was not rendered of height textures.
+fn write_texture(out: &mut String, texture: &TextureReport) -> std::fmt::Result {
+    let [crests, rate] = [texture.highest_frequency, texture.wanted_rate].map(rounded);
+    writeln!(
+        out,
+        "  texture        faded in {} of {} ticks: up to {crests} crests a second want a --rate of \
+         {rate} Hz",
+        texture.faded_ticks, texture.ticks
+    )
 }
 
 /// The lines of a tool's report that contact points do not have.
