@@ -26,6 +26,14 @@ const MEMORY: f64 = 0.99;
 /// walls, because position quantisation looks like work done on a resting hand.
 const FLOOR: f64 = 0.25;
 
+/// The most by which the controller changes what it takes from a force in a tick [N], unless the
+/// force would give out more than [`SPARE`] meanwhile. A hand does not feel it as a kick.
+const STEP: f64 = 0.3;
+
+/// Energy that may be given out beyond the balance and the reserve while the controller takes the
+/// force away smoothly [J].
+const SPARE: f64 = 5e-4;
+
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
 pub(crate) trait InnerProduct:
@@ -109,7 +117,9 @@ pub struct PassivityReport {
 /// before.
 ///
 /// **Controller.** The whole force is scaled down until the energy that it gives out in the
-/// coming tick is no more than the balance plus a reserve. The motion is predicted from the
+/// coming tick is no more than the balance plus a reserve. What it takes changes by [`STEP`] a tick
+/// at most, so that walls do not kick when it acts or lets go, unless [`SPARE`] more would be given
+/// out; then it acts at once. The motion is predicted from the
 /// velocity, and from the acceleration of the device's mass by this force and the one before.
 /// If the slew limit would prevent a fast removal of the force, the energy given out during the
 /// removal counts too. The controller always leaves [`FLOOR`] of the force whose leaks damping
@@ -134,6 +144,8 @@ pub(crate) struct Passivity<V> {
     leaks: f64,
     losses: f64,
     last: Option<Last<V>>,
+    /// What the controller took from the last force [N].
+    taken: f64,
     report: PassivityReport,
 }
 
@@ -181,6 +193,7 @@ impl<V: InnerProduct> Passivity<V> {
             leaks: 0.0,
             losses: 0.0,
             last: None,
+            taken: 0.0,
             report: PassivityReport::default(),
         }
     }
@@ -232,12 +245,28 @@ impl<V: InnerProduct> Passivity<V> {
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
         let may_give = self.options.is_on && wanted != V::ZERO;
-        let part = if may_give { self.part(wanted, held, way, state) } else { 1.0 };
+        let part = |spare| self.part(wanted, held, way, state, spare);
+        let parts = if may_give { [part(0.0), part(SPARE)] } else { [1.0; 2] };
+        let part = self.smoothed(parts, wanted.norm());
         let changed = (part < 1.0).then(|| wanted * part);
         let allowed = self.report.effect.count(wanted, changed);
         let PortMotion { position, effort, .. } = *state;
         self.last = Some(Last { position, effort, wanted, written: allowed });
         allowed
+    }
+
+    /// The part of a force of size `wanted` [N] that passes, towards `soft` by [`STEP`] a tick, and at
+    /// most `hard`.
+    fn smoothed(&mut self, [soft, hard]: [f64; 2], wanted: f64) -> f64 {
+        if soft >= 1.0 && self.taken == 0.0 || wanted == 0.0 {
+            self.taken = 0.0;
+            return 1.0;
+        }
+        let taken = wanted * (1.0 - soft);
+        let taken = taken.clamp(self.taken - STEP, self.taken + STEP);
+        self.taken = taken.max(wanted * (1.0 - hard)).min(wanted);
+        // Written so that NaN takes all.
+        if self.taken <= wanted { 1.0 - self.taken / wanted } else { 0.0 }
     }
 
     /// Records the force that was written.
@@ -316,10 +345,10 @@ impl<V: InnerProduct> Passivity<V> {
         self.leaks <= self.losses
     }
 
-    /// The part of `wanted` that gives out no more than the balance and the reserve.
-    fn part(&self, wanted: V, held: V, way: V, state: &PortMotion<V>) -> f64 {
+    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J].
+    fn part(&self, wanted: V, held: V, way: V, state: &PortMotion<V>, spare: f64) -> f64 {
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
-        let available = (self.balance + reserve).max(0.0);
+        let available = (self.balance + reserve + spare).max(0.0);
         let compliance = self.compliance;
         // The mean velocity of the last tick is half a tick old, and the held force has changed
         // it since. The given estimate may be older or better. Use the one that gives out more.

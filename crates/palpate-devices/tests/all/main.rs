@@ -10,3 +10,4 @@ mod integration;
 mod recovery;
 mod stability;
 mod turning;
+mod wrong_plants;
