@@ -41,6 +41,7 @@
 mod clock;
 mod display;
 mod guide_report;
+mod lines;
 mod pacer;
 mod priority;
 mod recorder;

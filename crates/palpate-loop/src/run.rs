@@ -367,10 +367,7 @@ pub fn run_on<const D: usize>(
     let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
     let (rows, queued) = match (options.sink, options.pace) {
         (None, _) => (None, None),
-        (Some(sink), Pace::AsFastAsPossible) => {
-            let sink: Sink<'_, D> = sink;
-            (Some(RowSink::Call(sink)), None)
-        }
+        (Some(sink), Pace::AsFastAsPossible) => (Some(RowSink::Call(sink)), None),
         (Some(sink), Pace::RealTime) => {
             let backlog = BACKLOG * servo.options().rate * device.points() as f64;
             let (writer, reader) = queue(backlog.min(MOST_BACKLOG).ceil() as usize);

@@ -8,19 +8,17 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Material, PassivityReport, Progress, Rule, SafetyReport,
-    Servo, Surface, TurningReport,
+    Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface,
 };
 use palpate::scene::BuiltScene;
-use palpate::servo_loop::{Ending, RunReport, ToolReport};
+use palpate::servo_loop::RunReport;
 use serde_json::Value;
 
 use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, shown};
-use crate::times::{quantiles, write_histogram};
 
-use super::{guides, inside};
+use super::inside;
 
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -80,9 +78,6 @@ impl<const D: usize> Felt<'_, D> {
         {
             told["name"] = self.name_of(start.body).into();
         }
-        for (guide, told) in self.servo.guides(0).iter().zip(json_items(&mut json, "guides")) {
-            told["kind"] = guide.kind_name().into();
-        }
         if let Some(scale) = self.workspace_scale {
             json["workspace_scale"] = scale.into();
         }
@@ -103,12 +98,6 @@ impl<const D: usize> Felt<'_, D> {
     /// The name of a body; empty for one that is not there.
     pub(super) fn name_of(&self, body: u32) -> &str {
         self.scene.bodies.get(body as usize).map_or("", |body| &body.name)
-    }
-
-    /// `true` if forces act on the hand that no contact gives: of guides or magnets.
-    fn has_free_forces(&self) -> bool {
-        let has_magnet = self.scene.bodies.iter().any(|body| body.material.magnet.is_some());
-        has_magnet || !self.report.guides.is_empty()
     }
 
     /// The names of the bodies that have motions.
@@ -204,24 +193,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             write_accepted(out, accepted, |count| format!("{count} of {all} bodies"))?;
         }
     }
-    match &report.ending {
-        Ending::Finished => {}
-        Ending::Interrupted => {
-            writeln!(out, "  interrupted: this report covers the run until then")?
-        }
-        ending => writeln!(out, "  {}", shown(&ending.to_string()))?,
-    }
-    if !report.is_released {
-        writeln!(out, "  the device did not take the zero forces at the end")?;
-    }
     inside::write(out, felt)?;
-    let share = 100.0 * report.contact_time / report.duration.max(f64::MIN_POSITIVE);
-    writeln!(out, "  ticks          {} at {} Hz", report.ticks, report.rate)?;
-    writeln!(
-        out,
-        "  contact time   {:.3} s of {:.3} s ({share:.0} %)",
-        report.contact_time, report.duration
-    )?;
     if let Some(nearest) = felt.nearest {
         let nearest = rounded(nearest);
         writeln!(
@@ -230,47 +202,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
              and in the coordinates of the scene?"
         )?;
     }
-    if has_forces {
-        writeln!(out, "  largest force  {:.3} N", report.largest_force)?;
-    }
-    writeln!(out, "  largest depth  {:.3} mm", 1e3 * report.largest_depth)?;
-    if let Some(tool) = &report.tool {
-        write_tool(out, tool)?;
-    }
-    let evaluations = &report.evaluations;
-    writeln!(
-        out,
-        "  evaluations    {:.2} a tick, {} at most",
-        evaluations.mean, evaluations.max
-    )?;
-    if evaluations.budget_spent > 0 {
-        writeln!(
-            out,
-            "                 {} ticks spent their budget",
-            evaluations.budget_spent
-        )?;
-    }
-    let events = &report.events;
-    writeln!(
-        out,
-        "  events         {} touches, {} slips, {} sticks, {} pops",
-        events.touches, events.slips, events.sticks, events.pops
-    )?;
-    guides::write(out, felt)?;
-    write_safety(out, felt)?;
-    if let Some(cost) = &report.cost {
-        writeln!(out, "  cost a tick    {}", quantiles(cost))?;
-    }
-    if let Some(lateness) = &report.lateness {
-        writeln!(out, "  lateness       {}", quantiles(lateness))?;
-        write_histogram(out, lateness)?;
-        writeln!(
-            out,
-            "  missed         {} ticks more than a period late",
-            report.missed_deadlines
-        )?;
-    }
-    Ok(())
+    write!(out, "{report:#}")
 }
 
 /// Why stiffness and damping are less than what is asked for.
@@ -302,74 +234,6 @@ fn write_accepted(
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())
-}
-
-/// The lines of a tool's report that contact points do not have.
-fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
-    write!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
-    match tool.largest_torque_written {
-        Some(written) => writeln!(out, ", {:.3} mN·m written to the device", 1e3 * written)?,
-        None => writeln!(out)?,
-    }
-    writeln!(
-        out,
-        "  contacts       {:.2} on average in contact, {} at most",
-        tool.mean_contacts, tool.most_contacts
-    )?;
-    writeln!(
-        out,
-        "  resolution     {:.3} mm, in the worst tick {:.3} mm; {} ticks with a coarser shell",
-        1e3 * tool.resolution,
-        1e3 * tool.coarsest_resolution,
-        tool.degraded_ticks,
-    )?;
-    if tool.covered_ticks > 0 {
-        writeln!(out, "                 {} ticks covered by bodies", tool.covered_ticks)?;
-    }
-    Ok(())
-}
-
-/// The actions of the safety chains of all points together.
-fn write_safety<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
-    let safety = &felt.report.safety[..];
-    if safety.is_empty() {
-        return Ok(());
-    }
-    let energy = |of: fn(&PassivityReport) -> f64| -> f64 {
-        1e3 * safety.iter().map(|point| of(&point.passivity)).sum::<f64>()
-    };
-    writeln!(
-        out,
-        "  energy         {:.3} mJ taken from the hand, {:.3} mJ given, {:.3} mJ kept back{}",
-        energy(|p| p.energy_in),
-        energy(|p| p.energy_out),
-        energy(|p| p.dissipated),
-        if felt.has_free_forces() { "; of contacts alone" } else { "" },
-    )?;
-    let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
-    let turns = |of: fn(&TurningReport) -> u64| -> u64 {
-        safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
-    };
-    let stages = [
-        ("passivity", ticks(|point| point.passivity.effect.ticks)),
-        ("force rate", ticks(|point| point.slew.ticks)),
-        ("largest force", ticks(|point| point.force_limit.ticks)),
-        ("lasting force", ticks(|point| point.continuous.effect.ticks)),
-        ("not a number", ticks(|point| point.guard.ticks)),
-        ("rise from zero", ticks(|point| point.ramp.ticks)),
-        ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
-        ("torque rate", turns(|turning| turning.slew.ticks)),
-        ("largest torque", turns(|turning| turning.torque_limit.ticks)),
-        ("lasting torque", turns(|turning| turning.continuous.effect.ticks)),
-    ];
-    let acted: Vec<_> = stages
-        .iter()
-        .filter(|(_, ticks)| *ticks > 0)
-        .map(|(stage, ticks)| format!("{stage} {ticks}"))
-        .collect();
-    let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
-    writeln!(out, "  safety, ticks  {acted}")?;
-    writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
 }
 
 /// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one.

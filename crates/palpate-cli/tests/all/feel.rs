@@ -77,7 +77,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
 fn what_is_too_much_or_too_little_is_refused_before_the_run() {
     let folder = Folder::new();
     let scene = folder.write("ball.json", BALL);
-    let trace = folder.name("trace.csv");
+    let plot = folder.name("touch.svg");
     let feel = |more: &[&str], said: &str| {
         assert_refused(&[&["feel", &scene, "--fast"], more].concat(), said);
     };
@@ -86,8 +86,8 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
         "a run of 1e-9 s has no tick at 1000 Hz; the least duration is 0.0005 s",
     );
     feel(
-        &["--duration", "40000", "--trace", &trace],
-        "--trace, --plot and --wav keep 3600000 rows at most, got 40000000; \
+        &["--duration", "40000", "--plot", &plot],
+        "--plot and --wav keep 3600000 rows at most, got 40000000; \
          shorten --duration, lower --rate, or use fewer contact points",
     );
     let output = palpate(&["feel", &scene, "--fast", "--points", "1000", "--duration", "100"]);
@@ -108,9 +108,9 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
 #[test]
 fn rows_that_the_system_has_no_memory_for_are_refused() {
     let folder = Folder::new();
-    let trace = folder.name("trace.csv");
+    let plot = folder.name("touch.svg");
     let shell = "ulimit -v 1000000; exec \"$@\"";
-    let feel = ["feel", "scenes/s1.json", "--fast", "--duration", "3600", "--trace", &trace];
+    let feel = ["feel", "scenes/s1.json", "--fast", "--duration", "3600", "--plot", &plot];
     let output = std::process::Command::new("sh")
         .args(["-c", shell, "sh", env!("CARGO_BIN_EXE_palpate")])
         .args(feel)
@@ -118,7 +118,7 @@ fn rows_that_the_system_has_no_memory_for_are_refused() {
         .output()
         .unwrap();
     let said = errors(&output);
-    let start = "palpate: --trace, --plot and --wav keep 3600000 rows of this run, ";
+    let start = "palpate: --plot and --wav keep 3600000 rows of this run, ";
     let end = " GB of memory, which the system does not give; shorten --duration, lower --rate, \
                or use fewer contact points\n";
     assert!(said.starts_with(start) && said.ends_with(end), "{said}");
@@ -234,15 +234,15 @@ fn guides_are_named_counted_and_drawn() {
     assert!(well["given"].as_f64().unwrap() > 1e-3, "{well}");
     let said = text(&palpate(&feel));
     assert!(
-        said.contains("  guide 0        a line, held the hand for 1 s with at most 0.6 N; "),
+        said.contains("  guide 0        a line, held the hand for 1.000 s with at most 0.600 N; "),
         "{said}"
     );
     assert!(said.contains("  guide 2        a plane, did not hold the hand\n"), "{said}");
-    assert!(said.contains(" mJ kept back; of contacts alone\n"), "{said}");
+    assert!(said.contains("  energy         contacts took "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     assert!(words(&svg).contains(&"guides"), "{:?}", words(&svg));
     let cup = ["feel", "scenes/cup.json", "--fast", "--duration", "0.1"];
-    assert!(text(&palpate(&cup)).contains(" mJ kept back\n"));
+    assert!(text(&palpate(&cup)).contains(" mJ were kept back\n"));
     assert_eq!(json(&[&cup[..], &["--json"]].concat())["guides"], serde_json::json!([]));
 }
 
