@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use palpate::devices::{DeviceError, HandPath, Interpolation, Tour};
+use palpate::devices::{DeviceError, HandPath, Tour};
 use palpate::field::{Shape, Vector};
 use palpate::haptics::Probe;
 use palpate::scene::BuiltScene;
@@ -122,7 +122,7 @@ fn moved<const D: usize>(
 ) -> Result<HandPath<D>, Failure> {
     let times = path.times().iter().map(|time| time - ahead).collect();
     let positions = path.positions().iter().map(|point| *point + by).collect();
-    let moved: Result<_, DeviceError> = HandPath::new(times, positions, Interpolation::Smooth);
+    let moved: Result<_, DeviceError> = HandPath::new(times, positions, path.interpolation());
     moved.map_err(Failure::input)
 }
 
