@@ -65,6 +65,6 @@ pub use report::{Ending, Evaluations, RunError, RunReport};
 pub use run::{Motion, Run, RunOptions, Seconds, Sink, Watch, run, run_on};
 pub use start_report::StartInside;
 pub use statistics::{Bucket, Distribution};
-pub use thread::{EndedThread, ServoThread, StartError, ThreadOptions};
+pub use thread::{EndedThread, ServoThread, StartError, ThreadMotion, ThreadOptions};
 pub use tool_report::ToolReport;
 pub use trace::TraceWriter;

@@ -3,6 +3,7 @@
 
 //! A servo in a thread of its own.
 
+use palpate_field::Pose;
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, handoff,
 };
@@ -16,11 +17,18 @@ use crate::pacer::{Pace, ticks};
 use crate::priority::{Priority, raise_priority};
 use crate::records::{Records, queue};
 use crate::report::RunReport;
+use crate::run::Motion;
 use crate::servo_loop::{RowSink, Schedule, ServoLoop};
 
 /// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
 /// that nobody advances lets it wait in vain.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A closure that moves bodies before each tick in a servo's thread, as [`Motion`] does in a
+/// call. That of a built scene of `palpate-scene` is `move |time, set_pose| scene.motion()(time,
+/// set_pose)`.
+pub type ThreadMotion<const D: usize> =
+    Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send>;
 
 /// How a thread runs a servo.
 ///
@@ -217,7 +225,21 @@ impl<const D: usize> ServoThread<D> {
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
-        Self::start_with(WallClock::suited_to, servo, device, options)
+        Self::start_with(WallClock::suited_to, servo, device, None, options)
+    }
+
+    /// As [`start`](Self::start), with a closure that moves bodies before each tick.
+    ///
+    /// # Errors
+    ///
+    /// As [`start`](Self::start).
+    pub fn start_moving(
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        motion: ThreadMotion<D>,
+        options: ThreadOptions,
+    ) -> Result<Self, StartError> {
+        Self::start_with(WallClock::suited_to, servo, device, Some(motion), options)
     }
 
     /// As [`start`](Self::start), on the caller's clock.
@@ -231,13 +253,58 @@ impl<const D: usize> ServoThread<D> {
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
-        Self::start_with(|_| clock, servo, device, options)
+        Self::start_with(|_| clock, servo, device, None, options)
+    }
+
+    /// As [`start_moving`](Self::start_moving), on the caller's clock.
+    ///
+    /// # Errors
+    ///
+    /// As [`start`](Self::start).
+    ///
+    /// # Examples
+    ///
+    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Linear)?;
+    /// let device = Box::new(RecordedDevice::new(vec![hand])?);
+    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
+    /// let servo = Servo::for_device(floor, &*device)?; // with a probe of 2 mm
+    /// let rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
+    /// };
+    /// let options = ThreadOptions::default().with_raised_priority(false).with_duration(0.01);
+    /// let clock = VirtualClock::new();
+    /// let thread =
+    ///     ServoThread::start_moving_on(clock, servo, device, Box::new(rise), options)?;
+    /// let report = thread.join().report;
+    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn start_moving_on(
+        clock: impl Clock + Send + 'static,
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        motion: ThreadMotion<D>,
+        options: ThreadOptions,
+    ) -> Result<Self, StartError> {
+        Self::start_with(|_| clock, servo, device, Some(motion), options)
     }
 
     fn start_with<C: Clock>(
         clock: impl FnOnce(&Priority) -> C + Send + 'static,
         mut servo: Servo<D>,
         mut device: Box<dyn Device<D> + Send>,
+        mut motion: Option<ThreadMotion<D>>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
         servo.check_device(&*device)?;
@@ -257,6 +324,7 @@ impl<const D: usize> ServoThread<D> {
             let mut clock = clock(&priority);
             let report = ServoLoop::new(&mut servo, &mut *device)
                 .sending(rows.map(RowSink::Queue))
+                .moving(motion.as_deref_mut().map(|motion| -> Motion<'_, D> { motion }))
                 .handing_off(Some(&mut end))
                 .run(&mut clock, &schedule);
             Left { servo, device, _end: end, report, priority }

@@ -226,7 +226,7 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
     }
 }
 
-/// The scene, with materials and tool replaced by those of the command line.
+/// The scene, with materials, tool and contact points replaced by those of the command line.
 fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltScene<D> {
     let mut scene = scene.clone();
     for body in &mut scene.bodies {
@@ -237,6 +237,9 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         material.relative_stiffness =
             options.relative_stiffness.or(material.relative_stiffness);
         material.damping = options.damping.unwrap_or(material.damping);
+    }
+    if let (Some(_), Some(tool)) = (options.points, &mut scene.tool) {
+        tool.points.clear();
     }
     if options.radius.is_some() || options.max_force.is_some() {
         let radius = Probe::default().radius();

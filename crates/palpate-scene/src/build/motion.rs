@@ -114,8 +114,8 @@ impl<const D: usize> BuiltScene<D> {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let scene = Scene::from_json(
     ///     r#"{ "palpate": 1, "dimension": 2,
-    ///          "bodies": [ { "name": "table", "shape": { "box": { "size": [1, 0.1] } } },
-    ///                      { "name": "lid", "shape": { "box": { "size": [0.1, 0.1] } } } ],
+    ///          "bodies": [ { "name": "table", "shape": { "rectangle": { "size": [1, 0.1] } } },
+    ///                      { "name": "lid", "shape": { "rectangle": { "size": [0.1, 0.1] } } } ],
     ///          "motions": [ { "body": "lid", "to": { "translation": [0, 0.5] }, "duration": 2 } ] }"#,
     /// )?;
     /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
