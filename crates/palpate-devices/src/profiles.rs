@@ -8,7 +8,8 @@
 //! assumed, and listed as such: of the order of makers' data sheets, and consistent with the
 //! published numbers. The least damping is `K T / 2` at `T` = 1 ms, the smallest that makes the
 //! largest stiffness `K` passive (Colgate and Schenkel 1997); friction and encoder step satisfy
-//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); the full force rises within 2 ms. The rotational
+//! `K ≤ 2 f_c / Δ` (Abbott and Okamura 2005); the full force rises within 2 ms; a
+//! hand moves by at most 5 m/s and 500 m/s². The rotational
 //! numbers follow the same rules, for the worst axis; each profile names its sources.
 
 use palpate_haptics::{DeviceProfile, TurningProfile};
@@ -30,6 +31,8 @@ const DRIVERS: Origin = Origin {
         "least_damping",
         "friction",
         "encoder_step",
+        "max_speed",
+        "max_acceleration",
     ],
 };
 
@@ -47,6 +50,8 @@ const ASSUMED: Origin = Origin {
         "least_damping",
         "friction",
         "encoder_step",
+        "max_speed",
+        "max_acceleration",
     ],
 };
 
@@ -69,6 +74,12 @@ struct Assumed {
 
 /// The largest rate of force over the largest force [1/s]: the full force rises within 2 ms.
 pub(crate) const FORCE_RISES: f64 = 500.0;
+
+/// More than a hand moves a desktop device, whose workspace it would cross in 40 ms [m/s].
+const MAX_SPEED: f64 = 5.0;
+
+/// Several times that by which the largest forces move the apparent masses [m/s²].
+const MAX_ACCELERATION: f64 = 500.0;
 
 const fn profile(
     origin: &Origin,
@@ -98,6 +109,8 @@ const fn turning_profile(
         .with_least_damping(assumed.least_damping)
         .with_friction(assumed.friction)
         .with_encoder_step(assumed.encoder_step)
+        .with_max_speed(MAX_SPEED)
+        .with_max_acceleration(MAX_ACCELERATION)
 }
 
 /// All known devices, by their names on the command line.

@@ -112,7 +112,7 @@ fn every_known_device_rests_on_a_ball() {
         let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
         let ball = Shape::from_kernel(Ball::new(0.05).unwrap());
         // A force that rises from nothing under the hand would lift it, which takes energy.
-        let protection = Protection::new(profile.clone()).with_rise_time(0.0);
+        let protection = Protection::new(profile.clone()).with_rise_rate(f64::INFINITY);
         let servo = UnprotectedServo::new(ball, 1, ServoOptions::of_device(profile)).unwrap();
         let mut servo = servo.protected(&protection).unwrap();
         let options = RunOptions::new(1.5).with_pace(Pace::AsFastAsPossible);

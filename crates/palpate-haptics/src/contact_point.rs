@@ -8,8 +8,10 @@
 use palpate_field::{Point, Vector};
 
 use crate::bodies::Body;
+use crate::crease::{Crease, Place, Shared};
 use crate::event::{Event, EventKind};
 use crate::guide::Guide;
+use crate::half_spaces::CAPACITY;
 use crate::nearby::Nearby;
 use crate::options::ServoOptions;
 use crate::ports::Port;
@@ -38,7 +40,8 @@ pub struct Touch<const D: usize> {
     pub normal: Vector<f64, D>,
     /// `true` if the surface keeps the proxy from the device point.
     pub contact: bool,
-    /// The index of the body whose surface the proxy last reached.
+    /// The index of the body whose surface the proxy last reached; of several that hold the proxy,
+    /// the one that pushes hardest.
     pub body: u32,
     /// `true` if the proxy moves along the surface against friction.
     pub is_slipping: bool,
@@ -67,9 +70,9 @@ impl<const D: usize> Touch<D> {
     }
 }
 
-/// The most events of a contact point in a tick: a leave; a touch, slip or stick; and a layer
-/// that gives way.
-pub(crate) const MOST_EVENTS: usize = 3;
+/// The most events of a contact point in a tick: a leave, a touch and a layer that gives way for
+/// each of the bodies that can hold it.
+pub(crate) const MOST_EVENTS: usize = 3 * CAPACITY;
 
 /// A contact point of the hand, with its state from tick to tick.
 #[derive(Clone, Debug)]
@@ -81,6 +84,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// same.
     of_others: f64,
     ringing: Ringing,
+    /// The bodies that touch the proxy.
+    crease: Crease<D>,
     pub(crate) guides: Vec<Guide<D>>,
     /// The port to the device; `None` without protection.
     pub(crate) port: Option<Port<D>>,
@@ -93,7 +98,8 @@ pub(crate) struct Setting<const D: usize> {
     pub(crate) map: WorkspaceMap<D>,
     /// The increase of [`ContactPoint::rise`] in a tick.
     pub(crate) rise_step: f64,
-    pub(crate) is_late: bool,
+    /// By how much this tick began too late [s].
+    pub(crate) late: f64,
 }
 
 /// The state of a tick that all contact points share.
@@ -159,7 +165,8 @@ impl<const D: usize> ContactPoint<D> {
     pub(crate) fn new(probe: Probe) -> Self {
         let (proxy, guides) = (Proxy::new(probe), Vec::new());
         let (rise, of_others, ringing) = (1.0, f64::INFINITY, Ringing::SILENT);
-        Self { proxy, rise, of_others, ringing, guides, port: None }
+        let crease = Crease::NONE;
+        Self { proxy, rise, of_others, ringing, crease, guides, port: None }
     }
 
     /// A copy that rehearses a tick. It has no guides, because copying guides would allocate.
@@ -167,8 +174,8 @@ impl<const D: usize> ContactPoint<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn double(&self) -> Self {
         let (proxy, port) = (self.proxy.clone(), self.port.clone());
-        let Self { rise, of_others, ringing, .. } = *self;
-        Self { proxy, rise, of_others, ringing, guides: Vec::new(), port }
+        let Self { rise, of_others, ringing, crease, .. } = *self;
+        Self { proxy, rise, of_others, ringing, crease, guides: Vec::new(), port }
     }
 
     /// Forgets the bodies, which are replaced before the next tick; `wanted` is their last
@@ -198,7 +205,8 @@ impl<const D: usize> ContactPoint<D> {
         state: PointState<D>,
         touch: &mut Touch<D>,
     ) -> Vector<f64, D> {
-        let at_device = self.port.as_mut().map_or(state, |port| port.state(state));
+        let at_device =
+            self.port.as_mut().map_or(state, |port| port.state(state, tick.setting.late));
         let in_world = tick.setting.map.state_to_world(at_device);
         let free = self.feel(tick, &in_world, touch);
         self.give(tick.setting, at_device, touch, free)
@@ -218,14 +226,14 @@ impl<const D: usize> ContactPoint<D> {
         free: FreeForce<D>,
     ) -> Vector<f64, D> {
         let FreeForce { force: free, placed } = free;
-        let Setting { options, map, rise_step, is_late } = setting;
+        let Setting { options, map, rise_step, late } = setting;
         let has_start = placed || self.of_others < f64::INFINITY;
         let start = if has_start { self.start(placed, touch.wanted) } else { 1.0 };
         if let Some(port) = &mut self.port {
             let wanted = map.force_to_device(touch.wanted);
             let PointState { position, velocity } = at_device;
-            let (free_force, is_late) = (map.force_to_device(free), *is_late);
-            let state = PortState { position, velocity, free_force, is_late, start };
+            let (free_force, late) = (map.force_to_device(free), *late);
+            let state = PortState { position, velocity, free_force, late, start };
             let force = port.write(wanted, options.max_force, &state);
             touch.force = map.force_to_world(force);
             force
@@ -269,11 +277,7 @@ impl<const D: usize> ContactPoint<D> {
         let mut free =
             guides.fold(Vector::ZERO, |sum, guide| sum + guide.force(device, state.velocity));
         if following.contact {
-            if body.has_moved() {
-                touch.velocity -= (body.carried(device) - device) * tick.setting.options.rate;
-            }
-            self.tell_changes(tick, touch, before, body);
-            touch.wanted = self.force(tick, touch, body);
+            touch.wanted = self.held(tick, touch, before, body);
         } else {
             self.fall_silent(tick, before);
         }
@@ -294,7 +298,34 @@ impl<const D: usize> ContactPoint<D> {
     fn fall_silent(&mut self, tick: &mut Tick<'_, D>, before: Before) {
         self.ringing = Ringing::SILENT;
         if before.contact {
+            self.leave(tick, before, &Crease::NONE);
+        }
+        self.release_others();
+    }
+
+    /// Forgets the bodies of a crease.
+    fn release_others(&mut self) {
+        if self.crease.count() > 0 {
+            self.crease = Crease::NONE;
+            self.proxy.share_friction(None);
+        }
+    }
+
+    /// Whether a body touched the proxy in the tick before.
+    fn was_touched(&self, before: Before, body: u32) -> bool {
+        match self.crease.count() {
+            0 => before.contact && before.body == body,
+            _ => self.crease.has(body),
+        }
+    }
+
+    /// Tells that the proxy left the bodies that touched it before and do not touch it now.
+    fn leave(&self, tick: &mut Tick<'_, D>, before: Before, now: &Crease<D>) {
+        if self.crease.count() == 0 && !now.has(before.body) {
             tick.tell(before.body, EventKind::Leave);
+        }
+        for wall in self.crease.walls().filter(|wall| !now.has(wall.body)) {
+            tick.tell(wall.body, EventKind::Leave);
         }
     }
 
@@ -308,36 +339,135 @@ impl<const D: usize> ContactPoint<D> {
         self.rise
     }
 
-    /// Emits the events of this tick and starts the ringing that they cause.
+    /// The force of the bodies that hold the proxy [N], of which `body` has the least field.
+    fn held(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        touch: &mut Touch<D>,
+        before: Before,
+        body: &Body<D>,
+    ) -> Vector<f64, D> {
+        let rate = tick.setting.options.rate;
+        if tick.nearby.bodies.bodies().len() > 1 {
+            let crease = self.crease_at(tick, touch, before);
+            if crease.count() > 1 && crease.whole() > 0.0 {
+                return self.held_by_several(tick, touch, before, crease);
+            }
+        }
+        if body.has_moved() {
+            touch.velocity -= (body.carried(touch.device) - touch.device) * rate;
+        }
+        self.tell_changes(tick, touch, before, &Crease::of_one(touch.body, touch.normal));
+        self.release_others();
+        let stretch = touch.proxy - touch.device;
+        self.proxy.hold(stretch - touch.normal * stretch.dot(touch.normal));
+        let force = self.pressed(touch, body, stretch);
+        self.pop(tick, touch.body, stretch.norm());
+        force + self.ring(touch, force)
+    }
+
+    /// The bodies that touch the proxy.
+    fn crease_at(&self, tick: &Tick<'_, D>, touch: &mut Touch<D>, before: Before) -> Crease<D> {
+        let Touch { proxy, body, normal, .. } = *touch;
+        let radius = tick.setting.options.probe.radius();
+        let stretch = proxy - touch.device - self.proxy.held();
+        let place = Place { proxy, stretch, body, normal, radius };
+        let was_touched = |body| self.was_touched(before, body);
+        let punctured = self.proxy.punctured();
+        Crease::at(tick.nearby, &place, punctured, was_touched, &mut touch.evaluations)
+    }
+
+    /// The force of several bodies that hold the proxy together [N].
+    ///
+    /// With the stretch `s = Σ λᵢ nᵢ + t`, of which friction holds `t` (see [`Crease`]), each body gives the force of its material
+    /// at the stretch `λᵢ nᵢ + wᵢ t` with the weight `wᵢ = λᵢ / Σ λ`. Dampers, and friction in the next tick, are those of all bodies with these weights. So
+    /// bodies of one material feel like one body, and the force does not jump when a body begins or
+    /// ceases to push. Behind oblique walls the springs work against each other; their force is at
+    /// most that of the hardest body at the whole stretch. Textures come on top.
+    fn held_by_several(
+        &mut self,
+        tick: &mut Tick<'_, D>,
+        touch: &mut Touch<D>,
+        before: Before,
+        mut crease: Crease<D>,
+    ) -> Vector<f64, D> {
+        let stretch = touch.proxy - touch.device;
+        let (depth, whole) = (stretch.norm(), crease.whole());
+        let rest = crease.walls().fold(stretch, |rest, wall| rest - wall.normal * wall.push);
+        let (mut springs, mut plain, mut carried) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
+        let mut shared = Shared::default();
+        let velocity = std::mem::replace(&mut touch.velocity, Vector::ZERO);
+        for wall in crease.pushing_mut() {
+            let Some(body) = tick.nearby.body(wall.body) else { continue };
+            let part = wall.push / whole;
+            let own = wall.normal * wall.push + rest * part;
+            let (strata, level) = (&body.surface().strata, self.proxy.level(wall.body));
+            shared.add(strata.at(level, own.norm()), strata.force(level, depth), part);
+            if body.has_moved() {
+                carried += (body.carried(touch.device) - touch.device) * part;
+            }
+            (touch.body, touch.normal) = (wall.body, wall.normal);
+            wall.force = self.pressed(touch, body, own);
+            springs += wall.force;
+            if let Some(along) = own.normalized() {
+                plain += along * strata.force(level, own.norm());
+            }
+        }
+        touch.velocity = velocity - carried * tick.setting.options.rate;
+        if let Some(hardest) = crease.hardest() {
+            (touch.body, touch.normal) = (hardest.body, hardest.normal);
+        }
+        self.tell_changes(tick, touch, before, &crease);
+        let fit = shortening(plain.norm(), shared.most);
+        let dampers = shared.dampers(touch.velocity, stretch * (1.0 / depth));
+        for wall in crease.pushing_mut() {
+            wall.force = wall.force * fit + dampers * (wall.push / whole);
+            self.pop(tick, wall.body, wall.push);
+        }
+        self.proxy.share_friction(Some(shared.friction));
+        self.crease = crease;
+        self.proxy.hold(rest);
+        let force = springs * fit + dampers;
+        force + self.ring(touch, force)
+    }
+
+    /// Emits the events of this tick and starts the ringing that they cause; `now` are the bodies
+    /// that touch the proxy.
     fn tell_changes(
         &mut self,
         tick: &mut Tick<'_, D>,
         touch: &Touch<D>,
         before: Before,
-        body: &Body<D>,
+        now: &Crease<D>,
     ) {
-        if !before.contact || before.body != touch.body {
-            if before.contact {
-                tick.tell(before.body, EventKind::Leave);
+        if before.contact {
+            self.leave(tick, before, now);
+        }
+        let mut is_new = false;
+        for wall in now.walls() {
+            if self.was_touched(before, wall.body) {
+                continue;
             }
-            let speed = (-touch.velocity.dot(touch.normal)).max(0.0);
+            let Some(body) = tick.nearby.body(wall.body) else { continue };
+            let speed = (-touch.velocity.dot(wall.normal)).max(0.0);
             self.ringing = body.surface().ringing(speed, tick.setting.options.rate);
-            tick.tell(touch.body, EventKind::Touch { speed });
-        } else if touch.is_slipping != before.is_slipping {
+            tick.tell(wall.body, EventKind::Touch { speed });
+            is_new = true;
+        }
+        if !is_new && touch.is_slipping != before.is_slipping {
             let kind = if touch.is_slipping { EventKind::Slip } else { EventKind::Stick };
             tick.tell(touch.body, kind);
         }
     }
 
-    /// The force of the touched body [N].
-    fn force(
-        &mut self,
-        tick: &mut Tick<'_, D>,
+    /// The force of a body at rest relative to `touch` whose part of the stretch is `stretch` [N].
+    fn pressed(
+        &self,
         touch: &mut Touch<D>,
         body: &Body<D>,
+        stretch: Vector<f64, D>,
     ) -> Vector<f64, D> {
-        let stretch = touch.proxy - touch.device;
-        let (surface, level) = (body.surface(), self.proxy.level(touch.body));
+        let level = self.proxy.level(touch.body);
         let in_body = body.in_body(touch.proxy);
         let (pull, velocity) =
             (body.vector_in_body(stretch), body.vector_in_body(touch.velocity));
@@ -350,17 +480,37 @@ impl<const D: usize> ContactPoint<D> {
             (there - normal) * (way.norm() / far)
         };
         let press = Press { stretch: pull, velocity, proxy: in_body };
-        let force = surface.force(level, press, turn);
-        let force = body.vector_in_world(force);
-        if let Some(pop) = surface.strata.top(level).and_then(|top| top.pop_through) {
-            let held = surface.strata.force(level, stretch.norm());
-            if held > pop.force && self.proxy.puncture(touch.body) {
-                tick.tell(touch.body, EventKind::Pop { force: held });
+        body.vector_in_world(body.surface().force(level, press, turn))
+    }
+
+    /// Punctures the top layer of a body that is pressed by `depth` [m], if it gives way.
+    fn pop(&mut self, tick: &mut Tick<'_, D>, index: u32, depth: f64) {
+        let Some(body) = tick.nearby.body(index) else { return };
+        let (strata, level) = (&body.surface().strata, self.proxy.level(index));
+        if let Some(pop) = strata.top(level).and_then(|top| top.pop_through) {
+            let held = strata.force(level, depth);
+            if held > pop.force && self.proxy.puncture(index) {
+                tick.tell(index, EventKind::Pop { force: held });
             }
         }
-        // Ringing shakes the hand, but never pulls it into the body.
-        let ring = self.ringing.step().max(-force.dot(touch.normal).max(0.0));
-        force + touch.normal * ring
+    }
+
+    /// The force of this tick's ringing beside the `force` of the bodies [N]. It shakes the hand, but
+    /// never pulls it into the body.
+    fn ring(&mut self, touch: &Touch<D>, force: Vector<f64, D>) -> Vector<f64, D> {
+        touch.normal * self.ringing.step().max(-force.dot(touch.normal).max(0.0))
+    }
+
+    /// The force of each body on the hand in the tick [N]; their sum is the wanted force.
+    pub(crate) fn pushes(
+        &self,
+        touch: &Touch<D>,
+    ) -> impl Iterator<Item = (u32, Vector<f64, D>)> {
+        let others = self.crease.walls().filter(|wall| wall.body != touch.body);
+        let of_others = others.clone().fold(Vector::ZERO, |sum, wall| sum + wall.force);
+        let hardest = (touch.body, touch.wanted - of_others);
+        let others = others.map(|wall| (wall.body, wall.force));
+        std::iter::once(hardest).chain(others).take(if touch.contact { CAPACITY } else { 0 })
     }
 
     /// The force of all magnets but the touched body's, which is zero at its own surface [N].
@@ -371,7 +521,7 @@ impl<const D: usize> ContactPoint<D> {
             let Some(magnet) = &body.surface().magnet else { continue };
             let is_far = body.above_ball(touch.device)
                 > magnet.reach + tick.setting.options.probe.radius();
-            let is_touched = touch.contact && index == touch.body;
+            let is_touched = touch.contact && (index == touch.body || self.crease.has(index));
             if is_far || is_touched || self.proxy.level(index) > 0 {
                 continue;
             }

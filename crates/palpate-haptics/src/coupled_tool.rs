@@ -123,7 +123,8 @@ impl<const D: usize> CoupledTool<D> {
     ) -> Vector<f64, D> {
         let Sides { point, bodies } = sides;
         let map = &setting.map;
-        let at_device = point.port.as_mut().map_or(state, |port| port.state(state));
+        let at_device =
+            point.port.as_mut().map_or(state, |port| port.state(state, setting.late));
         let (turn, angle) = match &mut self.port {
             Some(port) => port.state(self.turn),
             None => (self.turn, Vector::ZERO),
@@ -160,7 +161,7 @@ impl<const D: usize> CoupledTool<D> {
                 position: SpatialVector { along: at_device.position, about: angle },
                 velocity: SpatialVector { along: at_device.velocity, about: spin },
                 free_force: map.force_to_device(free),
-                is_late: setting.is_late,
+                late: point.port.as_ref().map_or(setting.late, |port| port.late(setting.late)),
             };
             let wanted = SpatialVector { along: force, about: torque };
             let given = chain.step_within(wanted, setting.options.max_force, &state);

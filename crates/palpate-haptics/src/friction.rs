@@ -47,9 +47,19 @@ pub(crate) struct Held {
     pub(crate) hold: Hold,
 }
 
+/// What became of a dragged proxy.
+#[derive(Clone, Copy)]
+pub(crate) struct Dragged<const D: usize> {
+    /// Whether the surface keeps the proxy from the device.
+    pub(crate) contact: bool,
+    pub(crate) hold: Hold,
+    /// The part of the stretch from device to proxy that friction holds [m]; `None` if static
+    /// friction leaves it open, because the proxy sticks or several walls hold it.
+    pub(crate) held: Option<Vector<f64, D>>,
+}
+
 /// [Slides](slide) the proxy from `here` towards the point closest to `device`, as far as
-/// `friction` permits; `device` moved by `motion` [m] in this tick. Returns whether the surface
-/// keeps the proxy from the device, and how friction acts.
+/// `friction` permits; `device` moved by `motion` [m] in this tick.
 ///
 /// Real-time: allocates nothing, takes no lock, cannot panic; at most the sampler's budget of
 /// evaluations.
@@ -59,12 +69,13 @@ pub(crate) fn drag<const D: usize>(
     goal: Goal<D>,
     held: Held,
     local: &mut LocalSurface<D>,
-) -> (bool, Hold) {
+) -> Dragged<D> {
     let Place { here, normal } = place;
     let Goal { device, motion } = goal;
     let Held { friction, hold } = held;
     if here.tangent.is_none() || friction.fixed <= 0.0 {
-        return (slide(sampler, Place { here, normal }, goal, local), Hold::None);
+        let contact = slide(sampler, Place { here, normal }, goal, local);
+        return Dragged { contact, hold: Hold::None, held: Some(Vector::ZERO) };
     }
     let start = *here;
     let (first_normal, gap) = sampler.tangent(&start, *normal);
@@ -73,39 +84,43 @@ pub(crate) fn drag<const D: usize>(
     let depth = height - gap;
     *normal = first_normal;
     if depth <= 0.0 || gap > sampler.near() {
-        return (slide(sampler, Place { here, normal }, goal, local), Hold::None);
+        let contact = slide(sampler, Place { here, normal }, goal, local);
+        return Dragged { contact, hold: Hold::None, held: Some(Vector::ZERO) };
     }
+    let stuck = Dragged { contact: true, hold: Hold::Stick, held: None };
     let most = if hold == Hold::Slip { friction.slipping } else { friction.fixed };
     let Some(goal) =
         held_back(device, stretch - first_normal * height, depth, most, friction.slipping)
     else {
-        return (true, Hold::Stick);
+        return stuck;
     };
+    let slipped = |contact| Dragged { contact, hold: Hold::Slip, held: Some(goal - device) };
     let contact = slide(sampler, Place { here, normal }, Goal { device: goal, motion }, local);
     let pull = here.point - goal;
     let along = pull - *normal * pull.dot(*normal);
     if !contact || along.dot(along) <= ONE_WALL * ONE_WALL * pull.dot(pull) {
-        return (contact, Hold::Slip);
+        return slipped(contact);
     }
     // A crease. A proxy that was in the crease may stick; one that was beside it, on one wall,
     // slid in.
-    let Some(across) = along.normalized() else { return (contact, Hold::Slip) };
+    let Some(across) = along.normalized() else { return slipped(contact) };
     let way = start.point - here.point;
     let beside = way.dot(*normal).max(way.dot(across));
     if beside > sampler.tolerance().max(BESIDE * way.norm()) {
-        return (contact, Hold::Slip);
+        return slipped(contact);
     }
     // The walls together press with the part of the stretch across the crease.
     let pressed = *normal * stretch.dot(*normal) + across * stretch.dot(across);
     match held_back(device, stretch - pressed, pressed.norm(), most, friction.slipping) {
         None => {
             (*here, *normal) = (start, first_normal);
-            (true, Hold::Stick)
+            stuck
         }
-        Some(goal) => (
-            slide(sampler, Place { here, normal }, Goal { device: goal, motion }, local),
-            Hold::Slip,
-        ),
+        Some(goal) => {
+            let way = Goal { device: goal, motion };
+            let contact = slide(sampler, Place { here, normal }, way, local);
+            Dragged { contact, hold: Hold::Slip, held: None }
+        }
     }
 }
 

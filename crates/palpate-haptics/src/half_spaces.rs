@@ -107,6 +107,58 @@ pub(crate) fn closest_point<const D: usize>(
     None
 }
 
+/// The pushes `λᵢ ≥ 0` of the first `count` of the unit `normals` that come closest to
+/// `stretch = Σ λᵢ nᵢ`.
+///
+/// The rest `t = stretch − Σ λᵢ nᵢ` has `nᵢ·t ≤ 0` (Karush, Kuhn and Tucker), so the pushes are those
+/// of walls through the proxy on a device point at the other end of the stretch; all sets of walls
+/// are tried, as in [`closest_point`].
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn pushes<const D: usize>(
+    stretch: Vector<f64, D>,
+    normals: [Vector<f64, D>; CAPACITY],
+    count: usize,
+) -> [f64; CAPACITY] {
+    let known = || normals.iter().enumerate().take(count);
+    let slack = FEASIBLE * stretch.norm();
+    let is_rest = |rest: Vector<f64, D>| known().all(|(_, n)| n.dot(rest) <= slack);
+    let mut found = [0.0; CAPACITY];
+    let mut set = |pushes: &[(usize, f64)]| {
+        for (i, push) in pushes {
+            if let Some(place) = found.get_mut(*i) {
+                *place = *push;
+            }
+        }
+        found
+    };
+    for (i, a) in known() {
+        let push = a.dot(stretch);
+        if push > 0.0 && is_rest(stretch - *a * push) {
+            return set(&[(i, push)]);
+        }
+    }
+    for (i, a) in known() {
+        for (k, b) in known().skip(i + 1) {
+            let solved = two_pushes([*a, *b], [a.dot(stretch), b.dot(stretch)]);
+            if let Some([x, y]) = solved.filter(|[x, y]| is_rest(stretch - *a * *x - *b * *y)) {
+                return set(&[(i, x), (k, y)]);
+            }
+        }
+    }
+    for (i, a) in known() {
+        for (k, b) in known().skip(i + 1) {
+            for (m, c) in known().skip(k + 1) {
+                let depths = [a, b, c].map(|n| n.dot(stretch));
+                if let Some([x, y, z]) = three_pushes([*a, *b, *c], depths) {
+                    return set(&[(i, x), (k, y), (m, z)]);
+                }
+            }
+        }
+    }
+    found
+}
+
 /// The step to one plane, if it pushes.
 fn one<const D: usize>(normal: Vector<f64, D>, depth: f64) -> Option<Vector<f64, D>> {
     (depth > 0.0).then(|| normal * depth)
@@ -115,25 +167,41 @@ fn one<const D: usize>(normal: Vector<f64, D>, depth: f64) -> Option<Vector<f64,
 /// The step to the intersection of two planes, if both push.
 fn two<const D: usize>(
     [a, b]: [Vector<f64, D>; 2],
-    [depth_a, depth_b]: [f64; 2],
+    depths: [f64; 2],
 ) -> Option<Vector<f64, D>> {
+    two_pushes([a, b], depths).map(|[push_a, push_b]| a * push_a + b * push_b)
+}
+
+/// The pushes of two planes to their intersection, if both push.
+fn two_pushes<const D: usize>(
+    [a, b]: [Vector<f64, D>; 2],
+    [depth_a, depth_b]: [f64; 2],
+) -> Option<[f64; 2]> {
     let cosine = a.dot(b);
     let determinant = 1.0 - cosine * cosine;
     let push_a = depth_a - cosine * depth_b;
     let push_b = depth_b - cosine * depth_a;
     // Written so that NaN fails.
     if determinant > LEAST_DETERMINANT && push_a >= 0.0 && push_b >= 0.0 {
-        Some(a * (push_a / determinant) + b * (push_b / determinant))
+        Some([push_a / determinant, push_b / determinant])
     } else {
         None
     }
 }
 
-/// The step to the intersection of three planes, if all push: Cramer's rule.
+/// The step to the intersection of three planes, if all push.
 fn three<const D: usize>(
     [a, b, c]: [Vector<f64, D>; 3],
-    [depth_a, depth_b, depth_c]: [f64; 3],
+    depths: [f64; 3],
 ) -> Option<Vector<f64, D>> {
+    three_pushes([a, b, c], depths).map(|[x, y, z]| a * x + b * y + c * z)
+}
+
+/// The pushes of three planes to their intersection, if all push: Cramer's rule.
+fn three_pushes<const D: usize>(
+    [a, b, c]: [Vector<f64, D>; 3],
+    [depth_a, depth_b, depth_c]: [f64; 3],
+) -> Option<[f64; 3]> {
     let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
     let determinant = 1.0 + 2.0 * ab * bc * ca - ab * ab - bc * bc - ca * ca;
     let push = |own: f64, left: (f64, f64), right: (f64, f64), opposite: f64| {
@@ -145,7 +213,7 @@ fn three<const D: usize>(
     let push_b = push(depth_b, (depth_c, bc), (depth_a, ab), ca);
     let push_c = push(depth_c, (depth_a, ca), (depth_b, bc), ab);
     if determinant > LEAST_DETERMINANT && push_a >= 0.0 && push_b >= 0.0 && push_c >= 0.0 {
-        Some((a * push_a + b * push_b + c * push_c) * (1.0 / determinant))
+        Some([push_a, push_b, push_c].map(|push| push * (1.0 / determinant)))
     } else {
         None
     }

@@ -44,6 +44,7 @@ mod bodies;
 mod contact;
 mod contact_point;
 mod coupled_tool;
+mod crease;
 mod curvature;
 mod energy;
 mod error;
@@ -83,9 +84,9 @@ pub use palpate_material::{
 };
 pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
-    Impedance, NumberError, PassivityReport, PointState, PortState, Rule, SafetyChain,
-    SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile, TurningReport,
-    VelocityEstimator, WatchdogReport, WorkspaceMap,
+    Impedance, NumberError, PassivityReport, PointState, PortState, ReadingsReport, Recovery,
+    Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
+    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

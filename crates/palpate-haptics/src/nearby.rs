@@ -228,17 +228,7 @@ impl<'a, const D: usize> Nearby<'a, D> {
             if above >= least.distance {
                 continue;
             }
-            let Some(layer_depth) = layer_depth(body, punctured.level(index)) else { continue };
-            let (distance, gradient) = body.distance_gradient(p);
-            let mut seen =
-                FieldValue { distance: distance + layer_depth, gradient, body: index };
-            if body.is_below_ball
-                && above > seen.distance
-                && let Some(ball) = body.ball
-            {
-                seen.distance = above;
-                seen.gradient = (p - ball.centre).normalized().unwrap_or(Vector::ZERO);
-            }
+            let Some(seen) = field_of(body, index, p, above, punctured) else { continue };
             if seen.distance.is_nan() {
                 return seen;
             }
@@ -247,6 +237,21 @@ impl<'a, const D: usize> Nearby<'a, D> {
             }
         }
         least
+    }
+
+    /// The field of each body at a point for which `most` gives a value that the field may be less
+    /// than.
+    pub(crate) fn each_within(
+        &self,
+        p: Point<D>,
+        punctured: &Punctured,
+        most: impl Fn(u32) -> Option<f64>,
+    ) -> impl Iterator<Item = FieldValue<D>> {
+        self.all().filter_map(move |(index, body)| {
+            let above = body.above_ball(p);
+            let is_near = most(index).is_some_and(|most| above <= most);
+            is_near.then(|| field_of(body, index, p, above, punctured)).flatten()
+        })
     }
 
     /// `true` if the promise of every near body holds at a point.
@@ -275,6 +280,29 @@ impl<'a, const D: usize> Nearby<'a, D> {
         }
         goal
     }
+}
+
+/// The field of one body at a point that is `above` its ball; `None` if all its layers are
+/// punctured.
+#[inline(always)]
+fn field_of<const D: usize>(
+    body: &Body<D>,
+    index: u32,
+    p: Point<D>,
+    above: f64,
+    punctured: &Punctured,
+) -> Option<FieldValue<D>> {
+    let layer_depth = layer_depth(body, punctured.level(index))?;
+    let (distance, gradient) = body.distance_gradient(p);
+    let mut seen = FieldValue { distance: distance + layer_depth, gradient, body: index };
+    if body.is_below_ball
+        && above > seen.distance
+        && let Some(ball) = body.ball
+    {
+        seen.distance = above;
+        seen.gradient = (p - ball.centre).normalized().unwrap_or(Vector::ZERO);
+    }
+    Some(seen)
 }
 
 /// The depth of the layer that constrains the proxy after `level` layers were punctured [m];

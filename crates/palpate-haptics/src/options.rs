@@ -24,8 +24,8 @@ pub struct ServoOptions {
     /// The largest force on a contact point [N]; infinite for no limit.
     pub max_force: f64,
     /// The time over which the force of a contact rises from zero after a body covered the
-    /// device point or moved onto it [s]. The contact points of a protected servo rise over
-    /// [`Protection::rise_time`](crate::Protection::rise_time) instead.
+    /// device point or moved onto it [s]. The contact points of a protected servo rise by
+    /// [`Protection::rise_rate`](crate::Protection::rise_rate) instead.
     pub rise_time: f64,
 }
 

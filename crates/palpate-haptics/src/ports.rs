@@ -11,8 +11,8 @@ use crate::error::HapticsError;
 use crate::protection::Protection;
 use palpate_safety::{
     Acceptance, Accepted, DeviceLimits, Impedance, PassivityReport, PerMotion, PointState,
-    PortState, SafetyChain, SafetyOptions, SafetyReport, TurnState, VelocityEstimator,
-    WrenchChain,
+    PortState, Readings, ReadingsReport, SafetyChain, SafetyOptions, SafetyReport, TurnState,
+    VelocityEstimator, WrenchChain,
 };
 
 impl<const D: usize> Protection<D> {
@@ -26,6 +26,9 @@ impl<const D: usize> Protection<D> {
         let options = self.safety_options(along.unwrap_or_default());
         Ok(Port {
             chain: SafetyChain::new(&self.profile, rate, options)?,
+            readings: Readings::new(&self.profile, rate)?,
+            held: 0.0,
+            period: 1.0 / rate,
             estimator: VelocityEstimator::new(rate, self.profile.encoder_step)?,
             has_steps: self.profile.encoder_step > 0.0,
         })
@@ -63,7 +66,8 @@ impl<const D: usize> Protection<D> {
             .with_scale(self.map.scale())
             .with_acceptance(Acceptance::AsIs)
             .with_passivity_control(self.has_passivity_control)
-            .with_rise_time(self.rise_time)
+            .with_recovery(self.recovery)
+            .with_rise_rate(self.rise_rate)
     }
 }
 
@@ -71,17 +75,30 @@ impl<const D: usize> Protection<D> {
 #[derive(Clone, Debug)]
 pub(crate) struct Port<const D: usize> {
     chain: SafetyChain<D>,
+    readings: Readings<D>,
+    /// By how much this tick is late because its reading was held back [s]: a period, or zero.
+    held: f64,
+    /// The duration of a tick [s].
+    period: f64,
     estimator: VelocityEstimator<D>,
     /// Whether encoder steps make it necessary to estimate the velocity.
     has_steps: bool,
 }
 
 impl<const D: usize> Port<D> {
-    /// The state of the device. Its velocity is estimated from positions if the device has
-    /// encoder steps, and is the device's own otherwise.
+    /// The state of the device in a tick that is `late` [s]: at rest where it was if no hand can have
+    /// made the reading. Its velocity is estimated from positions if the device has encoder
+    /// steps, and is the device's own otherwise.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn state(&mut self, state: PointState<D>) -> PointState<D> {
+    pub(crate) fn state(&mut self, state: PointState<D>, late: f64) -> PointState<D> {
+        let counts = self.readings.counts(state.position, late);
+        // A device that cannot be read is as good as late: its force is stale.
+        self.held = if counts { 0.0 } else { self.period };
+        let state = match self.readings.last().filter(|_| !counts) {
+            Some(position) => PointState::at_rest(position),
+            None => state,
+        };
         if !self.has_steps {
             return state;
         }
@@ -97,7 +114,8 @@ impl<const D: usize> Port<D> {
         max_force: f64,
         state: &PortState<D>,
     ) -> Vector<f64, D> {
-        self.chain.step_within(wanted, max_force, state)
+        let late = self.late(state.late);
+        self.chain.step_within(wanted, max_force, &PortState { late, ..*state })
     }
 
     /// Replaces the accepted impedance.
@@ -127,7 +145,19 @@ impl<const D: usize> Port<D> {
     }
 
     pub(crate) fn report(&self) -> SafetyReport {
-        self.chain.report()
+        self.chain.report().with_readings(self.readings.report())
+    }
+
+    /// By how much a tick that is `late` [s] is late in all, with its reading.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn late(&self, late: f64) -> f64 {
+        late + self.held
+    }
+
+    /// What was held back.
+    pub(crate) fn readings(&self) -> ReadingsReport {
+        self.readings.report()
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
 use palpate_safety::{
-    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, WorkspaceMap,
+    Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, WorkspaceMap,
 };
 
 /// How a servo protects a device and the hand that holds it.
@@ -39,14 +39,16 @@ pub struct Protection<const D: usize> {
     pub is_strict: bool,
     /// Whether the passivity controller acts; the passivity observer always runs.
     pub has_passivity_control: bool,
-    /// The time over which the force rises after the start and after a proxy is placed anew
-    /// [s].
-    pub rise_time: f64,
+    /// How a force comes back after it was zeroed.
+    pub recovery: Recovery,
+    /// How fast a force rises after it was zeroed [N/s]: after the start, after a proxy is placed
+    /// anew, after late ticks, lost readings and emergency stops.
+    pub rise_rate: f64,
 }
 
 impl<const D: usize> Protection<D> {
     /// Protection with every stage on and the identity map. The device renders what it can of the
-    /// bodies ([`Acceptance::Device`]); forces rise within 0.1 s.
+    /// bodies ([`Acceptance::Device`]); forces rise by 20 N/s.
     #[must_use]
     pub fn new(profile: DeviceProfile) -> Self {
         Self {
@@ -55,7 +57,8 @@ impl<const D: usize> Protection<D> {
             acceptance: Acceptance::Device,
             is_strict: false,
             has_passivity_control: true,
-            rise_time: 0.1,
+            recovery: Recovery::Rise,
+            rise_rate: 20.0,
         }
     }
 
@@ -83,10 +86,17 @@ impl<const D: usize> Protection<D> {
         Self { has_passivity_control: is_on, ..self }
     }
 
-    /// The same protection with another time over which the force rises [s].
+    /// The same protection with another way in which a force comes back.
     #[must_use]
-    pub fn with_rise_time(self, rise_time: f64) -> Self {
-        Self { rise_time, ..self }
+    pub fn with_recovery(self, recovery: Recovery) -> Self {
+        Self { recovery, ..self }
+    }
+
+    /// The same protection with another rate at which a zeroed force rises [N/s]; infinite for at
+    /// once.
+    #[must_use]
+    pub fn with_rise_rate(self, rise_rate: f64) -> Self {
+        Self { rise_rate, ..self }
     }
 
     /// The bodies as the device renders them at `rate` [Hz]: all layers of a body have the share of

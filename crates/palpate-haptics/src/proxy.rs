@@ -167,6 +167,10 @@ pub struct Proxy<const D: usize> {
     /// The local model of the surface near the proxy.
     local: LocalSurface<D>,
     punctured: Punctured,
+    /// The friction of all bodies that held the proxy in the last tick; `None` if one held it.
+    shared_friction: Option<Friction>,
+    /// The part of the stretch from device to proxy that friction holds [m].
+    held: Vector<f64, D>,
 }
 
 impl<const D: usize> Proxy<D> {
@@ -185,7 +189,27 @@ impl<const D: usize> Proxy<D> {
             hold: Hold::None,
             local: LocalSurface::new(),
             punctured: Punctured::default(),
+            shared_friction: None,
+            held: Vector::ZERO,
         }
+    }
+
+    /// The part of the stretch from device to proxy that friction holds [m]. Where static friction
+    /// leaves it open, it is as [`hold`](Self::hold) last set it: friction bears what it bore.
+    pub(crate) fn held(&self) -> Vector<f64, D> {
+        self.held
+    }
+
+    /// Sets the part of the stretch that friction holds [m].
+    pub(crate) fn hold(&mut self, held: Vector<f64, D>) {
+        self.held = held;
+    }
+
+    /// Sets the friction of several bodies that hold the proxy together; `None` if one holds it.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn share_friction(&mut self, friction: Option<Friction>) {
+        self.shared_friction = friction;
     }
 
     /// The ball that touches.
@@ -203,6 +227,7 @@ impl<const D: usize> Proxy<D> {
     pub fn forget_bodies(&mut self) {
         self.is_stale = true;
         self.punctured = Punctured::default();
+        self.shared_friction = None;
     }
 
     /// Punctures the layer of a body that constrains the proxy; `false` if no more bodies can
@@ -212,6 +237,11 @@ impl<const D: usize> Proxy<D> {
     pub(crate) fn puncture(&mut self, body: u32) -> bool {
         self.is_stale = true;
         self.punctured.puncture(body)
+    }
+
+    /// The punctured layers of all bodies.
+    pub(crate) fn punctured(&self) -> &Punctured {
+        &self.punctured
     }
 
     /// The number of punctured layers of a body.
@@ -390,7 +420,7 @@ impl<const D: usize> Proxy<D> {
     /// Moves the proxy straight to the device while the path is free, then slides. A proxy
     /// without a place touches nothing.
     fn pursue(&mut self, sampler: &mut Sampler<'_, D>, goal: Goal<D>) {
-        let Self { at, normal, contact, hold, local, punctured, .. } = self;
+        let Self { at, normal, contact, hold, local, punctured, shared_friction, .. } = self;
         let (mut was_held, how) = (std::mem::take(contact), std::mem::take(hold));
         let Some(here) = at else { return };
         loop {
@@ -404,14 +434,19 @@ impl<const D: usize> Proxy<D> {
                 // Conservative advancement (Mirtich 1996): no surface is within `free`.
                 here.point + way * (free / squared.sqrt())
             } else {
-                let friction = friction(sampler, here, squared.sqrt(), punctured);
+                let friction = shared_friction
+                    .or_else(|| friction(sampler, here, squared.sqrt(), punctured));
                 match friction.filter(|_| was_held) {
                     Some(friction) => {
                         let held = Held { friction, hold: how };
-                        (*contact, *hold) =
-                            drag(sampler, Place { here, normal }, goal, held, local);
+                        let dragged = drag(sampler, Place { here, normal }, goal, held, local);
+                        (*contact, *hold) = (dragged.contact, dragged.hold);
+                        self.held = dragged.held.unwrap_or(self.held);
                     }
-                    None => *contact = slide(sampler, Place { here, normal }, goal, local),
+                    None => {
+                        *contact = slide(sampler, Place { here, normal }, goal, local);
+                        self.held = Vector::ZERO;
+                    }
                 }
                 *contact =
                     *contact || was_held && is_held_still(sampler, here, normal, goal.device);

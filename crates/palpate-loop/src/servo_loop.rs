@@ -149,7 +149,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
                     pacer.wait(clock)
                 };
                 self.tally.late(late.ns, late.is_missed);
-                self.servo.set_late(late.is_missed);
+                self.servo.set_late(if late.is_missed { late.ns as f64 * 1e-9 } else { 0.0 });
                 lateness_ns = late.ns;
             }
             if self.end.as_ref().is_some_and(|end| end.is_to_end()) {

@@ -5,8 +5,6 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::num::NonZeroU32;
-
 use palpate_field::{Point, Vector};
 
 use crate::acceptance::{Acceptance, Accepted};
@@ -19,6 +17,7 @@ use crate::limit::cut;
 use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
+use crate::rise::Recovery;
 
 /// The input of a contact point's safety chain in a tick, beside the wanted force. In device
 /// coordinates ([`WorkspaceMap`](crate::WorkspaceMap)), because the limits are the device's.
@@ -32,12 +31,11 @@ pub struct PortState<const D: usize> {
     /// A force on the hand that is added to the wanted force but not observed for passivity
     /// [N]: the force of guides and magnets, which is conservative.
     pub free_force: Vector<f64, D>,
-    /// Whether the tick began too late.
-    pub is_late: bool,
-    /// The part of the force to render in this tick, from which the force rises again. Normally
-    /// 1; 0 after the proxy was placed anew or a body moved onto it; between 0 and 1 after a
-    /// body was replaced by a stiffer one. Set it below 1 in one tick only: while it stays
-    /// below 1, the force cannot rise.
+    /// By how much the tick began too late [s]; zero in time.
+    pub late: f64,
+    /// The part of the force to render in this tick, from which the force
+    /// [rises](SafetyOptions::rise_rate) again. Normally 1; 0 after the proxy was placed anew or a
+    /// body moved onto it; between 0 and 1 after a body was replaced by a stiffer one.
     pub start: f64,
 }
 
@@ -46,8 +44,8 @@ impl<const D: usize> PortState<D> {
     #[must_use]
     pub fn at_rest() -> Self {
         let still = Vector::ZERO;
-        let (is_late, start) = (false, 1.0);
-        Self { position: still, velocity: still, free_force: still, is_late, start }
+        let (late, start) = (0.0, 1.0);
+        Self { position: still, velocity: still, free_force: still, late, start }
     }
 }
 
@@ -56,8 +54,8 @@ impl<const D: usize> PortState<D> {
 /// ```
 /// use palpate_safety::{Impedance, SafetyOptions};
 ///
-/// let options = SafetyOptions::new(Impedance::default()).with_reserve(0.0).with_rise_time(0.1);
-/// assert_eq!((options.reserve, options.rise_time), (0.0, 0.1));
+/// let options = SafetyOptions::new(Impedance::default()).with_reserve(0.0).with_rise_rate(10.0);
+/// assert_eq!((options.reserve, options.rise_rate), (0.0, 10.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -78,12 +76,15 @@ pub struct SafetyOptions {
     pub reserve: f64,
     /// The time constant with which the motors cool [s]. Makers do not state it.
     pub cooling_time: f64,
-    /// The time over which the force rises after the start, a placement or an emergency stop
-    /// [s].
-    pub rise_time: f64,
-    /// The number of consecutive late ticks after which the force falls to zero; after as many
-    /// ticks in time it rises again.
-    pub late_ticks: NonZeroU32,
+    /// How a force comes back after it was zeroed.
+    pub recovery: Recovery,
+    /// How fast a force rises after it was zeroed [N/s]: after the start, a placement, late ticks,
+    /// an input that is not finite, or an emergency stop. A torque rises as fast in the units of
+    /// its coupling, `√(κ/K)` metres a radian.
+    pub rise_rate: f64,
+    /// The time by which ticks are late together when the force falls to zero [s]. Each tick in
+    /// time takes a period from that sum; when it is zero, the force rises again.
+    pub late_time: f64,
     /// The time over which late ticks lower the force to zero [s].
     pub fall_time: f64,
 }
@@ -91,8 +92,8 @@ pub struct SafetyOptions {
 impl SafetyOptions {
     /// Options for `impedance` in a world of the device's scale. The device renders what it can of
     /// it ([`Acceptance::Device`]); passivity is controlled with a reserve of 0.1 mJ, which a hand does not
-    /// feel; motors cool within 2 s; forces rise within 0.2 s, and fall within 0.02 s after 5
-    /// late ticks.
+    /// feel; motors cool within 2 s; forces rise by 20 N/s, and fall within 0.02 s when ticks are late
+    /// by 5 ms.
     #[must_use]
     pub fn new(impedance: Impedance) -> Self {
         Self {
@@ -103,8 +104,9 @@ impl SafetyOptions {
             has_passivity_control: true,
             reserve: 1e-4,
             cooling_time: 2.0,
-            rise_time: 0.2,
-            late_ticks: NonZeroU32::MIN.saturating_add(4),
+            recovery: Recovery::Rise,
+            rise_rate: 20.0,
+            late_time: 0.005,
             fall_time: 0.02,
         }
     }
@@ -151,16 +153,23 @@ impl SafetyOptions {
         Self { cooling_time, ..self }
     }
 
-    /// The same options with another time over which the force rises [s].
+    /// The same options with another way in which a force comes back.
     #[must_use]
-    pub const fn with_rise_time(self, rise_time: f64) -> Self {
-        Self { rise_time, ..self }
+    pub const fn with_recovery(self, recovery: Recovery) -> Self {
+        Self { recovery, ..self }
     }
 
-    /// The same options with another number of late ticks after which the force falls.
+    /// The same options with another rate at which a zeroed force rises [N/s]; infinite for at
+    /// once.
     #[must_use]
-    pub const fn with_late_ticks(self, late_ticks: NonZeroU32) -> Self {
-        Self { late_ticks, ..self }
+    pub const fn with_rise_rate(self, rise_rate: f64) -> Self {
+        Self { rise_rate, ..self }
+    }
+
+    /// The same options with another time by which ticks may be late together [s].
+    #[must_use]
+    pub const fn with_late_time(self, late_time: f64) -> Self {
+        Self { late_time, ..self }
     }
 
     /// The same options with another time over which late ticks lower the force [s].
@@ -172,10 +181,10 @@ impl SafetyOptions {
 
 /// The safety chain of one contact point, from the wanted force to the written force.
 ///
-/// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), passivity, slew
-/// limit, force limit, continuous limit, guard against numbers that are not finite, and the
-/// factors of ramp, deadline watchdog and emergency stop. If no stage has to act, the written
-/// force equals the wanted force bit for bit.
+/// The stages, in this order: stiffness and damping ([`Accepted`], at set-up), the rise of a force
+/// that was zeroed, passivity, slew limit, force limit, continuous limit, guard against numbers
+/// that are not finite, deadline watchdog and emergency stop. If no stage has to act, the
+/// written force equals the wanted force bit for bit.
 ///
 /// # What is promised
 ///
@@ -205,7 +214,7 @@ impl SafetyOptions {
 ///
 /// # fn main() -> Result<(), palpate_safety::SafetyError> {
 /// let device = DeviceProfile::unlimited("example").with_max_force(2.5);
-/// let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.0);
+/// let options = SafetyOptions::new(Impedance::default()).with_rise_rate(f64::INFINITY);
 /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
 /// let state = PortState::at_rest();
 /// assert_eq!(chain.step(Vector([0.0, 1.0]), &state), Vector([0.0, 1.0]));
@@ -250,6 +259,7 @@ impl<const D: usize> SafetyChain<D> {
             // A device with infinite damping is passive whatever it renders.
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness: accepted.device_stiffness,
+            max_force: limits.max_force.positive()?,
             damping,
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
@@ -259,7 +269,7 @@ impl<const D: usize> SafetyChain<D> {
         Ok(Self {
             accepted,
             passivity: Passivity::new(passivity),
-            channel: Channel::new(&limits, &options, rate)?,
+            channel: Channel::new(&limits, &options, 1.0, rate)?,
         })
     }
 
@@ -285,7 +295,7 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     #[must_use]
     pub fn step(&mut self, wanted: Vector<f64, D>, state: &PortState<D>) -> Vector<f64, D> {
-        self.tick(wanted, 0.0, state)
+        self.tick(wanted, [wanted.norm(), 0.0], state)
     }
 
     /// As [`step`](Self::step), for a wanted force that is first shortened to `max_force` [N],
@@ -299,7 +309,7 @@ impl<const D: usize> SafetyChain<D> {
     ///
     /// # fn main() -> Result<(), palpate_safety::SafetyError> {
     /// let device = DeviceProfile::unlimited("example");
-    /// let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.0);
+    /// let options = SafetyOptions::new(Impedance::default()).with_rise_rate(f64::INFINITY);
     /// let mut chain = SafetyChain::new(&device, 1000.0, options)?;
     /// let force = chain.step_within(Vector([3.0, 4.0]), 1.0, &PortState::at_rest());
     /// assert_eq!(force, Vector([0.6, 0.8]));
@@ -315,24 +325,33 @@ impl<const D: usize> SafetyChain<D> {
         max_force: f64,
         state: &PortState<D>,
     ) -> Vector<f64, D> {
+        let effort = wanted.norm();
         let (wanted, cut) = cut(wanted, max_force);
-        self.tick(wanted, cut, state)
+        self.tick(wanted, [effort, cut], state)
     }
 
+    /// One tick for a force `wanted` of the size `effort` before `cut` was taken from it [N].
     fn tick(
         &mut self,
         wanted: Vector<f64, D>,
-        cut: f64,
+        [effort, cut]: [f64; 2],
         state: &PortState<D>,
     ) -> Vector<f64, D> {
         // Stages with a state never see numbers that are not finite; the guard then writes
         // zero.
         let is_sound = finite::is_sound(wanted, state);
-        let PortState { position, velocity, is_late, start, .. } = *state;
-        let seen = PortMotion { position, velocity, has_start: start < 1.0 };
+        let PortState { position, velocity, free_force, late, start } = *state;
+        let input = TickInput { is_sound, late, start, cut };
+        let risen = self.channel.risen(wanted, free_force, &input);
+        let (wanted, free_force) = match risen {
+            Some(part) if part < 1.0 => (wanted * part, free_force * part),
+            _ => (wanted, free_force),
+        };
+        let elapsed = self.passivity.options().period + late.max(0.0);
+        let is_rising = risen.is_some();
+        let seen = PortMotion { position, velocity, effort, is_rising, elapsed };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
-        let input = TickInput { is_sound, is_late, start, cut };
-        let (force, left) = self.channel.step(observed, state.free_force, &input);
+        let (force, left) = self.channel.step(observed, free_force, &input);
         self.passivity.written(left);
         force
     }
@@ -343,6 +362,10 @@ impl<const D: usize> SafetyChain<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn limit_force(&mut self, max_force: f64) {
         self.channel.lower_limit(max_force);
+        let options = *self.passivity.options();
+        // `min` ignores NaN.
+        let max_force = options.max_force.min(max_force).max(0.0);
+        self.passivity.renew(PassivityOptions { max_force, ..options });
     }
 
     /// Begins an emergency stop: the force is zero until [`release`](Self::release).

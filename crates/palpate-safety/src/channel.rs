@@ -13,8 +13,8 @@ use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::force_limit::ForceLimit;
 use crate::limits::DeviceLimits;
-use crate::ramp::Ramp;
 use crate::report::{ContinuousReport, Effects, WatchdogReport};
+use crate::rise::Rise;
 use crate::slew::SlewLimit;
 use crate::watchdog::Watchdog;
 
@@ -23,7 +23,8 @@ use crate::watchdog::Watchdog;
 pub(crate) struct TickInput {
     /// Whether every input is finite.
     pub(crate) is_sound: bool,
-    pub(crate) is_late: bool,
+    /// As [`PortState::late`](super::PortState::late) [s].
+    pub(crate) late: f64,
     /// As [`PortState::start`](super::PortState::start).
     pub(crate) start: f64,
     /// How much a limit took from the wanted force before the stages.
@@ -31,14 +32,14 @@ pub(crate) struct TickInput {
 }
 
 /// The stages from the observed force or torque to the written one: slew limit, force limit,
-/// continuous limit, guard against numbers that are not finite, ramp, watchdog and emergency
-/// stop.
+/// continuous limit, guard against numbers that are not finite, watchdog and emergency stop; and
+/// the rise after them, which acts before the force is observed.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel<const D: usize> {
     slew: SlewLimit<D>,
     force_limit: ForceLimit,
     continuous: ContinuousLimit,
-    ramp: Ramp,
+    rise: Rise,
     watchdog: Watchdog,
     is_stopped: bool,
     /// A second slew limit at the end, because the stages after the first also change the
@@ -48,6 +49,8 @@ pub(crate) struct Channel<const D: usize> {
 }
 
 impl<const D: usize> Channel<D> {
+    /// A channel for forces, or for torques, where a radian counts as the length `unit` [m].
+    ///
     /// # Errors
     ///
     /// [`SafetyError::Number`] if a limit is not positive, or a time of the options negative or
@@ -55,27 +58,54 @@ impl<const D: usize> Channel<D> {
     pub(crate) fn new(
         limits: &DeviceLimits,
         options: &SafetyOptions,
+        unit: f64,
         rate: f64,
     ) -> Result<Self, SafetyError> {
         let slew = SlewLimit::new(limits.max_force_rate.positive()?, rate);
         let continuous_force = limits.continuous_force.positive()?;
         let cooling_time =
             NumberError::check_positive("cooling_time", options.cooling_time, "s")?;
-        let rise_time = NumberError::check_not_negative("rise_time", options.rise_time, "s")?;
+        let rise_rate =
+            NumberError::check_positive_or_infinite("rise_rate", options.rise_rate, "N/s")?;
+        let late_time = NumberError::check_positive("late_time", options.late_time, "s")?;
         let fall_time = NumberError::check_not_negative("fall_time", options.fall_time, "s")?;
         Ok(Self {
             slew,
             force_limit: ForceLimit::new(limits.max_force.positive()?),
             continuous: ContinuousLimit::new(continuous_force, cooling_time, rate),
-            ramp: Ramp::new(0.0, rise_time, fall_time, rate),
-            watchdog: Watchdog::new(
-                options.late_ticks,
-                Ramp::new(1.0, rise_time, fall_time, rate),
-            ),
+            rise: Rise::new(rise_rate * unit, options.recovery, rate),
+            watchdog: Watchdog::new(late_time, fall_time, rate),
             is_stopped: false,
             closing: slew,
             effects: Effects::default(),
         })
+    }
+
+    /// The part of `wanted` and `free`, in [0, 1], that may pass in this tick while the force rises
+    /// after it was zeroed; `None` if it has risen before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn risen(
+        &mut self,
+        wanted: Vector<f64, D>,
+        free: Vector<f64, D>,
+        input: &TickInput,
+    ) -> Option<f64> {
+        if self.watchdog.step(input.late) {
+            // The hand may have sunk in while no tick came.
+            self.rise.restart(self.closing.last().norm());
+        }
+        if input.start < 1.0 || input.start.is_nan() {
+            self.rise.restart((wanted + free).norm() * input.start.max(0.0));
+        }
+        if !input.is_sound {
+            return None;
+        }
+        let part = self.rise.step(wanted, free)?;
+        if part < 1.0 {
+            self.effects.ramp.count_size((wanted + free).norm() * (1.0 - part));
+        }
+        Some(part)
     }
 
     /// Returns the force to write for `observed`, which passed the passivity stage, plus
@@ -94,8 +124,8 @@ impl<const D: usize> Channel<D> {
         let slewed = if is_sound { self.slewed(all) } else { all };
         let force = if is_sound { self.limited(slewed, input.cut) } else { slewed };
         let force = self.effects.guard.count(force, finite::guarded(force, is_sound));
-        let force = self.faded(force, input);
-        // The share that limits, ramp, watchdog and stop leave of both parts.
+        let force = self.faded(force);
+        // The share that limits, watchdog and stop leave of both parts.
         let share = if force == slewed { 1.0 } else { force.norm() / slewed.norm() };
         if !is_sound || self.is_stopped {
             // Both exceptions to the slew limit fall to zero at once.
@@ -104,6 +134,9 @@ impl<const D: usize> Channel<D> {
         }
         let force = self.effects.slew.count(force, self.closing.limit(force));
         self.continuous.written(force);
+        if self.is_stopped || !is_sound || self.watchdog.factor() < 1.0 {
+            self.rise.restart(force.norm());
+        }
         if force == all && share == 1.0 {
             return (force, observed);
         }
@@ -132,7 +165,7 @@ impl<const D: usize> Channel<D> {
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn release(&mut self) {
         if self.is_stopped {
-            self.ramp.lower(0.0);
+            self.rise.restart(0.0);
         }
         self.is_stopped = false;
     }
@@ -168,13 +201,10 @@ impl<const D: usize> Channel<D> {
         effects.continuous.count(force, self.continuous.limit(force))
     }
 
-    /// A force after ramp, watchdog and emergency stop.
-    fn faded(&mut self, force: Vector<f64, D>, input: &TickInput) -> Vector<f64, D> {
-        self.ramp.lower(input.start);
+    /// A force after watchdog and emergency stop.
+    fn faded(&mut self, force: Vector<f64, D>) -> Vector<f64, D> {
         let effects = &mut self.effects;
-        let force = effects.ramp.count(force, part(force, self.ramp.step(true)));
-        let left = self.watchdog.step(input.is_late);
-        let force = effects.watchdog.count(force, part(force, left));
+        let force = effects.watchdog.count(force, part(force, self.watchdog.factor()));
         effects.emergency_stop.count(force, self.is_stopped.then_some(Vector::ZERO))
     }
 }

@@ -72,7 +72,9 @@ impl<const D: usize> TurnState<D> {
 ///     .with_mass(0.05)
 ///     .with_least_damping(0.2)
 ///     .with_friction(0.1)
-///     .with_encoder_step(30e-6);
+///     .with_encoder_step(30e-6)
+///     .with_max_speed(5.0)
+///     .with_max_acceleration(500.0);
 /// assert_eq!((device.max_force, device.mass), (2.5, 0.05));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -102,6 +104,11 @@ pub struct DeviceProfile {
     pub friction: f64,
     /// Resolution of the encoders at the handle [m].
     pub encoder_step: f64,
+    /// The largest speed of a hand that holds the device [m/s]: what would be faster is a
+    /// fault.
+    pub max_speed: f64,
+    /// The largest acceleration of a hand that holds the device [m/s²].
+    pub max_acceleration: f64,
     /// The rotational properties; `None` for a device that does not sense orientation.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub turning: Option<TurningProfile>,
@@ -155,6 +162,8 @@ impl DeviceProfile {
             least_damping: f64::INFINITY,
             friction: f64::INFINITY,
             encoder_step: 0.0,
+            max_speed: f64::INFINITY,
+            max_acceleration: f64::INFINITY,
             turning,
             source: Cow::Borrowed(source),
             assumed: Cow::Borrowed(assumed),
@@ -234,6 +243,20 @@ impl DeviceProfile {
     #[must_use]
     pub const fn with_encoder_step(mut self, encoder_step: f64) -> Self {
         self.encoder_step = encoder_step;
+        self
+    }
+
+    /// The same profile with another largest speed of the hand [m/s].
+    #[must_use]
+    pub const fn with_max_speed(mut self, max_speed: f64) -> Self {
+        self.max_speed = max_speed;
+        self
+    }
+
+    /// The same profile with another largest acceleration of the hand [m/s²].
+    #[must_use]
+    pub const fn with_max_acceleration(mut self, max_acceleration: f64) -> Self {
+        self.max_acceleration = max_acceleration;
         self
     }
 

@@ -63,9 +63,13 @@ impl<const D: usize> InnerProduct for Vector<f64, D> {
 pub(crate) struct PortMotion<V> {
     pub(crate) position: V,
     pub(crate) velocity: V,
-    /// Whether the force [starts](super::PortState::start) to rise, because a body moved onto
-    /// the hand and brought its own stored energy.
-    pub(crate) has_start: bool,
+    /// The size of the wanted force before any limit [N].
+    pub(crate) effort: f64,
+    /// Whether the force rises after it was zeroed: it then moves the hand by energy that the hand
+    /// did not put in.
+    pub(crate) is_rising: bool,
+    /// The time since the tick before [s].
+    pub(crate) elapsed: f64,
 }
 
 /// Energies that the passivity observer measured, and the controller's interventions.
@@ -85,6 +89,9 @@ pub struct PassivityReport {
     pub least_balance: f64,
     /// Energy that the wanted forces would have given out, but the written forces did not [J].
     pub dissipated: f64,
+    /// Energy that the forces were allowed to give out beyond what they took, to lift the hand out
+    /// of a body after they were zeroed or a body moved onto it [J].
+    pub credited: f64,
 }
 
 /// The passivity observer and controller of one contact point.
@@ -106,10 +113,15 @@ pub struct PassivityReport {
 /// velocity, and from the acceleration of the device's mass by this force and the one before.
 /// If the slew limit would prevent a fast removal of the force, the energy given out during the
 /// removal counts too. The controller always leaves [`FLOOR`] of the force whose leaks damping
-/// covers; a wall that soft comes to rest by itself. The balance is capped at the energy of a
-/// spring of the material's stiffness at this force, `½ |F|² / K`, so that a long rub against
-/// friction does not pay for an oscillation. A source of constant force that must give back
-/// more than that cannot use this stage.
+/// covers; a wall that soft comes to rest by itself. The balance is capped at the energy `U`
+/// that a spring of the material's stiffness has stored at this depth under the force limit
+/// `M`, so that a long rub against friction does not pay for an oscillation: with the force `F`
+/// before the limit, `U = F² / 2K` up to `M` and `(F − M/2) M / K` beyond. A source of constant
+/// force that must give back more than that cannot use this stage.
+///
+/// **Rise.** While a force rises after it was zeroed, the balance is at least `U`: in the time
+/// without force the hand sank in for nothing, and the wall lifts it out again. This energy
+/// is [counted](PassivityReport::credited).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passivity<V> {
     options: PassivityOptions,
@@ -130,6 +142,8 @@ pub(crate) struct PassivityOptions {
     pub(crate) is_on: bool,
     /// The stiffness at the device [N/m].
     pub(crate) stiffness: f64,
+    /// The largest force [N].
+    pub(crate) max_force: f64,
     /// The device's least damping [N·s/m].
     pub(crate) damping: f64,
     /// The device's mass [kg]; 0 if it is not known.
@@ -153,6 +167,7 @@ impl PassivityOptions {
 #[derive(Clone, Copy, Debug)]
 struct Last<V> {
     position: V,
+    effort: f64,
     wanted: V,
     written: V,
 }
@@ -186,7 +201,7 @@ impl<V: InnerProduct> Passivity<V> {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub(crate) fn in_units(&mut self, way: impl Fn(V) -> V, force: impl Fn(V) -> V) {
-        if let Some(Last { position, wanted, written }) = &mut self.last {
+        if let Some(Last { position, wanted, written, .. }) = &mut self.last {
             *position = way(*position);
             (*wanted, *written) = (force(*wanted), force(*written));
         }
@@ -210,17 +225,18 @@ impl<V: InnerProduct> Passivity<V> {
     fn limit(&mut self, wanted: V, state: &PortMotion<V>) -> V {
         let way = self.last.map_or(V::ZERO, |last| state.position - last.position);
         if let Some(last) = self.last {
-            self.observe(&last, wanted, way);
+            self.observe(&last, wanted, way, state);
         }
-        if state.has_start {
-            self.balance = self.balance.max(self.stored(wanted));
+        if state.is_rising {
+            self.credit(if wanted == V::ZERO { 0.0 } else { self.stored(state.effort) });
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
         let may_give = self.options.is_on && wanted != V::ZERO;
         let part = if may_give { self.part(wanted, held, way, state) } else { 1.0 };
         let changed = (part < 1.0).then(|| wanted * part);
         let allowed = self.report.effect.count(wanted, changed);
-        self.last = Some(Last { position: state.position, wanted, written: allowed });
+        let PortMotion { position, effort, .. } = *state;
+        self.last = Some(Last { position, effort, wanted, written: allowed });
         allowed
     }
 
@@ -246,8 +262,8 @@ impl<V: InnerProduct> Passivity<V> {
     }
 
     /// Updates the balance for the tick that ends now, in which the device moved by `way`.
-    fn observe(&mut self, last: &Last<V>, wanted: V, way: V) {
-        let PassivityOptions { damping, reserve, period, .. } = self.options;
+    fn observe(&mut self, last: &Last<V>, wanted: V, way: V, state: &PortMotion<V>) {
+        let PassivityOptions { damping, reserve, .. } = self.options;
         if [last.written, last.wanted, wanted] == [V::ZERO; 3] {
             // A zero force does no work and stores no energy.
             self.balance = self.balance.min(0.0);
@@ -262,28 +278,37 @@ impl<V: InnerProduct> Passivity<V> {
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
         self.balance -= given;
         if last.wanted != V::ZERO || wanted != V::ZERO {
-            let loss = damping * way.dot(way) / period;
+            let loss = damping * way.dot(way) / state.elapsed;
             self.leaks = MEMORY * self.leaks - 0.5 * (wanted - last.wanted).dot(way);
             self.losses = MEMORY * self.losses + loss;
             if self.is_covered() {
                 self.balance += loss;
             }
         }
-        let largest = if wanted.dot(wanted) > last.wanted.dot(last.wanted) {
-            wanted
-        } else {
-            last.wanted
-        };
-        self.balance = self.balance.min(self.stored(largest));
+        self.balance = self.balance.min(self.stored(state.effort.max(last.effort)));
         if !(self.balance.is_finite() && self.leaks.is_finite() && self.losses.is_finite()) {
             // Numbers overflowed: assume that no energy was taken in.
             (self.balance, self.leaks, self.losses) = (-reserve, 1.0, 0.0);
         }
     }
 
-    /// The energy of a spring of the material's stiffness at `force` [J].
-    fn stored(&self, force: V) -> f64 {
-        0.5 * force.dot(force) / self.options.stiffness
+    /// Raises the balance to `energy` [J], and forgets the leaks before: a force that was held in a
+    /// gap leaks whatever the material is.
+    fn credit(&mut self, energy: f64) {
+        (self.leaks, self.losses) = (0.0, 0.0);
+        let missing = energy - self.balance;
+        if missing > 0.0 {
+            self.report.credited += missing;
+            self.balance = energy;
+        }
+    }
+
+    /// The energy that a spring of the material's stiffness stores at a force, if it presses with no
+    /// more than the largest [J].
+    fn stored(&self, force: f64) -> f64 {
+        let PassivityOptions { stiffness, max_force, .. } = self.options;
+        let pressed = force.min(max_force);
+        (force - 0.5 * pressed) * pressed / stiffness
     }
 
     /// `true` if the device's own damping dissipates what the rendering leaks.
@@ -364,13 +389,20 @@ mod tests {
             damping: 1.0,
             mass: 0.1,
             max_rate: f64::INFINITY,
+            max_force: f64::INFINITY,
             reserve: 1e-4,
             period: 1e-3,
         });
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
         for (position, force) in held {
             let position = Vector([position, 0.0]);
-            let state = PortMotion { position, velocity: Vector::ZERO, has_start: false };
+            let state = PortMotion {
+                position,
+                velocity: Vector::ZERO,
+                effort: force,
+                is_rising: false,
+                elapsed: 1e-3,
+            };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));
         }

@@ -7,6 +7,7 @@ use crate::Accepted;
 use crate::channel::Channel;
 use crate::effect::Effect;
 use crate::passivity::PassivityReport;
+use crate::readings::ReadingsReport;
 
 /// Actions of every stage of a safety chain since it was made.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct SafetyReport {
     pub ticks: u64,
     /// The accepted stiffness and damping.
     pub impedance: Accepted,
+    /// Readings of the device that no hand can have made.
+    pub readings: ReadingsReport,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
     /// The slew limit. A tick counts twice if the force had to be limited again after the later
@@ -106,6 +109,12 @@ pub(crate) struct Effects {
 }
 
 impl SafetyReport {
+    /// This report with the readings that were held back before the chain.
+    #[must_use]
+    pub fn with_readings(self, readings: ReadingsReport) -> Self {
+        Self { readings, ..self }
+    }
+
     /// The report of a chain of forces.
     pub(crate) fn of<const D: usize>(
         accepted: &Accepted,
@@ -116,6 +125,7 @@ impl SafetyReport {
         Self {
             ticks: effects.ticks,
             impedance: accepted.clone(),
+            readings: ReadingsReport::default(),
             passivity,
             slew: effects.slew,
             force_limit: effects.force_limit,

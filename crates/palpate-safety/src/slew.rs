@@ -39,6 +39,11 @@ impl<const D: usize> SlewLimit<D> {
         }
     }
 
+    /// The last force [N].
+    pub(crate) fn last(&self) -> Vector<f64, D> {
+        self.last
+    }
+
     /// Forgets the last force: the next force starts from zero.
     pub(crate) fn restart(&mut self) {
         self.last = Vector::ZERO;

@@ -5,40 +5,55 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::num::NonZeroU32;
-
-use crate::ramp::Ramp;
-
 /// Lowers the force to zero while ticks are late.
 ///
-/// A force that is held for too long is stale. After a number of consecutive late ticks the
-/// force falls to zero; after as many ticks in time it rises again.
+/// A force that is held for too long is stale. The time by which ticks are late adds up, and each
+/// tick in time takes a period from the sum. When the sum reaches a limit, the force falls to
+/// zero; when it is back at zero, the force may rise again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watchdog {
-    limit: u32,
-    /// Consecutive ticks that contradict the present state.
-    contrary: u32,
-    tripped: bool,
-    ramp: Ramp,
+    /// The sum at which it trips [s].
+    limit: f64,
+    /// The duration of a tick [s].
+    period: f64,
+    /// The decrease of the factor in a tick.
+    fall: f64,
+    /// The sum of late times, at most `limit` [s].
+    late: f64,
+    is_tripped: bool,
+    factor: f64,
     trips: u64,
 }
 
 impl Watchdog {
-    pub(crate) fn new(limit: NonZeroU32, ramp: Ramp) -> Self {
-        Self { limit: limit.get(), contrary: 0, tripped: false, ramp, trips: 0 }
+    /// A watchdog that trips when ticks are late by `late_time` [s] together, and then lowers the
+    /// force to zero in `fall_time` [s], at `rate` [Hz].
+    pub(crate) fn new(late_time: f64, fall_time: f64, rate: f64) -> Self {
+        // A time of zero gives an infinite decrease.
+        let (limit, period, fall) = (late_time, 1.0 / rate, 1.0 / (fall_time * rate));
+        Self { limit, period, fall, late: 0.0, is_tripped: false, factor: 1.0, trips: 0 }
     }
 
-    /// The factor on the force in this tick.
+    /// One tick that is `late` by so much [s]; `true` if the watchdog trips in it.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn step(&mut self, is_late: bool) -> f64 {
-        self.contrary = if is_late == self.tripped { 0 } else { self.contrary + 1 };
-        if self.contrary >= self.limit {
-            self.tripped = is_late;
-            self.contrary = 0;
-            self.trips += u64::from(is_late);
-        }
-        self.ramp.step(!self.tripped)
+    pub(crate) fn step(&mut self, late: f64) -> bool {
+        // Written so that NaN counts as late.
+        let change = if late <= 0.0 { -self.period } else { late };
+        let sum = self.late + change;
+        self.late = if sum < self.limit { sum.max(0.0) } else { self.limit };
+        let was_tripped = self.is_tripped;
+        self.is_tripped = self.late >= self.limit || was_tripped && self.late > 0.0;
+        self.factor = if self.is_tripped { (self.factor - self.fall).max(0.0) } else { 1.0 };
+        let trips = self.is_tripped && !was_tripped;
+        self.trips += u64::from(trips);
+        trips
+    }
+
+    /// The factor on the force in this tick: it falls while ticks are late. After them it is one
+    /// at once, because the force [rises](crate::rise::Rise) from where it fell to.
+    pub(crate) fn factor(&self) -> f64 {
+        self.factor
     }
 
     /// The number of times the watchdog tripped.
@@ -51,13 +66,28 @@ impl Watchdog {
 mod tests {
     use super::*;
 
+    fn factors(dog: &mut Watchdog, late: &[f64]) -> Vec<f64> {
+        let step = |late: &f64| {
+            dog.step(*late);
+            dog.factor()
+        };
+        late.iter().map(step).collect()
+    }
+
     #[test]
-    fn it_trips_after_late_ticks_in_a_row_and_recovers() {
-        let ramp = Ramp::new(1.0, 2.0, 2.0, 1.0);
-        let mut dog = Watchdog::new(NonZeroU32::new(2).unwrap(), ramp);
-        let late = [true, false, true, true, false, true, false, false, false, false];
-        let parts = late.map(|is_late| dog.step(is_late));
-        assert_eq!(parts, [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0]);
+    fn it_trips_after_late_time_and_recovers_after_as_much_in_time() {
+        let mut dog = Watchdog::new(2.0, 2.0, 1.0);
+        let late = [1.0, 0.0, 1.5, 0.5, 0.0, 1.5, 0.0, 0.0, 0.0];
+        assert_eq!(factors(&mut dog, &late), [1.0, 1.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0]);
         assert_eq!(dog.trips(), 1);
+    }
+
+    /// A stall counted as one late tick, however long it lasted.
+    #[test]
+    fn a_stall_counts_by_its_time() {
+        let mut dog = Watchdog::new(0.005, 0.0, 1000.0);
+        assert!(dog.step(0.03));
+        assert_eq!(factors(&mut dog, &[0.0; 6]), [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+        assert!(dog.step(f64::NAN));
     }
 }

@@ -86,8 +86,8 @@ pub struct WrenchState<const D: usize> {
     pub velocity: SpatialVector<D>,
     /// As [`PortState::free_force`](crate::PortState::free_force).
     pub free_force: Vector<f64, D>,
-    /// Whether the tick began too late.
-    pub is_late: bool,
+    /// By how much the tick began too late [s]; zero in time.
+    pub late: f64,
 }
 
 /// The safety chain of a device with rotation: [`SafetyChain`](crate::SafetyChain) for a force
@@ -182,6 +182,8 @@ impl<const D: usize> WrenchChain<D> {
         let passivity = PassivityOptions {
             is_on: options.has_passivity_control && damping < f64::INFINITY,
             stiffness,
+            // Force and torque have limits of their own, which a tool applies before.
+            max_force: f64::INFINITY,
             damping,
             mass,
             max_rate,
@@ -193,8 +195,8 @@ impl<const D: usize> WrenchChain<D> {
             sides,
             unit,
             passivity: Passivity::new(passivity),
-            force: Channel::new(along, options, rate)?,
-            torque: Channel::new(about, options, rate)?,
+            force: Channel::new(along, options, 1.0, rate)?,
+            torque: Channel::new(about, options, unit, rate)?,
             largest_torque: 0.0,
         })
     }
@@ -248,19 +250,27 @@ impl<const D: usize> WrenchChain<D> {
         cut: f64,
         state: &WrenchState<D>,
     ) -> SpatialVector<D> {
-        let WrenchState { position, velocity, free_force, is_late } = *state;
+        let WrenchState { position, velocity, free_force, late } = *state;
         // Stages with a state never see numbers that are not finite; the guards then write
         // zero.
         let is_sound = [wanted, position, velocity].iter().all(SpatialVector::is_finite)
             && free_force.is_finite();
         let unit = self.unit;
         let (position, velocity) = (position.turning(unit), velocity.turning(unit));
-        let seen = PortMotion { position, velocity, has_start: false };
+        let effort = wanted.turning(1.0 / unit).norm();
+        let input = TickInput { is_sound, late, start: 1.0, cut };
+        let along = self.force.risen(wanted.along, free_force, &input);
+        let about = self.torque.risen(wanted.about, Vector::ZERO, &input);
+        let is_rising = along.is_some() || about.is_some();
+        let (along, about) = (along.unwrap_or(1.0), about.unwrap_or(1.0));
+        let free_force = free_force * along;
+        let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
+        let elapsed = self.passivity.options().period + late.max(0.0);
+        let seen = PortMotion { position, velocity, effort, is_rising, elapsed };
         let as_lengths = wanted.turning(1.0 / unit);
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
-        let input = TickInput { is_sound, is_late, start: 1.0, cut };
         let (along, force_left) = self.force.step(allowed.along, free_force, &input);
         let input = TickInput { cut: 0.0, ..input };
         let (about, torque_left) = self.torque.step(allowed.about, Vector::ZERO, &input);

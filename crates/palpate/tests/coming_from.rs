@@ -32,7 +32,8 @@ fn chai3d() -> Outcome {
     let _ = Proxy::<3>::new(Probe::default());
     let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
     let _ = Material::magnet();
-    let _: Protection<3> = Protection::new(profile).with_rise_time(0.2);
+    let _: Protection<3> =
+        Protection::new(profile).with_recovery(palpate::haptics::Recovery::OnceOut);
     let _ = Shape::sphere(0.05)?;
     let mut servo = Servo::for_device(bodies, &device)?;
     let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];

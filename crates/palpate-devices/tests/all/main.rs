@@ -7,5 +7,6 @@
 #![expect(clippy::float_cmp, reason = "tests compare exact numbers")]
 
 mod integration;
+mod recovery;
 mod stability;
 mod turning;

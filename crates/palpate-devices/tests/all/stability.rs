@@ -176,7 +176,7 @@ fn given_by_a_stiff_wall(profile: &DeviceProfile, grip: f64, height: f64) -> (f6
         .protected(
             &Protection::new(profile.clone())
                 .with_acceptance(Acceptance::AsIs)
-                .with_rise_time(0.0),
+                .with_rise_rate(f64::INFINITY),
         )
         .unwrap();
     assert_eq!(servo.accepted()[0].stiffness_factor, 1.0);

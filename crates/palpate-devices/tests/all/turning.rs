@@ -305,8 +305,9 @@ impl Leaning {
     fn new(part: f64, acceptance: Acceptance) -> Self {
         let (stiffness, angular) = (2.0 / PERIOD, 2.0 * DAMPING / PERIOD);
         let servo = on_ground(part * stiffness, part * angular);
-        let protection =
-            Protection::new(profile()).with_acceptance(acceptance).with_rise_time(0.0);
+        let protection = Protection::new(profile())
+            .with_acceptance(acceptance)
+            .with_rise_rate(f64::INFINITY);
         let servo = servo.protected(&protection).unwrap();
         let hand = Hand::resting(Vector([0.0, 0.015, 0.0])).unwrap().with_mass(0.02).unwrap();
         let hand = hand.with_spring(100.0, 1.0).unwrap().with_push(Vector([0.1, -1.0, 0.0]));

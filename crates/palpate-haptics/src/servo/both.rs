@@ -44,11 +44,12 @@ macro_rules! methods_of_both {
                 self.renderer.guide(guides);
             }
 
-            /// Sets whether the next tick starts too late.
+            /// Sets by how much the next tick starts too late [s]; zero in time. A servo loop calls
+            /// this before each tick that starts more than a period after its time.
             ///
             /// Real-time: allocates nothing, takes no lock, cannot panic.
-            pub fn set_late(&mut self, is_late: bool) {
-                self.renderer.set_late(is_late);
+            pub fn set_late(&mut self, late: f64) {
+                self.renderer.set_late(late);
             }
 
             /// Stops all forces and torques from the next tick on, or releases them: they then

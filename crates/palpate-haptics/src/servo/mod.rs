@@ -50,7 +50,7 @@ use palpate_safety::{Accepted, Device, PointState};
 /// let profile = DeviceProfile::unlimited("example").with_max_force(1.0);
 /// let options = ServoOptions::default().with_probe(Probe::new(0.0)?);
 /// let mut servo = UnprotectedServo::new(bodies, 1, options)?
-///     .protected(&Protection::new(profile).with_rise_time(0.0))?;
+///     .protected(&Protection::new(profile).with_rise_rate(f64::INFINITY))?;
 /// servo.step(&[PointState::at_rest(Vector([0.0, 1.0]))]);
 /// servo.step(&[PointState::at_rest(Vector([0.0, 0.5 - 1.0 / 256.0]))]);
 /// assert!((servo.touches()[0].wanted - Vector([0.0, 2.0])).norm() < 1e-4); // 2 N are wanted

@@ -100,7 +100,7 @@ impl<const D: usize> Renderer<D> {
             setting: Setting {
                 options,
                 map: WorkspaceMap::default(),
-                is_late: false,
+                late: 0.0,
                 rise_step: 1.0 / (rate * rise_time),
             },
             is_stopped: false,
@@ -231,7 +231,9 @@ impl<const D: usize> Renderer<D> {
     pub fn safety(&self) -> Vec<SafetyReport> {
         let port = self.coupled_tool().and_then(|coupled| coupled.port.as_ref());
         if let Some(chain) = port.and_then(|port| port.chain.as_ref()) {
-            return vec![chain.report()];
+            let port = self.contacts.points.first().and_then(|point| point.port.as_ref());
+            let readings = port.map(Port::readings).unwrap_or_default();
+            return vec![chain.report().with_readings(readings)];
         }
         self.contacts
             .points
@@ -291,8 +293,8 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
-    pub(crate) fn set_late(&mut self, is_late: bool) {
-        self.setting.is_late = is_late;
+    pub(crate) fn set_late(&mut self, late: f64) {
+        self.setting.late = late;
     }
 
     pub(crate) fn stop(&mut self, is_stopped: bool) {
@@ -413,10 +415,11 @@ impl<const D: usize> Renderer<D> {
         let points = points.iter_mut().zip(touches).zip(forces);
         for (index, ((point, touch), force)) in points.enumerate() {
             *force = point.tick(tick.of_point(index as u32), state(states, index), touch);
-            let touched = nearby.body(touch.body).filter(|_| touch.contact);
-            let reaction = reactions.get_mut(touch.body as usize);
-            if let Some((body, reaction)) = touched.zip(reaction) {
-                reaction.add(-touch.wanted, touch.proxy - body.world_from_body().translation);
+            for (index, push) in point.pushes(touch) {
+                let reaction = reactions.get_mut(index as usize);
+                if let Some((body, reaction)) = nearby.body(index).zip(reaction) {
+                    reaction.add(-push, touch.proxy - body.world_from_body().translation);
+                }
             }
         }
         bodies.put_back(list, reactions);

@@ -21,7 +21,7 @@ use palpate_safety::{Impedance, NumberError};
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};
 pub(crate) use ripples::Ripples;
-pub(crate) use strata::{Friction, Strata};
+pub(crate) use strata::{Friction, Strata, Stratum};
 
 /// The distance at which the curvature below a texture is measured, as a part of the
 /// wavelength: truncation and rounding then stay far below a nanojoule.

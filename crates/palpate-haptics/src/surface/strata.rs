@@ -14,7 +14,7 @@ use palpate_safety::{Impedance, NumberError};
 const LEAST_STIFFNESS: f64 = 1e-9;
 
 /// Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Friction {
     /// Largest ratio of tangential to normal force while sticking.
     pub(crate) fixed: f64,

@@ -12,6 +12,7 @@ mod bends;
 mod bodies;
 mod continuity;
 mod corners;
+mod creases;
 mod degenerate;
 mod effects;
 mod energy;

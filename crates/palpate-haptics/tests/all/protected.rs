@@ -129,7 +129,7 @@ fn a_loop_of_ones_own_keeps_the_limits_and_stops() {
             _ => {}
         }
         // A tick in a hundred is late.
-        servo.set_late(tick % 100 == 0);
+        servo.set_late(if tick % 100 == 0 { 0.002 } else { 0.0 });
         end.receive(&mut servo);
         servo.step(&[PointState::at_rest(Fragile::place(tick))]);
         device.write(servo.forces()).unwrap();

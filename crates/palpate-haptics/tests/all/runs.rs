@@ -406,7 +406,7 @@ fn an_interrupted_run_ends_before_its_next_tick_with_no_force() {
     let protection = Protection::new(device.profile().clone());
     let options = ServoOptions::default().with_probe(Probe::new(0.0).unwrap());
     let servo = UnprotectedServo::new(half_space([0.0, 1.0], 0.0), 1, options).unwrap();
-    let mut servo = servo.protected(&protection.with_rise_time(0.0)).unwrap();
+    let mut servo = servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap();
     let options = fast(4.0).with_interrupt(&left);
     let report = run(&mut servo, &mut device, options).unwrap();
     assert_eq!(report.ending, Ending::Interrupted);

@@ -4,7 +4,7 @@
 //! The safety chain: every stage acts where it must and nowhere else; no wall gives energy out.
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-use crate::common::{cases, vector};
+use crate::common::{cases, unit, vector};
 use assert_no_alloc::assert_no_alloc;
 use palpate_field::Vector;
 use palpate_haptics::{
@@ -28,7 +28,7 @@ fn device() -> DeviceProfile {
 fn at_once(stiffness: f64) -> SafetyOptions {
     let impedance = Impedance::new(stiffness, 0.0).unwrap();
     let acceptance = Acceptance::AsIs;
-    SafetyOptions::new(impedance).with_rise_time(0.0).with_acceptance(acceptance)
+    SafetyOptions::new(impedance).with_rise_rate(f64::INFINITY).with_acceptance(acceptance)
 }
 
 fn chain<const D: usize>(device: &DeviceProfile, options: SafetyOptions) -> SafetyChain<D> {
@@ -212,7 +212,7 @@ fn a_material_that_was_accepted_is_never_touched() {
                 .with_least_damping(0.5)
                 .with_encoder_step(encoder_step);
             let wanted = SafetyOptions::new(Impedance::new(stiffness, damping).unwrap());
-            let mut chain = chain::<2>(&device, wanted.with_rise_time(0.0));
+            let mut chain = chain::<2>(&device, wanted.with_rise_rate(f64::INFINITY));
             let impedance = chain.accepted().impedance;
             let mut estimator = VelocityEstimator::new(RATE, encoder_step).unwrap();
             let mut plant = Plant { mass: 0.05, damping: 0.5, x: 0.01, v: 0.0 };
@@ -279,6 +279,7 @@ fn what_is_placed_inside_a_passive_shape_is_pushed_out_in_full() {
     let pushed_out = |is_placed: bool| {
         let mut chain = chain::<2>(&device, at_once(500.0));
         let mut plant = Plant { mass: 0.05, damping: 0.5, x: -0.002, v: 0.0 };
+        let _ = chain.step(Vector::ZERO, &at([0.0, plant.x]));
         for tick in 0..100 {
             let velocity = Vector([0.0, plant.v]);
             let start = if is_placed && tick == 0 { 0.0 } else { 1.0 };
@@ -322,7 +323,7 @@ fn where_nothing_is_wrong_nothing_is_changed() {
 
 #[test]
 fn every_stage_can_be_made_to_act() {
-    let options = SafetyOptions::new(Impedance::default()).with_rise_time(0.01);
+    let options = SafetyOptions::new(Impedance::default()).with_rise_rate(100.0);
     let impedance = Impedance::new(4000.0, 0.0).unwrap();
     // The controller would not let a force rise that far on a hand at rest.
     let stiff = options.with_impedance(impedance).with_passivity_control(false);
@@ -333,11 +334,12 @@ fn every_stage_can_be_made_to_act() {
     };
     // The start's ramp; the slew limit; the largest force; then the continuous one.
     assert_eq!(run(1, [0.0, 1.0], at([0.0, 0.0])), Vector([0.0, 0.1]));
+    assert_eq!(run(20, [0.0, 1.0], at([0.0, 0.0])), Vector([0.0, 1.0]));
     assert_eq!(run(20, [6.0, 8.0], at([0.0, 0.0])), Vector([4.8, 6.4]));
     assert!(run(20_000, [6.0, 8.0], at([0.0, 0.0])).norm() < 2.2);
     // The guard; the watchdog; the emergency stop.
     assert_eq!(run(1, [1.0, f64::NAN], at([0.0, 0.0])), Vector::ZERO);
-    let late = PortState { is_late: true, ..at([0.0, 0.0]) };
+    let late = PortState { late: 2.0 * PERIOD, ..at([0.0, 0.0]) };
     assert_eq!(run(50, [1.0, 0.0], late), Vector::ZERO);
     assert_eq!(run(50, [1.0, 0.0], at([0.0, 0.0])), Vector([1.0, 0.0]));
     chain.stop();
@@ -366,7 +368,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
     cases(60, |u| {
         let device = device();
         let impedance = Impedance::new(f64::from(u.int_in_range(1..=5000)?), 0.0).unwrap();
-        let options = SafetyOptions::new(impedance).with_rise_time(0.05);
+        let options = SafetyOptions::new(impedance).with_rise_rate(200.0);
         let acceptance =
             *u.choose(&[Acceptance::Passive, Acceptance::Device, Acceptance::AsIs])?;
         let mut chain = chain::<3>(&device, options.with_acceptance(acceptance));
@@ -375,7 +377,7 @@ fn whatever_comes_in_the_force_is_finite_and_within_every_limit() {
             let mut wanted = vector(u)? * 20.0;
             let mut state = at((vector::<3>(u)? * 0.01).0);
             state.velocity = vector(u)?;
-            state.is_late = u.ratio(1, 3)?;
+            state.late = if u.ratio(1, 3)? { 0.01 * unit(u)? } else { 0.0 };
             state.start = if u.ratio(1, 50)? { *u.choose(&wild)? } else { 1.0 };
             if u.ratio(1, 10)? {
                 let (axis, value) = (u.int_in_range(0..=2)?, *u.choose(&wild)?);

@@ -60,7 +60,8 @@ fn servos() -> Vec<(&'static str, Box<dyn AnyServo<3>>)> {
         .with_probe(Probe::new(0.0).unwrap())
         .with_max_force(f64::INFINITY);
     let plain = UnprotectedServo::new(of_stiffness(100.0), 1, options).unwrap();
-    let protection = Protection::new(DeviceProfile::unlimited("example"));
+    let protection = Protection::new(DeviceProfile::unlimited("example"))
+        .with_rise_rate(10.0 * 800.0 * DEPTH);
     let protected = plain.clone().protected(&protection).unwrap();
     let tool = coupling().with_stiffness(1000.0).with_damping(0.0);
     let tool = Tool::new(Shell::ball(1e-6).unwrap(), tool).unwrap();

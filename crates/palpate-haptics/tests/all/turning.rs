@@ -138,7 +138,7 @@ fn the_workspace_turns_what_turns_and_shortens_arms() {
     let map = WorkspaceMap::new(Pose::rotation(rotation), 2.0).unwrap();
     let profile = device(TurningProfile::unlimited());
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(profile).with_map(map).with_rise_time(0.0);
+    let protection = Protection::new(profile).with_map(map).with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let at_device = |height: f64| map.point_to_device(up(height));
     // In the world turned by −0.3, so by −0.8 against the device's axes.
@@ -163,7 +163,7 @@ fn device(turning: TurningProfile) -> DeviceProfile {
 /// The same servo for a device that it moves from the first tick on.
 fn for_device(servo: UnprotectedServo<3>, device: &dyn Device<3>) -> Servo<3> {
     let protection = Protection::new(device.profile().clone());
-    servo.protected(&protection.with_rise_time(0.0)).unwrap()
+    servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap()
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn a_softer_coupling_turns_the_hand_less() {
     let servo = servo::<3>(rigid(), coupling());
     let protection = Protection::new(device(turning))
         .with_acceptance(Acceptance::Passive)
-        .with_rise_time(0.0);
+        .with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted()[1].stiffness_factor, 0.25);
     // Pressed flat by so much that the rod stays level: κ/4 times the angle.
@@ -253,7 +253,7 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
                 orientation: Rotation::identity().turned(axis * swing),
                 angular_velocity: Vector([spin, 0.0, 0.0]),
             }));
-            servo.set_late((1000..1010).contains(&tick));
+            servo.set_late(if (1000..1010).contains(&tick) { 0.002 } else { 0.0 });
             if tick == 2000 {
                 servo.stop(true);
             } else if tick == 2100 {
@@ -286,14 +286,15 @@ fn torques_keep_the_limits_of_the_device_in_any_motion() {
 fn the_largest_torque_keeps_its_direction() {
     let turning = TurningProfile::unlimited().with_max_torque(0.125);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning)).with_rise_time(0.0);
+    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, torque) = brought(&mut servo, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((torque - Vector([0.0, 0.0, 0.125])).norm() < 1e-9, "{torque:?}");
     let planar = self::servo::<2>(rigid(), coupling());
     let turning = TurningProfile::unlimited().with_max_torque(0.125);
-    let mut planar =
-        planar.protected(&Protection::new(device(turning)).with_rise_time(0.0)).unwrap();
+    let mut planar = planar
+        .protected(&Protection::new(device(turning)).with_rise_rate(f64::INFINITY))
+        .unwrap();
     let (_, flat) = brought(&mut planar, (up(0.1), up(-0.02)), Vector([0.0, 0.0, -0.2]));
     assert!((flat - torque).norm() < 1e-9, "{flat:?}");
     let report = servo.safety()[0].clone();
@@ -311,7 +312,7 @@ fn the_energy_of_force_and_torque_is_counted_together() {
     let turning = TurningProfile::unlimited().with_least_damping(2e-3).with_inertia(1e-3);
     let profile = device(turning).with_least_damping(0.5).with_mass(0.1);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(profile).with_rise_time(0.0);
+    let protection = Protection::new(profile).with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     assert!(servo.accepted().iter().all(|a| a.stiffness_factor == 1.0));
     let mut given = 0.0;
@@ -345,7 +346,7 @@ fn dampers_of_bodies_turn_the_hand_no_harder_than_the_device_bears() {
     let turning = TurningProfile::unlimited().with_least_damping(2e-3);
     let material = Material { damping: 2.0, viscosity: 0.0, ..rigid() };
     let servo = servo::<3>(material, coupling());
-    let protection = Protection::new(device(turning)).with_rise_time(0.0);
+    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     let (_, still) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let state = PointState::at_rest(up(0.01));
@@ -452,7 +453,7 @@ fn a_device_that_is_lost_or_panics_gets_no_force_and_no_torque_last() {
 fn a_device_that_senses_turns_alone_gets_none_of_the_torque() {
     let turning = TurningProfile::unlimited().with_max_torque(0.0).with_encoder_step(UNHURRIED);
     let servo = servo::<3>(rigid(), coupling());
-    let protection = Protection::new(device(turning)).with_rise_time(0.0);
+    let protection = Protection::new(device(turning)).with_rise_rate(f64::INFINITY);
     let mut servo = servo.protected(&protection).unwrap();
     assert_eq!(servo.accepted().len(), 1);
     let (force, torque) = brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
@@ -534,7 +535,8 @@ fn another_thread_limits_and_stops_the_torque() {
 fn a_device_that_no_longer_says_how_it_is_turned_gets_no_torque() {
     let servo = servo::<3>(rigid(), coupling());
     let profile = device(limits()).with_max_force_rate(50.0);
-    let mut servo = servo.protected(&Protection::new(profile).with_rise_time(0.0)).unwrap();
+    let mut servo =
+        servo.protected(&Protection::new(profile).with_rise_rate(f64::INFINITY)).unwrap();
     brought(&mut servo, (up(0.1), up(0.01)), Vector([0.0, 0.0, -0.3]));
     let (mut force, mut torque) = (servo.forces()[0], servo.torque());
     assert!(torque.norm() > 0.01);

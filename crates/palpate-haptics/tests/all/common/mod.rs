@@ -125,7 +125,7 @@ impl<const D: usize> AnyServo<D> for UnprotectedServo<D> {
 /// The same servo for a device without limits: what it wants is given, from the first tick on.
 pub(crate) fn without_limits<const D: usize>(servo: UnprotectedServo<D>) -> Servo<D> {
     let protection = Protection::new(DeviceProfile::unlimited("without limits"));
-    servo.protected(&protection.with_rise_time(0.0)).unwrap()
+    servo.protected(&protection.with_rise_rate(f64::INFINITY)).unwrap()
 }
 
 pub(crate) fn proxy<const D: usize>(radius: f64) -> Proxy<D> {
