@@ -313,7 +313,10 @@ mod tests {
                     let part = f64::from(step) / 50.0;
                     let time = times[i] + (times[i + 1] - times[i]) * part;
                     let Vector([x, y]) = path.state_at(time).position;
-                    assert!((least..=most).contains(&x), "seed {seed}, {time} s: {x} of {pair:?}");
+                    assert!(
+                        (least..=most).contains(&x),
+                        "seed {seed}, {time} s: {x} of {pair:?}"
+                    );
                     assert!((y + 2.0 * x).abs() < 1e-15, "seed {seed}, {time} s: {x}, {y}");
                     let x = smooth.state_at(time).position[0];
                     has_smooth_left |= !(least - 0.01..=most + 0.01).contains(&x);

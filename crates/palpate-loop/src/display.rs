@@ -41,11 +41,7 @@ impl Display for RunReport {
         if self.rows_dropped > 0 {
             write!(f, "; {} rows lost", self.rows_dropped)?;
         }
-        if self.is_released {
-            Ok(())
-        } else {
-            write!(f, "; {NOT_RELEASED}")
-        }
+        if self.is_released { Ok(()) } else { write!(f, "; {NOT_RELEASED}") }
     }
 }
 
@@ -61,7 +57,10 @@ impl Display for GuideReport {
         if *time == 0.0 {
             return write!(f, "a {kind}, did not hold the hand");
         }
-        write!(f, "a {kind}, held the hand for {time:.3} s with at most {largest_force:.3} N; ")?;
+        write!(
+            f,
+            "a {kind}, held the hand for {time:.3} s with at most {largest_force:.3} N; "
+        )?;
         let [taken, given] = [taken, given].map(|energy| 1e3 * energy);
         write!(f, "{taken:.3} mJ taken from the hand, {given:.3} mJ given")
     }

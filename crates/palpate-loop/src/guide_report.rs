@@ -45,8 +45,10 @@ pub(crate) struct GuideTally<const D: usize> {
 impl<const D: usize> GuideTally<D> {
     pub(crate) fn new(servo: &Servo<D>) -> Self {
         let (points, guides) = (servo.touches().len(), servo.guides(0).len());
-        let report =
-            |guide: &Guide<D>| GuideReport { kind: guide.kind_name(), ..GuideReport::default() };
+        let report = |guide: &Guide<D>| GuideReport {
+            kind: guide.kind_name(),
+            ..GuideReport::default()
+        };
         Self {
             reports: servo.guides(0).iter().map(report).collect(),
             ticks: vec![0; guides],

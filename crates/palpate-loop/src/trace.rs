@@ -149,9 +149,13 @@ impl<'a, const D: usize, W: io::Write> TraceWriter<'a, D, W> {
     fn write_names(&mut self, columns: Columns) -> io::Result<Columns> {
         self.field("time_s")?;
         self.field("point")?;
-        for (vector, unit) in
-            [("device", "_m"), ("proxy", "_m"), ("wanted", "_n"), ("force", "_n"), ("normal", "")]
-        {
+        for (vector, unit) in [
+            ("device", "_m"),
+            ("proxy", "_m"),
+            ("wanted", "_n"),
+            ("force", "_n"),
+            ("normal", ""),
+        ] {
             self.names(&format!("{vector}_"), &AXES[..D], unit)?;
         }
         self.fields(["contact", "body", "slipping", "taken_j", "given_j", "kept_j"])?;

@@ -75,7 +75,7 @@ fn openhaptics() -> Outcome {
     assert!(servo.accepted()[0].stiffness_factor <= 1.0);
     assert_eq!(servo.safety().len(), 1);
     let _ = WorkspaceMap::fitting(bounds, profile.workspace_radius)?;
-    let _ = GuideOptions { snap_distance: 0.01, ..GuideOptions::default() };
+    let _ = GuideOptions::default().with_snap_distance(0.01);
     let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
     let mut thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;

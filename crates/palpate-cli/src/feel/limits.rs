@@ -39,9 +39,8 @@ pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
     const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer contact points";
     if count > MOST_ROWS {
-        let problem = format!(
-            "--plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}"
-        );
+        let problem =
+            format!("--plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}");
         return Err(Failure::input(problem));
     }
     let rows = count.max(0.0).ceil() as usize;

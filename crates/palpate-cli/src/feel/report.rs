@@ -8,7 +8,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface,
+    Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface, Texture,
+    TextureKind,
 };
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::RunReport;
@@ -202,7 +203,33 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
              and in the coordinates of the scene?"
         )?;
     }
+    write_textures(out, felt)?;
     write!(out, "{report:#}")
+}
+
+/// A line for each body whose waves the contact points were too large or too deep to follow.
+fn write_textures<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    let Felt { report, servo, scene, .. } = felt;
+    if report.tool.is_some() || report.contact_time == 0.0 {
+        return Ok(());
+    }
+    let reach = servo.options().probe.radius() + report.largest_depth;
+    for body in &scene.bodies {
+        let texture = body.material.texture.as_ref();
+        let texture = texture.filter(|texture| texture.kind == TextureKind::Displacement);
+        let Some(radius) = texture.map(Texture::valley_radius) else { continue };
+        if radius < reach {
+            let [radius, reach] = [radius, reach].map(|length| rounded(1e3 * length));
+            writeln!(
+                out,
+                "  texture        the valleys of body \"{}\" have a radius of {radius} mm, less than \
+                 probe and depth together, {reach} mm: waves may be skipped; lower their amplitude, \
+                 or use kind \"height\"",
+                shown(&body.name),
+            )?;
+        }
+    }
+    Ok(())
 }
 
 /// Why stiffness and damping are less than what is asked for.

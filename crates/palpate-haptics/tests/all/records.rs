@@ -12,8 +12,8 @@ use palpate_devices::{HandPath, Interpolation, RecordedDevice};
 use palpate_field::{Point, Vector};
 use palpate_haptics::{Device, DeviceLost, DeviceProfile, PointState, Servo};
 use palpate_loop::{
-    Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, TraceRow, VirtualClock, run,
-    run_on,
+    Ending, Pace, Recorder, RunOptions, ServoThread, ThreadOptions, TraceRow, VirtualClock,
+    run, run_on,
 };
 
 /// Two contact points on their way into a ball, for a second.
@@ -99,8 +99,7 @@ impl Device<3> for Unplugged {
 #[test]
 fn a_thread_keeps_the_rows_before_its_device_was_lost() {
     let device = Box::new(Unplugged(device()));
-    let options =
-        ThreadOptions::default().with_raised_priority(false).with_recorder(1000);
+    let options = ThreadOptions::default().with_raised_priority(false).with_recorder(1000);
     let servo = servo(&*device);
     let thread = ServoThread::start_on(VirtualClock::new(), servo, device, options).unwrap();
     let ended = thread.join();
@@ -115,9 +114,8 @@ fn a_thread_keeps_the_rows_before_its_device_was_lost() {
 fn a_thread_whose_rows_are_taken_meanwhile_loses_none() {
     let mut in_call = device();
     let mut recorder = Recorder::new(2000);
-    let options = RunOptions::new(1.0)
-        .with_pace(Pace::AsFastAsPossible)
-        .with_recorder(&mut recorder);
+    let options =
+        RunOptions::new(1.0).with_pace(Pace::AsFastAsPossible).with_recorder(&mut recorder);
     run(&mut servo(&in_call), &mut in_call, options).unwrap();
 
     let device = Box::new(device());
