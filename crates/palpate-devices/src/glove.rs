@@ -10,6 +10,7 @@ use crate::hand_path::HandPath;
 use palpate_field::Vector;
 use palpate_haptics::{Device, DeviceLost, DeviceProfile, NumberError, PointState};
 use palpate_safety::internal::limited;
+use palpate_vibration::Actuator;
 
 /// A glove, whose fingers follow hand paths whatever they touch; each finger is a contact
 /// point.
@@ -58,6 +59,15 @@ struct Finger<const D: usize> {
     limit: f64,
     /// The force written last, clamped to the limit [N].
     force: Vector<f64, D>,
+    /// What shakes it.
+    actuator: Option<Actuator>,
+}
+
+impl<const D: usize> Finger<D> {
+    /// A finger without force feedback and actuator.
+    fn new(path: HandPath<D>, offset: Vector<f64, D>) -> Self {
+        Self { path, offset, limit: 0.0, force: Vector::ZERO, actuator: None }
+    }
 }
 
 impl<const D: usize> Glove<D> {
@@ -67,9 +77,7 @@ impl<const D: usize> Glove<D> {
     ///
     /// [`DeviceError::NoContactPoint`] if there are no paths.
     pub fn new(paths: Vec<HandPath<D>>) -> Result<Self, DeviceError> {
-        let finger =
-            |path| Finger { path, offset: Vector::ZERO, limit: 0.0, force: Vector::ZERO };
-        Self::of(paths.into_iter().map(finger).collect())
+        Self::of(paths.into_iter().map(|path| Finger::new(path, Vector::ZERO)).collect())
     }
 
     /// A glove whose fingers keep their `offsets` [m] from the path of one hand, without force
@@ -86,13 +94,7 @@ impl<const D: usize> Glove<D> {
         for component in offsets.iter().flat_map(|offset| offset.0) {
             NumberError::check_not_negative("finger offset", component.abs(), "m")?;
         }
-        let finger = |offset: &Vector<f64, D>| Finger {
-            path: hand.clone(),
-            offset: *offset,
-            limit: 0.0,
-            force: Vector::ZERO,
-        };
-        Self::of(offsets.iter().map(finger).collect())
+        Self::of(offsets.iter().map(|offset| Finger::new(hand.clone(), *offset)).collect())
     }
 
     fn of(fingers: Vec<Finger<D>>) -> Result<Self, DeviceError> {
@@ -121,6 +123,40 @@ impl<const D: usize> Glove<D> {
         }
         self.profile.max_force = limits.iter().copied().fold(0.0, f64::max);
         Ok(self)
+    }
+
+    /// This glove with an actuator in each finger, which shakes it.
+    ///
+    /// The glove says what shakes; a `Synthesiser` for that actuator makes what it plays:
+    ///
+    /// ```
+    /// use palpate_devices::{Glove, HandPath, Interpolation};
+    /// use palpate_field::Vector;
+    /// use palpate_vibration::{Mapping, MappingOptions, Synthesiser, actuator_named};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![Vector([0.0, 0.1, 0.0]), Vector([0.0, 0.0, 0.0])];
+    /// let hand = HandPath::new(vec![0.0, 1.0], ends, Interpolation::Linear)?;
+    /// let glove = Glove::new(vec![hand])?.with_actuator(actuator_named("lra")?);
+    ///
+    /// let Some(Some(actuator)) = glove.actuators().next() else { unreachable!() };
+    /// let mapping = Mapping::new(actuator.options(MappingOptions::default()))?;
+    /// let synthesiser = Synthesiser::for_actuator(&mapping, actuator, 8000.0, 1)?;
+    /// assert_eq!(synthesiser.sample_rate(), 8000.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_actuator(mut self, actuator: Actuator) -> Self {
+        for finger in &mut self.fingers {
+            finger.actuator = Some(actuator.clone());
+        }
+        self
+    }
+
+    /// The actuator in each finger; `None` in a finger without one.
+    pub fn actuators(&self) -> impl Iterator<Item = Option<&Actuator>> {
+        self.fingers.iter().map(|finger| finger.actuator.as_ref())
     }
 
     /// Both gloves as one device: the fingers of this one, then those of `other`.
@@ -186,6 +222,18 @@ mod tests {
         glove.write(&[Vector([3.0, -4.0]); 3]).unwrap();
         let forces: Vec<_> = glove.forces().collect();
         assert_eq!(forces, [Vector([0.6, -0.8]), Vector([0.0, 0.0]), Vector([1.5, -2.0])]);
+    }
+
+    #[test]
+    fn joined_gloves_keep_their_actuators() {
+        let [lra, erm] =
+            ["lra", "erm"].map(|name| palpate_vibration::actuator_named(name).unwrap());
+        let glove = || Glove::new(vec![path(0.1)]).unwrap();
+        let both =
+            glove().with_actuator(lra.clone()).joined(glove().with_actuator(erm.clone()));
+        let both = both.joined(glove());
+        let actuators: Vec<_> = both.actuators().collect();
+        assert_eq!(actuators, [Some(&lra), Some(&erm), None]);
     }
 
     #[test]

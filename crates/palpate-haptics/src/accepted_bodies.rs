@@ -118,6 +118,7 @@ impl<const D: usize> Protection<D> {
         mut coupling: Coupling,
         rate: f64,
     ) -> Result<(Bodies<D>, Coupling, Vec<Accepted>), HapticsError> {
+        self.accept_magnets(&mut bodies, rate)?;
         let most = self.most_stiffness(rate)?;
         bodies.bodies_mut().iter_mut().for_each(|body| body.stiffen(most));
         let in_series = layers(&bodies)?.into_iter().map(|layer| coupling.on(layer));

@@ -11,7 +11,7 @@ use palpate_field::{
 
 use crate::error::HapticsError;
 use crate::event::Reaction;
-use crate::surface::Surface;
+use crate::surface::{Passing, Surface};
 
 /// Rounding errors of mapping a point into body coordinates, in units of rounding per metre
 /// from the origins.
@@ -114,9 +114,53 @@ impl<const D: usize> Body<D> {
         &self.world_from_body
     }
 
+    /// How the crests of the body's height texture pass under a hand of this velocity relative to
+    /// the body [m/s], along its surface with this unit normal, both in world coordinates, at
+    /// `rate` ticks a second [Hz]. `None` without such a texture.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector};
+    /// use palpate_haptics::{Body, Material, Surface, Texture, TextureKind};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let texture = Texture {
+    ///     description: None,
+    ///     kind: TextureKind::Height,
+    ///     amplitude: 1e-4,
+    ///     wavelength: 1e-3,
+    ///     direction: Some(vec![1.0, 0.0, 0.0]),
+    /// };
+    /// let grooved = Material { texture: Some(texture), ..Material::default() };
+    /// let plate = Body::new(Shape::ball(1.0)?, Surface::new(&grooved)?)?;
+    /// let (hand, up) = (Vector([0.375, -0.1, 0.0]), Vector([0.0, 1.0, 0.0]));
+    /// let passing = plate.passing(hand, up, 1000.0).ok_or("no texture")?;
+    /// assert!((passing.frequency - 375.0).abs() < 1e-9 && (passing.part - 0.5).abs() < 1e-9);
+    /// assert!((passing.wanted_rate() - 1500.0).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn passing(
+        &self,
+        velocity: Vector<f64, D>,
+        normal: Vector<f64, D>,
+        rate: f64,
+    ) -> Option<Passing> {
+        let [velocity, normal] = [velocity, normal].map(|v| self.vector_in_body(v));
+        self.surface.passing(velocity, normal, rate)
+    }
+
     /// Gives the surface the stiffness that it has on a device which renders at most `most` [N/m].
     pub(crate) fn stiffen(&mut self, most: f64) {
         self.surface = self.surface.on_device(most);
+    }
+
+    /// Multiplies the pull of the surface's magnet.
+    pub(crate) fn scale_magnet(&mut self, part: f64) {
+        let magnet = self.surface.magnet.map(|pull| pull.scaled(part));
+        self.surface.magnet = magnet;
     }
 
     /// Leaves these shares of the surface's stiffness and of its damping.

@@ -146,6 +146,15 @@ pub(crate) struct FreeForce<const D: usize> {
     pub(crate) placed: bool,
 }
 
+/// How the force of a body is asked for.
+#[derive(Clone, Copy)]
+struct Pressing {
+    /// Ticks a second [Hz].
+    rate: f64,
+    /// Whether the body's own dampers act.
+    has_dampers: bool,
+}
+
 /// What a contact point touched in the tick before: its contact, body and motion.
 #[derive(Clone, Copy)]
 struct Before {
@@ -361,7 +370,7 @@ impl<const D: usize> ContactPoint<D> {
         self.release_others();
         let stretch = touch.proxy - touch.device;
         self.proxy.hold(stretch - touch.normal * stretch.dot(touch.normal));
-        let force = self.pressed(touch, body, stretch);
+        let force = self.pressed(touch, body, stretch, Pressing { rate, has_dampers: true });
         self.pop(tick, touch.body, stretch.norm());
         force + self.ring(touch, force)
     }
@@ -396,24 +405,27 @@ impl<const D: usize> ContactPoint<D> {
         let rest = crease.walls().fold(stretch, |rest, wall| rest - wall.normal * wall.push);
         let (mut springs, mut plain, mut carried) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
         let mut shared = Shared::default();
-        let velocity = std::mem::replace(&mut touch.velocity, Vector::ZERO);
+        let (velocity, rate) = (touch.velocity, tick.setting.options.rate);
         for wall in crease.pushing_mut() {
             let Some(body) = tick.nearby.body(wall.body) else { continue };
             let part = wall.push / whole;
             let own = wall.normal * wall.push + rest * part;
             let (strata, level) = (&body.surface().strata, self.proxy.level(wall.body));
             shared.add(strata.at(level, own.norm()), strata.force(level, depth), part);
+            touch.velocity = velocity;
             if body.has_moved() {
-                carried += (body.carried(touch.device) - touch.device) * part;
+                let way = body.carried(touch.device) - touch.device;
+                touch.velocity -= way * rate;
+                carried += way * part;
             }
             (touch.body, touch.normal) = (wall.body, wall.normal);
-            wall.force = self.pressed(touch, body, own);
+            wall.force = self.pressed(touch, body, own, Pressing { rate, has_dampers: false });
             springs += wall.force;
             if let Some(along) = own.normalized() {
                 plain += along * strata.force(level, own.norm());
             }
         }
-        touch.velocity = velocity - carried * tick.setting.options.rate;
+        touch.velocity = velocity - carried * rate;
         if let Some(hardest) = crease.hardest() {
             (touch.body, touch.normal) = (hardest.body, hardest.normal);
         }
@@ -460,12 +472,13 @@ impl<const D: usize> ContactPoint<D> {
         }
     }
 
-    /// The force of a body at rest relative to `touch` whose part of the stretch is `stretch` [N].
+    /// The force of a body whose part of the stretch is `stretch` [N].
     fn pressed(
         &self,
         touch: &mut Touch<D>,
         body: &Body<D>,
         stretch: Vector<f64, D>,
+        Pressing { rate, has_dampers }: Pressing,
     ) -> Vector<f64, D> {
         let level = self.proxy.level(touch.body);
         let in_body = body.in_body(touch.proxy);
@@ -479,7 +492,7 @@ impl<const D: usize> ContactPoint<D> {
             let there = gradient.normalized().unwrap_or(normal);
             (there - normal) * (way.norm() / far)
         };
-        let press = Press { stretch: pull, velocity, proxy: in_body };
+        let press = Press { stretch: pull, velocity, proxy: in_body, rate, has_dampers };
         body.vector_in_world(body.surface().force(level, press, turn))
     }
 

@@ -91,7 +91,7 @@ pub use palpate_safety::{
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};
 pub use servo::{AnyServo, Renderer, Servo, UnprotectedServo};
-pub use surface::Surface;
+pub use surface::{Passing, Surface};
 pub use tool::{
     Coupling, Handle, HeldTool, MOST_POINTS, Shell, ShellPoint, Tool, ToolOptions, ToolState,
     ToolTouch,

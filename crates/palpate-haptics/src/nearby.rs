@@ -239,6 +239,32 @@ impl<'a, const D: usize> Nearby<'a, D> {
         least
     }
 
+    /// The field and its gradient at a point, with gaps between bodies narrower than `crack` [m]
+    /// filled.
+    ///
+    /// With the two least fields `a ≤ b` the field is `min(a, (a + b − crack) / 2)`. It is no steeper
+    /// than the fields, and differs from their least only within a crack of two surfaces: bodies that
+    /// touch leave no way between them for a point.
+    pub(crate) fn gradient_filled(
+        &self,
+        p: Point<D>,
+        punctured: &Punctured,
+        crack: f64,
+    ) -> FieldValue<D> {
+        let least = self.gradient(p, punctured);
+        let near = |body| (body != least.body).then_some(least.distance + crack);
+        let others = self.each_within(p, punctured, near);
+        let second = others.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        let Some(second) = second else { return least };
+        let filled = 0.5 * (least.distance + second.distance - crack);
+        // Written so that NaN counts as the least.
+        if filled >= least.distance {
+            return least;
+        }
+        let gradient = (least.gradient + second.gradient) * 0.5;
+        FieldValue { distance: filled, gradient, body: least.body }
+    }
+
     /// The field of each body at a point for which `most` gives a value that the field may be less
     /// than.
     pub(crate) fn each_within(

@@ -5,6 +5,7 @@
 
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
+use crate::guide::Guide;
 use palpate_safety::{
     Acceptance, Accepted, DeviceLimits, DeviceProfile, Impedance, Recovery, WorkspaceMap,
 };
@@ -112,6 +113,7 @@ impl<const D: usize> Protection<D> {
         rate: f64,
     ) -> Result<(Bodies<D>, Vec<Accepted>), HapticsError> {
         let mut all = Vec::with_capacity(bodies.bodies().len());
+        self.accept_magnets(&mut bodies, rate)?;
         let most = self.most_stiffness(rate)?;
         for body in bodies.bodies_mut() {
             body.stiffen(most);
@@ -121,6 +123,45 @@ impl<const D: usize> Protection<D> {
             all.push(accepted);
         }
         Ok((bodies, all))
+    }
+
+    /// The guides as the device renders them at `rate` [Hz], each by the rules of a material. A
+    /// device that gives no force takes them as they are.
+    ///
+    /// # Errors
+    ///
+    /// As [`accept`](Self::accept).
+    pub fn accept_guides(
+        &self,
+        guides: &[Guide<D>],
+        rate: f64,
+    ) -> Result<(Vec<Guide<D>>, Vec<Accepted>), HapticsError> {
+        if self.profile.max_force == 0.0 {
+            return Ok((guides.to_vec(), Vec::new()));
+        }
+        let mut all = (Vec::with_capacity(guides.len()), Vec::with_capacity(guides.len()));
+        for guide in guides {
+            let accepted = self.accepted(&[guide.impedance()?], rate)?;
+            let (stiffness, damping) = (accepted.stiffness_factor, accepted.damping_factor);
+            all.0.push(guide.clone().softened(stiffness, damping));
+            all.1.push(accepted);
+        }
+        Ok(all)
+    }
+
+    /// Softens the magnets of bodies to what the device renders, as if they were materials.
+    pub(crate) fn accept_magnets(
+        &self,
+        bodies: &mut Bodies<D>,
+        rate: f64,
+    ) -> Result<(), HapticsError> {
+        for body in bodies.bodies_mut() {
+            let Some(magnet) = &body.surface().magnet else { continue };
+            let impedance = Impedance::new(magnet.stiffness(), 0.0)?;
+            let accepted = self.accepted(&[impedance], rate)?;
+            body.scale_magnet(accepted.stiffness_factor);
+        }
+        Ok(())
     }
 
     /// The largest stiffness that the device renders, in the world [N/m].

@@ -26,6 +26,9 @@ const POINT_SKIN: f64 = 5e-5;
 /// part, probes that a hand feels as balls could cross thin walls.
 const POINT_RADIUS: f64 = 2e-5;
 
+/// Gaps between bodies narrower than this part of the size of the scene are closed to a point.
+const CRACK: f64 = 1e-6;
+
 /// A gradient shorter than this part of the Lipschitz constant says nothing about the surface:
 /// it belongs to a ridge, a blend or a centre.
 const LEAST_SLOPE: f64 = 0.01;
@@ -76,6 +79,9 @@ pub(crate) struct Sampler<'a, const D: usize> {
     radius: f64,
     skin: f64,
     tolerance: f64,
+    /// The width of a crack between bodies that the probe cannot enter [m]; zero if its radius
+    /// keeps it out.
+    crack: f64,
     /// The inverse of the Lipschitz constant.
     per_slope: f64,
     budget: u32,
@@ -100,7 +106,21 @@ impl<'a, const D: usize> Sampler<'a, D> {
             if radius > POINT_RADIUS * size { radius } else { radius.max(POINT_SKIN * size) };
         let skin = skin.max(4.0 * tolerance);
         let per_slope = 1.0 / nearby.lipschitz();
-        Self { nearby, punctured, radius, skin, tolerance, per_slope, budget, evaluations: 0 }
+        let crack = CRACK * size;
+        let is_open = radius < crack && nearby.bodies.bodies().len() > 1;
+        let crack = if is_open { crack } else { 0.0 };
+        let evaluations = 0;
+        Self {
+            nearby,
+            punctured,
+            radius,
+            skin,
+            tolerance,
+            crack,
+            per_slope,
+            budget,
+            evaluations,
+        }
     }
 
     /// The near bodies.
@@ -147,7 +167,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
     /// promise holds there.
     pub(crate) fn distance(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let (value, body) = self.nearby.distance(point, &self.punctured);
+        let (value, body) = self.value(point);
         let gap = value - self.radius;
         gap.is_finite().then_some(Sample { point, gap, tangent: None, body })
     }
@@ -157,7 +177,11 @@ impl<'a, const D: usize> Sampler<'a, D> {
     #[inline(always)]
     pub(crate) fn gradient(&mut self, point: Point<D>) -> Option<Sample<D>> {
         self.spend(point)?;
-        let seen = self.nearby.gradient(point, &self.punctured);
+        let seen = if self.crack > 0.0 {
+            self.nearby.gradient_filled(point, &self.punctured, self.crack)
+        } else {
+            self.nearby.gradient(point, &self.punctured)
+        };
         let gap = seen.distance - self.radius;
         let slope = seen.gradient.norm();
         // Written so that NaN is refused.
@@ -172,6 +196,15 @@ impl<'a, const D: usize> Sampler<'a, D> {
             Tangent { normal: Vector::ZERO, gap: gap * self.per_slope }
         };
         Some(Sample { point, gap, tangent: Some(tangent), body: seen.body })
+    }
+
+    /// The field at a point, and the body whose field is least.
+    fn value(&self, point: Point<D>) -> (f64, u32) {
+        if self.crack > 0.0 {
+            let seen = self.nearby.gradient_filled(point, &self.punctured, self.crack);
+            return (seen.distance, seen.body);
+        }
+        self.nearby.distance(point, &self.punctured)
     }
 
     /// Counts an evaluation at `point`; `None` if the budget is spent or no promise holds
@@ -191,7 +224,7 @@ impl<'a, const D: usize> Sampler<'a, D> {
             return None;
         }
         self.evaluations += 1;
-        let (value, _) = self.nearby.distance(point, &self.punctured);
+        let (value, _) = self.value(point);
         Some(value < self.radius - self.tolerance)
     }
 

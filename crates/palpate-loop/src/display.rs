@@ -10,6 +10,7 @@ use crate::lines;
 use crate::pacer::Lateness;
 use crate::report::{Ending, Evaluations, RunReport};
 use crate::statistics::{Bucket, Distribution};
+use crate::texture_report::TextureReport;
 use crate::tool_report::ToolReport;
 
 /// What a report says if the device refused the last forces.
@@ -63,6 +64,17 @@ impl Display for GuideReport {
         )?;
         let [taken, given] = [taken, given].map(|energy| 1e3 * energy);
         write!(f, "{taken:.3} mJ taken from the hand, {given:.3} mJ given")
+    }
+}
+
+impl Display for TextureReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { ticks, faded_ticks, highest_frequency, wanted_rate, .. } = self;
+        write!(
+            f,
+            "faded in {faded_ticks} of {ticks} ticks: up to {highest_frequency:.0} crests a "
+        )?;
+        write!(f, "second want a rate of {wanted_rate:.0} Hz")
     }
 }
 

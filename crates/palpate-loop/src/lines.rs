@@ -54,6 +54,9 @@ pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
     for (number, guide) in report.guides.iter().enumerate() {
         line(f, &format!("guide {number}"), guide)?;
     }
+    if let Some(texture) = report.texture.filter(|texture| texture.faded_ticks > 0) {
+        line(f, "texture", texture)?;
+    }
     write_safety(f, &report.safety)?;
     if let Some(cost) = &report.cost {
         line(f, "cost a tick", cost)?;

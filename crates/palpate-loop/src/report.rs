@@ -7,6 +7,7 @@ use crate::guide_report::{GuideReport, GuideTally};
 use crate::recorder::TickTimes;
 use crate::start_report::{StartInside, StartTally};
 use crate::statistics::{Distribution, Times};
+use crate::texture_report::TextureReport;
 use crate::tool_report::{ToolReport, ToolTally};
 use palpate_haptics::{DeviceLost, EventCounts, Progress, SafetyReport, Servo};
 
@@ -53,6 +54,9 @@ pub struct RunReport {
     pub starts_inside: Vec<StartInside>,
     /// The report of each guide of the servo.
     pub guides: Vec<GuideReport>,
+    /// The report of height textures; `None` if none was touched.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub texture: Option<TextureReport>,
     /// The report of the tool; `None` if the servo renders contact points.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub tool: Option<ToolReport>,
@@ -153,6 +157,7 @@ pub(crate) struct Tally<const D: usize> {
     events: EventCounts,
     starts: StartTally,
     guides: GuideTally<D>,
+    texture: TextureReport,
     tool: Option<ToolTally>,
 }
 
@@ -175,6 +180,7 @@ impl<const D: usize> Tally<D> {
             events: EventCounts::default(),
             starts: StartTally::new(points),
             guides: GuideTally::new(servo),
+            texture: TextureReport::default(),
             tool: None,
         }
     }
@@ -200,6 +206,7 @@ impl<const D: usize> Tally<D> {
         }
         self.starts.tick(servo);
         self.guides.tick(servo);
+        self.texture.tick(servo);
         servo.events().iter().for_each(|event| self.events.count(event));
         self.ticks += 1;
         self.cost.record(times.cost_ns);
@@ -256,6 +263,7 @@ impl<const D: usize> Tally<D> {
             safety,
             starts_inside: self.starts.reports(self.rate),
             guides: self.guides.reports(self.rate),
+            texture: Some(self.texture).filter(|texture| texture.ticks > 0),
             tool: self.tool.as_ref().map(ToolTally::report),
         }
     }

@@ -249,7 +249,6 @@ mod tests {
 
     use super::*;
 
-    #[expect(clippy::unwrap_used, reason = "a vector takes all rows")]
     fn written<const D: usize>(
         trace: impl FnOnce(&mut TraceWriter<'_, D, Vec<u8>>),
         poses: &[(usize, Pose<D>)],

@@ -47,7 +47,10 @@ impl Display for PassivityReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let [taken, given, kept] =
             [self.energy_in, self.energy_out, self.dissipated].map(|energy| 1e3 * energy);
-        write!(f, "{taken:.3} mJ taken from the hand, {given:.3} mJ given, {kept:.3} mJ kept back ")?;
+        write!(
+            f,
+            "{taken:.3} mJ taken from the hand, {given:.3} mJ given, {kept:.3} mJ kept back "
+        )?;
         write!(f, "in {} ticks", self.effect.ticks)
     }
 }
@@ -57,7 +60,8 @@ mod tests {
     use palpate_field::Vector;
 
     use crate::{
-        Accepted, DeviceProfile, Impedance, PassivityReport, PortState, SafetyChain, SafetyError, SafetyOptions,
+        Accepted, DeviceProfile, Impedance, PassivityReport, PortState, SafetyChain,
+        SafetyError, SafetyOptions,
     };
 
     #[test]
@@ -98,7 +102,8 @@ mod tests {
             dissipated: 5e-4,
             ..PassivityReport::default()
         };
-        let said = "12.500 mJ taken from the hand, 2.000 mJ given, 0.500 mJ kept back in 0 ticks";
+        let said =
+            "12.500 mJ taken from the hand, 2.000 mJ given, 0.500 mJ kept back in 0 ticks";
         assert_eq!(report.to_string(), said);
     }
 }

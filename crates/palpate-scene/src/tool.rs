@@ -5,14 +5,16 @@
 
 use palpate_field::LARGEST_LENGTH;
 use palpate_haptics::{Acceptance, ToolOptions};
+use palpate_vibration::{ACTUATORS, Actuator, actuator_named};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{at_least, positive_if};
+use crate::names::unknown as unknown_name;
 use crate::pose::WrittenPose;
 use crate::problem::Problem;
 use crate::problems::Problems;
-use crate::schema::VectorSchema;
+use crate::schema::{ActuatorSchema, VectorSchema};
 use crate::shape::WrittenShape;
 
 /// The tool that touches a scene: the tip of a stylus, fingers, or a shape in the hand.
@@ -64,6 +66,11 @@ pub struct WrittenTool {
     /// What a device renders of materials; `device` if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<WrittenAcceptance>,
+    /// What shakes each contact point, by its name in `palpate devices --actuators`; an actuator
+    /// that plays every frequency if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ActuatorSchema")]
+    pub actuator: Option<String>,
 }
 
 /// What a device renders of materials, as
@@ -159,6 +166,7 @@ impl WrittenTool {
             if self.radius > LARGEST_LENGTH { Err(far) } else { Ok(()) },
             if is_both { Err(both) } else { Ok(()) },
             positive_if("max_force", self.max_force, "N"),
+            self.actuator().map(drop).map_err(|problem| problem.under("actuator")),
         ];
         let coupling = self.coupling.as_ref().map_or(Ok(()), WrittenCoupling::check);
         Problems::all([
@@ -183,6 +191,14 @@ impl WrittenCoupling {
 }
 
 impl WrittenTool {
+    /// The actuator of this name.
+    pub(crate) fn actuator(&self) -> Result<Option<Actuator>, Problem> {
+        let Some(name) = &self.actuator else { return Ok(None) };
+        let known = ACTUATORS.each_ref().map(|(known, _)| *known);
+        let unknown = |_| Problem::new(unknown_name("actuator", name, &known));
+        actuator_named(name).map(Some).map_err(unknown)
+    }
+
     /// The options of a tool with a shape; missing keys have the values of
     /// [`ToolOptions::default`].
     #[must_use]

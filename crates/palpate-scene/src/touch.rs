@@ -285,7 +285,7 @@ impl<const D: usize> BuiltScene<D> {
             .with_acceptance(acceptance)
             .with_strictness(settings.is_strict);
         let mut servo = servo.protected(&protection)?;
-        servo.guide(&self.guides);
+        servo.guide(&self.guides)?;
         Ok(servo)
     }
 

@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Sensations as sound: samples for voice coils and other actuators that take a waveform.
+//! Sensations as samples: waveforms for voice coils and resonant actuators, levels for motors.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::f64::consts::TAU;
 
-use super::cue::{Mapping, Sensation, Tap, Tone};
+use super::actuator::{
+    Actuator, CarrierDrive, Mechanism, Motor, MotorDrive, check_sample_rate,
+};
+use super::adaptation::{Adaptation, Faded};
+use super::cue::{Mapping, MappingOptions, Sensation, Tap, Tone};
+use super::limiter::{Limiter, Limiting, delay};
 use super::ringing::Ringing;
-use palpate_haptics::{HapticsError, NumberError};
+use super::strength::{Strengths, amplitude, hold_strength, slide_strength, tap_strength};
+use palpate_haptics::HapticsError;
 
 /// The time over which an amplitude rises from zero to one [s]: a jump would click, a slower
 /// rise would blur a texture.
@@ -59,19 +65,38 @@ struct Player {
     slide: Oscillator,
     tap: Oscillator,
     ringing: Ringing,
-    /// The last tones of hold and slide, because a sine that fades out keeps its frequency.
-    last: [f64; 2],
+    adaptation: Adaptation,
+    /// The tones of hold and slide; where one is silent, with its last frequency, because a sine
+    /// that fades out keeps it.
+    tones: [Tone; 2],
 }
 
 /// Makes the samples of one actuator from the sensations of some contact points.
 ///
-/// The phase of every sine is continuous when its frequency changes, and its amplitude changes
-/// over 2 ms; a tap begins at once, at phase zero. So neighbouring samples of a point differ by
-/// at most [`largest_step`](Self::largest_step). The sum is clamped to ±1.
+/// For an actuator that plays every frequency, and for a voice coil, the samples are a sum of
+/// sines. The phase of every sine is continuous when its frequency changes, and its amplitude
+/// changes over 2 ms; a tap begins at once, at phase zero. A limiter with look-ahead keeps the sum
+/// within ±1, which delays it by [`delay`](Self::delay) samples: neighbouring samples of a point
+/// differ by at most [`largest_step`](Self::largest_step), and nothing is clipped.
+///
+/// For other actuators ([`for_actuator`](Self::for_actuator)) a touch is moved to what they play,
+/// with its strength above the threshold of the skin:
+///
+/// - A resonant actuator plays its resonance. Hold and tap are its envelope; the crests of a slide
+///   are a rhythm of it up to 50 Hz, less up to 80 Hz, and none above, where skin and actuator do
+///   not follow.
+/// - A rotating mass gets a level, positive to turn and negative to brake. Hold, slide and tap are
+///   played by the speed at which their strength is felt, at least that of the start level, below
+///   which the motor does not turn. It starts at 4 dB above the threshold, and stops at 2 dB.
+/// - Both are pushed beyond their rated level until they are as strong as wanted, and pushed
+///   backwards to stop; a tap begins to decay when the actuator has reached it.
+///
+/// On an actuator, every touch begins at least 10 dB above the threshold of the skin, every tap at
+/// least 20 dB, and a slide from a tenth of its full level on is 10 dB above. A hold that does not change fades ([`Adaptation`]).
 ///
 /// # Examples
 ///
-/// A tap is `a exp(−d t) sin(2π f t)` from its first sample on:
+/// A tap is `a exp(−d t) sin(2π f t)` from the first sample after the delay on:
 ///
 /// ```
 /// use palpate_vibration::{
@@ -82,53 +107,139 @@ struct Player {
 /// let mapping = Mapping::new(MappingOptions::default())?;
 /// let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1)?;
 /// let tap = Tap { amplitude: 0.5, frequency: 250.0, decay: 100.0 };
-/// let mut samples = [0.0; 16];
+/// let mut samples = [0.0; 32];
 /// synthesiser.render(&[Sensation { tap: Some(tap), ..Sensation::default() }], &mut samples);
 ///
-/// assert_eq!(samples[0], 0.0);
+/// assert_eq!((synthesiser.delay(), samples[16]), (16, 0.0));
 /// // After 1 ms, a quarter of a turn.
-/// assert!((f64::from(samples[8]) - 0.5 * (-0.1_f64).exp()).abs() < 1e-7);
+/// assert!((f64::from(samples[24]) - 0.5 * (-0.1_f64).exp()).abs() < 1e-7);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// A motor gets levels:
+///
+/// ```
+/// use palpate_vibration::{
+///     Mapping, MappingOptions, Sensation, Synthesiser, Tone, actuator_named,
+/// };
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let motor = actuator_named("erm")?;
+/// let mapping = Mapping::new(motor.options(MappingOptions::default()))?;
+/// let mut synthesiser = Synthesiser::for_actuator(&mapping, &motor, 1000.0, 1)?;
+/// let hold = Tone { frequency: 60.0, amplitude: 0.1 };
+/// let mut levels = [0.0; 100];
+/// synthesiser.render(&[Sensation { hold, ..Sensation::default() }], &mut levels);
+/// // 4.5 V to start it; then the 2.3 V that keep it turning.
+/// assert_eq!(levels[0], 1.0);
+/// assert!((levels[99] * 4.5 - 2.3).abs() < 1e-6);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
 pub struct Synthesiser {
-    players: Vec<Player>,
+    output: Output,
+    limiting: Limiting,
     sample_rate: f64,
     highest_frequency: f64,
 }
 
+#[derive(Clone, Debug)]
+enum Output {
+    Waves {
+        players: Vec<Player>,
+        limiter: Limiter,
+        /// The band of a voice coil [Hz].
+        band: Option<[f64; 2]>,
+    },
+    Carrier {
+        touches: Vec<Strengths>,
+        drive: CarrierDrive,
+    },
+    Motor {
+        touches: Vec<Strengths>,
+        drive: MotorDrive,
+    },
+}
+
 impl Synthesiser {
     /// A synthesiser of `sample_rate` [Hz] for `points` contact points, whose sensations come
-    /// from `mapping`.
+    /// from `mapping`, and an actuator that plays every frequency of it.
     ///
     /// # Errors
     ///
     /// [`HapticsError::NoContactPoint`] without a point; [`HapticsError::Number`] if the sample
-    /// rate is less than twice the mapping's highest frequency, which would alias.
+    /// rate is less than twice the mapping's highest frequency, which would alias, or more than
+    /// 1 MHz.
     pub fn new(
         mapping: &Mapping,
+        sample_rate: f64,
+        points: usize,
+    ) -> Result<Self, HapticsError> {
+        Self::of(mapping, None, sample_rate, points)
+    }
+
+    /// A synthesiser as [`new`](Self::new) makes it, for an actuator; the mapping is one of the
+    /// actuator's [`options`](Actuator::options).
+    ///
+    /// For a rotating mass the samples are levels: `sample_rate` is the rate at which the motor
+    /// takes them, which may be that of the servo.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new); [`HapticsError::Number`] also if a figure of the actuator
+    /// breaks its rule, or if the sample rate is less than twice the actuator's resonance.
+    pub fn for_actuator(
+        mapping: &Mapping,
+        actuator: &Actuator,
+        sample_rate: f64,
+        points: usize,
+    ) -> Result<Self, HapticsError> {
+        Self::of(mapping, Some(&actuator.mechanism), sample_rate, points)
+    }
+
+    fn of(
+        mapping: &Mapping,
+        mechanism: Option<&Mechanism>,
         sample_rate: f64,
         points: usize,
     ) -> Result<Self, HapticsError> {
         if points == 0 {
             return Err(HapticsError::NoContactPoint);
         }
-        NumberError::check_positive("sample_rate", sample_rate, "Hz")?;
-        let highest_frequency = mapping.options().highest_frequency;
-        if sample_rate < 2.0 * highest_frequency {
-            let (parameter, rule) = ("sample_rate", "at least twice the highest frequency");
-            let (value, unit) = (sample_rate, "Hz");
-            return Err(HapticsError::Number(NumberError::new(parameter, rule, value, unit)));
-        }
-        let player = Player {
-            hold: Oscillator::default(),
-            slide: Oscillator::default(),
-            tap: Oscillator::default(),
-            ringing: Ringing::new(sample_rate),
-            last: [0.0; 2],
+        mechanism.map(Mechanism::check).transpose()?;
+        let options = mapping.options();
+        let highest_frequency = match mechanism {
+            None | Some(Mechanism::VoiceCoil { .. }) => options.highest_frequency,
+            Some(Mechanism::Resonant { resonance, .. }) => *resonance,
+            // A level has no frequency.
+            Some(Mechanism::RotatingMass { .. }) => 0.0,
         };
-        Ok(Self { players: vec![player; points], sample_rate, highest_frequency })
+        check_sample_rate(sample_rate, highest_frequency)?;
+        let touches =
+            |has_rhythm| vec![Strengths::new(options, sample_rate, has_rhythm); points];
+        let output = match mechanism.copied() {
+            None | Some(Mechanism::VoiceCoil { .. }) => {
+                let band = match mechanism {
+                    Some(Mechanism::VoiceCoil { lowest, highest }) => Some([*lowest, *highest]),
+                    _ => None,
+                };
+                let players = vec![Player::new(options, sample_rate); points];
+                let limiter = Limiter::new(sample_rate);
+                Output::Waves { players, limiter, band }
+            }
+            Some(Mechanism::Resonant { resonance, bandwidth, overdrive }) => {
+                let drive = CarrierDrive::new(resonance, bandwidth, overdrive, sample_rate);
+                Output::Carrier { touches: touches(true), drive }
+            }
+            Some(Mechanism::RotatingMass { frequency, start_level, overdrive, rise, fall }) => {
+                let motor = Motor { frequency, start_level, overdrive, rise, fall };
+                let drive = MotorDrive::new(motor, sample_rate);
+                Output::Motor { touches: touches(false), drive }
+            }
+        };
+        Ok(Self { output, limiting: Limiting::default(), sample_rate, highest_frequency })
     }
 
     /// Samples a second [Hz].
@@ -137,11 +248,29 @@ impl Synthesiser {
         self.sample_rate
     }
 
-    /// The largest difference of neighbouring samples of one contact point: for three sines of
-    /// full amplitude and the highest frequency f, `3 (2π f + 1 / 2 ms) / sample_rate`.
+    /// The samples by which the limiter delays; none where the samples are an envelope or a level.
+    #[must_use]
+    pub fn delay(&self) -> usize {
+        match &self.output {
+            Output::Waves { .. } => delay(self.sample_rate),
+            Output::Carrier { .. } | Output::Motor { .. } => 0,
+        }
+    }
+
+    /// The largest difference of neighbouring samples of one contact point, where the samples are
+    /// a sum of sines: for three sines of full amplitude and the highest frequency f,
+    /// `3 (2π f + 1 / 2 ms) / sample_rate`, and for the gain of the limiter `2 / (delay + 1)`.
     #[must_use]
     pub fn largest_step(&self) -> f64 {
-        3.0 * (TAU * self.highest_frequency + 1.0 / ATTACK) / self.sample_rate
+        let waves = 3.0 * (TAU * self.highest_frequency + 1.0 / ATTACK) / self.sample_rate;
+        // The gain falls from 1 to 1/3 for a sum of 3, by 1 / (delay + 1) of that in a sample.
+        waves + 2.0 / (self.delay() as f64 + 1.0)
+    }
+
+    /// What was made smaller so far, because together it was more than the actuator plays.
+    #[must_use]
+    pub fn limiting(&self) -> Limiting {
+        self.limiting
     }
 
     /// Renders the samples of one tick, in [−1, 1], from the sensation of each contact point;
@@ -150,44 +279,95 @@ impl Synthesiser {
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.
     pub fn render(&mut self, sensations: &[Sensation], samples: &mut [f32]) {
-        let step =
-            Step { period: 1.0 / self.sample_rate, slew: 1.0 / (ATTACK * self.sample_rate) };
         let silence = Sensation::default();
         let felt = sensations.iter().chain(std::iter::repeat(&silence));
-        for (player, sensation) in self.players.iter_mut().zip(felt) {
-            player.begin(sensation);
-        }
-        for sample in samples {
-            let mut sum = 0.0;
-            let felt = sensations.iter().chain(std::iter::repeat(&silence));
-            for (player, sensation) in self.players.iter_mut().zip(felt) {
-                sum += player.next(sensation, step);
+        let count = samples.len();
+        let mut least_gain = 1.0_f64;
+        let mut put = |place: &mut f32, (sample, gain): (f64, f64)| {
+            *place = sample as f32;
+            least_gain = least_gain.min(gain);
+        };
+        match &mut self.output {
+            Output::Waves { players, limiter, band } => {
+                let period = 1.0 / self.sample_rate;
+                let step = Step { period, slew: period / ATTACK };
+                for (player, sensation) in players.iter_mut().zip(felt) {
+                    player.begin(sensation, count as f64 * period, *band);
+                }
+                for place in samples {
+                    let sum = players.iter_mut().map(|player| player.next(step)).sum();
+                    put(place, limiter.step(sum));
+                }
             }
-            // Clamping makes no step larger.
-            *sample = sum.clamp(-1.0, 1.0) as f32;
+            Output::Carrier { touches, drive } => {
+                for (touch, sensation) in touches.iter_mut().zip(felt) {
+                    touch.begin(sensation, count, |strength| drive.reach(strength));
+                }
+                for place in samples {
+                    put(place, drive.step(together(touches)));
+                }
+            }
+            Output::Motor { touches, drive } => {
+                for (touch, sensation) in touches.iter_mut().zip(felt) {
+                    touch.begin(sensation, count, |strength| drive.reach(strength));
+                }
+                for place in samples {
+                    put(place, drive.step(together(touches)));
+                }
+            }
         }
+        self.limiting.count(least_gain);
     }
 }
 
+/// The strength of all touches together: powers add up.
+fn together(touches: &mut [Strengths]) -> f64 {
+    touches.iter_mut().map(Strengths::next_squared).sum::<f64>().sqrt()
+}
+
 impl Player {
-    fn begin(&mut self, sensation: &Sensation) {
-        if let Some(tap) = sensation.tap {
-            self.ringing.strike(tap);
-            self.tap.strike(tap.amplitude);
-        }
-        let [hold, slide] = &mut self.last;
-        for (last, tone) in [(hold, sensation.hold), (slide, sensation.slide)] {
-            if tone.amplitude > 0.0 {
-                *last = tone.frequency;
-            }
+    fn new(options: &MappingOptions, sample_rate: f64) -> Self {
+        Self {
+            hold: Oscillator::default(),
+            slide: Oscillator::default(),
+            tap: Oscillator::default(),
+            ringing: Ringing::new(sample_rate),
+            adaptation: Adaptation::new(options),
+            tones: [Tone::default(); 2],
         }
     }
 
-    fn next(&mut self, sensation: &Sensation, step: Step) -> f64 {
-        let [hold, slide] = self.last;
+    /// A tick of `duration` [s] begins, on a voice coil if there is a `band` [Hz].
+    fn begin(&mut self, sensation: &Sensation, duration: f64, band: Option<[f64; 2]>) {
+        let Faded { mut tone, fade } = self.adaptation.step(sensation.hold, duration);
+        let mut slide = sensation.slide;
+        let mut tap = sensation.tap;
+        if let Some([lowest, highest]) = band {
+            let played = |strength: f64, frequency: f64| {
+                let frequency = frequency.max(lowest).min(highest);
+                Tone { frequency, amplitude: amplitude(strength, frequency) }
+            };
+            tone = played(hold_strength(sensation.hold, fade), tone.frequency);
+            slide = played(slide_strength(slide), slide.frequency);
+            tap = tap.map(|tap| {
+                let Tone { amplitude, frequency } = played(tap_strength(&tap), tap.frequency);
+                Tap { amplitude, frequency, ..tap }
+            });
+        }
+        if let Some(tap) = tap {
+            self.ringing.strike(tap);
+            self.tap.strike(tap.amplitude);
+        }
+        for (last, tone) in self.tones.iter_mut().zip([tone, slide]) {
+            *last = if tone.amplitude > 0.0 { tone } else { Tone { amplitude: 0.0, ..*last } };
+        }
+    }
+
+    fn next(&mut self, step: Step) -> f64 {
+        let [hold, slide] = self.tones;
         let Tap { amplitude, frequency, .. } = self.ringing.next();
-        self.hold.next(Tone { frequency: hold, ..sensation.hold }, step)
-            + self.slide.next(Tone { frequency: slide, ..sensation.slide }, step)
+        self.hold.next(hold, step)
+            + self.slide.next(slide, step)
             + self.tap.next(Tone { frequency, amplitude }, step)
     }
 }
@@ -260,13 +440,17 @@ mod tests {
             began: true,
             ..Cue::default()
         };
-        let mut samples = [0.0_f32; 8];
+        let mut samples = [0.0_f32; 32];
         synthesiser.render(&[mapping().feel(&cue)], &mut samples);
         assert!(samples.iter().any(|sample| *sample != 0.0));
         for _ in 0..1100 {
             synthesiser.render(&[], &mut samples);
         }
-        assert_eq!(samples, [0.0; 8]);
+        assert_eq!(samples, [0.0; 32]);
+        // Tap and hold, each at its largest, are up to 2 together. The tap rings for 95 ms, 24
+        // ticks of 32 samples.
+        let Limiting { ticks, least_gain } = synthesiser.limiting();
+        assert!((1..=25).contains(&ticks) && (0.5..0.9).contains(&least_gain));
     }
 
     #[test]
@@ -277,5 +461,12 @@ mod tests {
             "sample_rate must be at least twice the highest frequency, got 700 Hz"
         );
         assert!(Synthesiser::new(&mapping(), 8000.0, 0).is_err());
+        for wrong in [f64::NAN, f64::INFINITY, 1e300, -1.0, 0.0] {
+            assert!(Synthesiser::new(&mapping(), wrong, 1).is_err(), "{wrong}");
+            for (name, actuator) in &crate::ACTUATORS {
+                let made = Synthesiser::for_actuator(&mapping(), actuator, wrong, 1);
+                assert!(made.is_err(), "{name}: {wrong}");
+            }
+        }
     }
 }

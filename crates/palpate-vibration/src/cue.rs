@@ -115,6 +115,13 @@ pub struct MappingOptions {
     pub hold_exponent: f64,
     /// The frequency of pressure [Hz], in the actuator's range.
     pub hold_frequency: f64,
+    /// What is left of a pressure that does not change, as a part, φ, in [0, 1]; 1 for a pressure
+    /// that lasts.
+    pub hold_fraction: f64,
+    /// The time constant with which such a pressure fades, τ [s]; positive.
+    pub hold_time: f64,
+    /// The change of the level of pressure that brings it back in full, in (0, 1].
+    pub hold_revival: f64,
     /// The force at which a tap or its ringing is at full level [N]; positive.
     pub full_impact: f64,
     /// The speed at which a slide is at full level [m/s]; positive.
@@ -133,14 +140,18 @@ pub struct MappingOptions {
 }
 
 impl Default for MappingOptions {
-    /// Pressure from 0.1 to full at 5 mm, as its 0.8th power, at 60 Hz; taps full at 2 N; slides
-    /// full at 0.2 m/s and 2 N, by square roots; 40 to 400 Hz, as the actuator plays them.
+    /// Pressure from 0.1 to full at 5 mm, as its 0.8th power, at 60 Hz, fading to a tenth with 2 s
+    /// until its level changes by a tenth; taps full at 2 N; slides full at 0.2 m/s and 2 N, by
+    /// square roots; 40 to 400 Hz, as the actuator plays them.
     fn default() -> Self {
         Self {
             hold_floor: 0.1,
             full_depth: 0.005,
             hold_exponent: 0.8,
             hold_frequency: 60.0,
+            hold_fraction: 0.1,
+            hold_time: 2.0,
+            hold_revival: 0.1,
             full_impact: 2.0,
             full_slide_speed: 0.2,
             full_slide_force: 2.0,
@@ -175,6 +186,24 @@ impl MappingOptions {
     #[must_use]
     pub const fn with_hold_frequency(self, hold_frequency: f64) -> Self {
         Self { hold_frequency, ..self }
+    }
+
+    /// The same options with another part that is left of a pressure that does not change.
+    #[must_use]
+    pub const fn with_hold_fraction(self, hold_fraction: f64) -> Self {
+        Self { hold_fraction, ..self }
+    }
+
+    /// The same options with another time constant of a pressure that does not change [s].
+    #[must_use]
+    pub const fn with_hold_time(self, hold_time: f64) -> Self {
+        Self { hold_time, ..self }
+    }
+
+    /// The same options with another change of level that brings pressure back.
+    #[must_use]
+    pub const fn with_hold_revival(self, hold_revival: f64) -> Self {
+        Self { hold_revival, ..self }
     }
 
     /// The same options with another force of a full tap [N].
@@ -269,12 +298,14 @@ impl Mapping {
     /// [`HapticsError::Number`] if one is outside its range.
     pub fn new(options: MappingOptions) -> Result<Self, HapticsError> {
         let o = &options;
-        at_most(
-            "hold_floor",
-            NumberError::check_not_negative("hold_floor", o.hold_floor, "")?,
-            1.0,
-            "at most 1",
-        )?;
+        for (parameter, part) in
+            [("hold_floor", o.hold_floor), ("hold_fraction", o.hold_fraction)]
+        {
+            let part = NumberError::check_not_negative(parameter, part, "")?;
+            at_most(parameter, part, 1.0, "at most 1")?;
+        }
+        let revival = NumberError::check_positive("hold_revival", o.hold_revival, "")?;
+        at_most("hold_revival", revival, 1.0, "at most 1")?;
         for (parameter, exponent) in
             [("hold_exponent", o.hold_exponent), ("slide_exponent", o.slide_exponent)]
         {
@@ -283,6 +314,7 @@ impl Mapping {
         }
         for (parameter, value, unit) in [
             ("full_depth", o.full_depth, "m"),
+            ("hold_time", o.hold_time, "s"),
             ("full_impact", o.full_impact, "N"),
             ("full_slide_speed", o.full_slide_speed, "m/s"),
             ("full_slide_force", o.full_slide_force, "N"),
@@ -472,6 +504,9 @@ mod tests {
             "hold_frequency must be in the actuator's range, got 30 Hz"
         );
         assert!(mapping(|o| o.hold_floor = 1.5).is_err());
+        assert!(mapping(|o| o.hold_fraction = 1.5).is_err());
+        assert!(mapping(|o| o.hold_time = 0.0).is_err());
+        assert!(mapping(|o| o.hold_revival = 0.0).is_err());
         assert!(mapping(|o| o.slide_exponent = 5.0).is_err());
         assert!(mapping(|o| o.highest_frequency = 30.0).is_err());
         assert!(mapping(|o| o.lowest_frequency = f64::NAN).is_err());

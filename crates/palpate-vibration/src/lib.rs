@@ -9,23 +9,41 @@
 //! - *Commands*, for motors: a [`Voice`] lets taps decay; [`one_channel`], [`two_channels`] and
 //!   an [`ActuatorArray`] distribute the [`Tones`]; a [`Publisher`] holds the strongest tone
 //!   until a slow device takes it.
-//! - *Audio*, for voice coils: a [`Synthesiser`] makes samples, and [`write_wav`] writes them
-//!   to a file.
+//! - *Audio*: a [`Synthesiser`] makes the samples of an actuator, and [`write_wav`] writes those
+//!   of several actuators to a file.
+//!
+//! An [`Actuator`] is one of three kinds, each with a profile whose figures name their source: a
+//! rotating mass, which has one level for speed and strength and starts late; a resonant actuator,
+//! which has one frequency; a voice coil, which has a band. A [`Synthesiser`] for an actuator moves
+//! a touch to what the actuator can play, with the strength that it has above the threshold of the
+//! skin ([`threshold_db`]). An [`ActuatorModel`] says how the actuator shakes then, and
+//! [`sensation_level`] how strongly that is felt.
 
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
+mod actuator;
+mod adaptation;
 mod audio;
 mod channels;
 mod cue;
+mod limiter;
 mod publisher;
 mod ringing;
+mod sensation_level;
+mod strength;
 mod threshold;
 mod wav;
 
+pub use actuator::{
+    ACTUATORS, Actuator, ActuatorModel, Mechanism, UnknownActuator, actuator_named,
+};
+pub use adaptation::{Adaptation, Faded};
 pub use audio::Synthesiser;
 pub use channels::{ActuatorArray, TwoChannels, one_channel, phantom, two_channels};
 pub use cue::{Cue, Mapping, MappingOptions, Sensation, Tap, Tone};
+pub use limiter::Limiting;
 pub use publisher::{Command, Publisher};
 pub use ringing::{Tones, Voice};
+pub use sensation_level::sensation_level;
 pub use threshold::{perceptual_weight, threshold_db};
 pub use wav::write_wav;

@@ -5,7 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::cue::{Sensation, Tap, Tone};
+use super::adaptation::Adaptation;
+use super::cue::{Mapping, Sensation, Tap, Tone};
 use palpate_haptics::{HapticsError, NumberError};
 
 /// The amplitude below which a tap ends: a tenth of the threshold at 250 Hz, where the skin is
@@ -41,7 +42,12 @@ impl Ringing {
         }
     }
 
-    /// The tap in this step.
+    /// The tap in this step, which goes on as it is.
+    pub(super) fn now(&self) -> Tap {
+        self.tap
+    }
+
+    /// The tap in this step; it decays.
     pub(super) fn next(&mut self) -> Tap {
         let now = self.tap;
         self.steps_left -= 1.0;
@@ -65,16 +71,17 @@ pub struct Tones {
     pub tap_decay: f64,
 }
 
-/// Lets the taps of one contact point decay at the servo's rate.
+/// Lets the taps of one contact point decay at the servo's rate, and its holds fade.
 ///
 /// A tap is replaced by a stronger one; it ends at a 2000th of full amplitude, or after one
-/// second.
+/// second. A hold that does not change fades as [`Adaptation`] says.
 ///
 /// ```
-/// use palpate_vibration::{Sensation, Tap, Voice};
+/// use palpate_vibration::{Mapping, MappingOptions, Sensation, Tap, Voice};
 ///
 /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
-/// let mut voice = Voice::new(1000.0)?;
+/// let mapping = Mapping::new(MappingOptions::default())?;
+/// let mut voice = Voice::new(&mapping, 1000.0)?;
 /// let tap = Tap { amplitude: 0.5, frequency: 200.0, decay: 100.0 };
 /// voice.step(&Sensation { tap: Some(tap), ..Sensation::default() });
 /// for _ in 0..9 {
@@ -89,16 +96,21 @@ pub struct Tones {
 #[derive(Clone, Copy, Debug)]
 pub struct Voice {
     ringing: Ringing,
+    adaptation: Adaptation,
+    /// The time of a step [s].
+    period: f64,
 }
 
 impl Voice {
-    /// A voice with `rate` steps a second [Hz].
+    /// A voice with `rate` steps a second [Hz], for sensations of this mapping.
     ///
     /// # Errors
     ///
     /// [`HapticsError::Number`] if the rate is not positive.
-    pub fn new(rate: f64) -> Result<Self, HapticsError> {
-        Ok(Self { ringing: Ringing::new(NumberError::check_positive("rate", rate, "Hz")?) })
+    pub fn new(mapping: &Mapping, rate: f64) -> Result<Self, HapticsError> {
+        let ringing = Ringing::new(NumberError::check_positive("rate", rate, "Hz")?);
+        let adaptation = Adaptation::new(mapping.options());
+        Ok(Self { ringing, adaptation, period: 1.0 / rate })
     }
 
     /// One tick.
@@ -110,13 +122,19 @@ impl Voice {
         }
         let Tap { amplitude, frequency, decay } = self.ringing.next();
         let tap = Tone { frequency, amplitude };
-        Tones { hold: sensation.hold, slide: sensation.slide, tap, tap_decay: decay }
+        let hold = self.adaptation.step(sensation.hold, self.period).tone;
+        Tones { hold, slide: sensation.slide, tap, tap_decay: decay }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MappingOptions;
+
+    fn voice() -> Voice {
+        Voice::new(&Mapping::new(MappingOptions::default()).unwrap(), 1000.0).unwrap()
+    }
 
     fn struck(amplitude: f64, decay: f64) -> Sensation {
         let tap = Some(Tap { amplitude, frequency: 100.0, decay });
@@ -125,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_weaker_tap_does_not_end_a_stronger_one() {
-        let mut voice = Voice::new(1000.0).unwrap();
+        let mut voice = voice();
         voice.step(&struck(0.8, 10.0));
         let tones = voice.step(&struck(0.1, 500.0));
         assert!((tones.tap.amplitude - 0.8 * (-0.01_f64).exp()).abs() < 1e-12);
@@ -135,7 +153,7 @@ mod tests {
     #[test]
     fn every_tap_ends() {
         for decay in [0.0, 1e-3, 50.0, 1e9, f64::INFINITY] {
-            let mut voice = Voice::new(1000.0).unwrap();
+            let mut voice = voice();
             assert_eq!(voice.step(&struck(1.0, decay)).tap.amplitude, 1.0);
             let last = (0..1000).map(|_| voice.step(&Sensation::default())).last();
             assert_eq!(last.unwrap().tap.amplitude, 0.0, "decay {decay}");

@@ -9,7 +9,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 /// Where the skin is most sensitive [Hz].
-const BEST_FREQUENCY: f64 = 250.0;
+pub(crate) const BEST_FREQUENCY: f64 = 250.0;
 /// The threshold there [dB].
 const BEST_THRESHOLD: f64 = -45.0;
 /// The rise of the threshold from 250 Hz to 0 Hz [dB].

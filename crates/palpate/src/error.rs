@@ -85,6 +85,9 @@ pub enum Error {
     UnknownDevice(#[from] UnknownDevice),
     /// There is no material of that name.
     UnknownMaterial(#[from] UnknownMaterial),
+    /// There is no actuator of that name.
+    #[cfg(feature = "vibration")]
+    UnknownActuator(#[from] palpate_vibration::UnknownActuator),
     /// A device no longer answers.
     DeviceLost(#[from] DeviceLost),
     /// A thread for a servo did not start.
@@ -176,6 +179,8 @@ impl Error {
             #[cfg(feature = "render")]
             Self::Render(_) => ErrorKind::Plot,
             Self::UnknownDevice(_) | Self::UnknownMaterial(_) => ErrorKind::UnknownName,
+            #[cfg(feature = "vibration")]
+            Self::UnknownActuator(_) => ErrorKind::UnknownName,
             Self::DeviceLost(_) => ErrorKind::DeviceLost,
             #[cfg(feature = "std-loop")]
             Self::Start(_) => ErrorKind::Thread,

@@ -66,9 +66,10 @@ pub use palpate_scene as scene;
 #[cfg(feature = "vibration")]
 pub use palpate_vibration as vibration;
 
-/// The examples of README.md and of two pages of the guide, as tests.
+/// The examples of README.md and of three pages of the guide, as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 #[doc = include_str!("../../../docs/guide/bindings.md")]
 #[doc = include_str!("../../../docs/guide/devices.md")]
+#[doc = include_str!("../../../docs/guide/touch.md")]
 struct Pages;

@@ -11,6 +11,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   palpate devices
   palpate devices --json
+  palpate devices --actuators
   palpate devices --materials --rate 4000";
 
 /// The options of `palpate devices`.
@@ -20,6 +21,9 @@ pub(crate) struct DevicesOptions {
     /// [N·s/m].
     #[arg(long)]
     pub(crate) materials: bool,
+    /// The actuators for `palpate feel --actuator` alone.
+    #[arg(long, conflicts_with = "materials")]
+    pub(crate) actuators: bool,
     /// Ticks a second, on which that depends [Hz].
     #[arg(long, requires = "materials", default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
     pub(crate) rate: f64,

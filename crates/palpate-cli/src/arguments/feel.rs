@@ -10,6 +10,7 @@ use clap::{Args, Parser, ValueEnum};
 use palpate::devices::{DeviceProfile, PROFILES, profile_named};
 use palpate::haptics::Acceptance;
 use palpate::scene::unknown_name;
+use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
 use super::numbers::{count, length_or_zero, positive, within, zero_or_more};
 
@@ -21,7 +22,8 @@ Examples:
   palpate feel
   palpate feel scenes/cup.json --duration 5 --trace touch.csv --plot touch.png
   palpate feel scenes/cup.json --path hand.csv --rate 2000
-  palpate feel --points 10 --fast --json";
+  palpate feel --points 10 --fast --json
+  palpate feel --device glove --wav glove.wav --actuator lra";
 
 /// The options of `palpate feel`.
 #[derive(Args, Debug)]
@@ -85,6 +87,10 @@ pub(crate) struct FeelOptions {
     /// contact point.
     #[arg(long, value_name = "WAV")]
     pub(crate) wav: Option<PathBuf>,
+    /// What plays the vibration on each contact point: an actuator of `palpate devices
+    /// --actuators`; that of the scene's tool, or else one that plays every frequency, if left out.
+    #[arg(long, value_name = "NAME", requires = "wav", value_parser = actuator)]
+    pub(crate) actuator: Option<Actuator>,
     /// Draw the path, the proxy and the force over the isolines: .svg or .png.
     #[arg(long, value_name = "PICTURE")]
     pub(crate) plot: Option<PathBuf>,
@@ -122,6 +128,11 @@ impl FromStr for DeviceChoice {
             _ => Err("must be recorded, simulated:NAME or glove".to_owned()),
         }
     }
+}
+
+fn actuator(name: &str) -> Result<Actuator, String> {
+    let names = ACTUATORS.each_ref().map(|(name, _)| *name);
+    actuator_named(name).map_err(|_| unknown_name("actuator", name, &names))
 }
 
 impl FeelOptions {

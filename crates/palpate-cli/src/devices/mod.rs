@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! `palpate devices`: the profiles of known devices.
+//! `palpate devices`: the profiles of known devices and actuators.
 
+mod actuators;
 mod rendered;
 
 use std::io::Write;
@@ -120,6 +121,9 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     if options.materials {
         return rendered::report(options);
     }
+    if options.actuators {
+        return actuators::report(options.json);
+    }
     let mut out = output::answer();
     if options.json {
         let rows = PROFILES.iter().map(|(name, profile)| described(name, profile)).collect();
@@ -145,7 +149,8 @@ pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
         }
     }
     writeln!(out, "{} devices", PROFILES.len())?;
-    Ok(Outcome::Yes)
+    writeln!(out)?;
+    actuators::report(false)
 }
 
 /// A row for each profile, with its name and its assumed numbers; columns are `wide` characters

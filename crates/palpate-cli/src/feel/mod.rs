@@ -132,7 +132,7 @@ where
             .map(|body| body.surface().stiffness())
             .collect(),
     };
-    let written = outputs.write(scene, &recorder, traced, &ran);
+    let (written, played) = outputs.write(scene, &recorder, traced, &ran);
     let felt = report::Felt {
         name,
         scene,
@@ -142,6 +142,7 @@ where
         accepted: &accepted,
         nearest: is_missed(&outcome).then(|| paths::nearest(scene, &paths)),
         workspace_scale: held::is_fitted(scene, &choice).then(|| map.scale()),
+        played: played.as_ref(),
     };
     // The report is whole even if a file cannot be written, and a reader that closed the pipe
     // hides no file that is missing.

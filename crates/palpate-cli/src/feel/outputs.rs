@@ -5,9 +5,10 @@
 
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, Sink, TraceRow, TraceWriter};
+use palpate::vibration::Actuator;
 
 use super::figure::Run;
-use super::vibration::Vibration;
+use super::vibration::{Played, Vibration};
 use crate::arguments::FeelOptions;
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files};
@@ -18,6 +19,8 @@ pub(super) struct Outputs {
     trace: Option<Destination>,
     wav: Option<Destination>,
     plot: Option<Picture>,
+    /// What plays the vibration, if the command line says so.
+    actuator: Option<Actuator>,
 }
 
 /// The rows of the trace, if one was written, or why it could not be.
@@ -55,6 +58,7 @@ impl Outputs {
                 .as_deref()
                 .map(|path| Picture::new(&mut files, path))
                 .transpose()?,
+            actuator: options.actuator.clone(),
         })
     }
 
@@ -95,22 +99,30 @@ impl Outputs {
     }
 
     /// Writes the other files from the ticks, and says which were written; if one fails, the
-    /// others are still written.
+    /// others are still written. Returns what actuators played, if that was written.
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
         recorder: &Recorder<D>,
         traced: Traced,
         ran: &Ran<'_>,
-    ) -> Result<(), Failure>
+    ) -> (Result<(), Failure>, Option<Played>)
     where
         Dimensions: Drawable<D>,
     {
         let vibrates = self.wav.is_some() || self.plot.is_some() && !ran.has_forces;
-        let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate));
-        let vibration = vibration.transpose()?;
-        let wav = self.wav.iter().zip(&vibration);
-        let wav = wav.map(|(to, vibration)| (to.name(), vibration.write(to)));
+        let of_tool = || scene.tool.as_ref().and_then(|tool| tool.actuator.clone());
+        let actuator = self.actuator.clone().or_else(of_tool);
+        let vibration = vibrates.then(|| Vibration::of(scene, recorder, ran.rate, actuator));
+        let vibration = match vibration.transpose() {
+            Ok(vibration) => vibration,
+            Err(failure) => return (Err(failure), None),
+        };
+        let (mut played, mut wav) = (None, None);
+        if let (Some(to), Some(vibration)) = (&self.wav, &vibration) {
+            let written = vibration.write(to).map(|of_file| played = Some(of_file));
+            wav = Some((to.name(), written));
+        }
         let (rows, traced) = match traced.0 {
             Ok(rows) => (rows, Ok(())),
             Err(failure) => (None, Err(failure)),
@@ -138,6 +150,6 @@ impl Outputs {
         if !said.is_empty() {
             output::remark(format_args!("wrote {}", said.join(", ")));
         }
-        Failure::any(written.into_iter().map(|(_, written)| written))
+        (Failure::any(written.into_iter().map(|(_, written)| written)), played)
     }
 }

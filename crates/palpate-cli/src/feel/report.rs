@@ -20,6 +20,7 @@ use crate::outcome::Failure;
 use crate::output::{self, shown};
 
 use super::inside;
+use super::vibration::Played;
 
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -55,6 +56,8 @@ pub(super) struct Felt<'a, const D: usize> {
     pub(super) nearest: Option<f64>,
     /// World metres for each metre of the device, if the program chose them.
     pub(super) workspace_scale: Option<f64>,
+    /// What actuators played, if that was written to a file.
+    pub(super) played: Option<&'a Played>,
 }
 
 impl<const D: usize> Felt<'_, D> {
@@ -81,6 +84,9 @@ impl<const D: usize> Felt<'_, D> {
         }
         if let Some(scale) = self.workspace_scale {
             json["workspace_scale"] = scale.into();
+        }
+        if let Some(played) = self.played {
+            json["vibration"] = played.json();
         }
         if self.servo.tool().is_some() {
             json["coupling"] = serde_json::to_value(self.accepted.first())?;
@@ -204,6 +210,9 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
         )?;
     }
     write_textures(out, felt)?;
+    if let Some(played) = felt.played {
+        played.write(out)?;
+    }
     write!(out, "{report:#}")
 }
 

@@ -3,17 +3,20 @@
 
 //! The vibration of a run, for fingers without force feedback.
 
+use std::fmt::Write;
 use std::io::Cursor;
 
 use palpate::field::Point;
 use palpate::scene::BuiltScene;
 use palpate::servo_loop::{Recorder, TraceRow};
 use palpate::vibration::{
-    Cue, Mapping, MappingOptions, Sensation, Synthesiser, Tap, Tones, Voice, write_wav,
+    Actuator, ActuatorModel, Cue, Limiting, Mapping, MappingOptions, Sensation, Synthesiser,
+    Tap, Tones, Voice, sensation_level, write_wav,
 };
+use serde_json::{Value, json};
 
 use crate::outcome::Failure;
-use crate::output::Destination;
+use crate::output::{Destination, shown};
 
 /// The sample rate [Hz]; the skin feels nothing above 1 kHz.
 const SAMPLE_RATE: u32 = 8000;
@@ -21,6 +24,8 @@ const SAMPLE_RATE: u32 = 8000;
 /// What the contact points of a run feel, each by an actuator of its own.
 pub(super) struct Vibration {
     mapping: Mapping,
+    /// What plays it; `None` for one that plays every frequency.
+    actuator: Option<Actuator>,
     /// The time of each tick [s].
     times: Vec<f64>,
     /// The sensations of each contact point in all ticks.
@@ -29,16 +34,36 @@ pub(super) struct Vibration {
     rate: f64,
 }
 
+/// What actuators played.
+pub(super) struct Played {
+    pub(super) actuator: Option<Actuator>,
+    /// What was made smaller, of all actuators together.
+    pub(super) limiting: Limiting,
+    /// How far each actuator's strongest moment is above the threshold of the skin [dB]; `None` for
+    /// one that was silent.
+    pub(super) levels: Vec<Option<f64>>,
+}
+
+/// What one actuator played.
+struct Channel {
+    samples: Vec<f32>,
+    limiting: Limiting,
+    level: Option<f64>,
+}
+
 impl Vibration {
     /// The vibration of a run at `rate` [Hz].
     pub(super) fn of<const D: usize>(
         scene: &BuiltScene<D>,
         recorder: &Recorder<D>,
         rate: f64,
+        actuator: Option<Actuator>,
     ) -> Result<Self, Failure> {
         let rows = recorder.rows();
         let count = rows.iter().map(|row| row.point).max().map_or(0, |last| last as usize + 1);
-        let mapping = Mapping::new(MappingOptions::default()).map_err(Failure::input)?;
+        let options = MappingOptions::default();
+        let options = actuator.as_ref().map_or(options, |actuator| actuator.options(options));
+        let mapping = Mapping::new(options).map_err(Failure::input)?;
         let felt = |point: usize| {
             let of_point = rows.iter().skip(point).step_by(count.max(1));
             let mut last: Option<&TraceRow<D>> = None;
@@ -50,13 +75,15 @@ impl Vibration {
             sensations.collect()
         };
         let times = rows.iter().step_by(count.max(1)).map(|row| row.time_s).collect();
-        Ok(Self { mapping, times, points: (0..count).map(felt).collect(), rate })
+        let points = (0..count).map(felt).collect();
+        Ok(Self { mapping, actuator, times, points, rate })
     }
 
-    /// What the actuator of each contact point plays in all ticks.
+    /// What the contact points are to feel in all ticks.
     pub(super) fn tones(&self) -> Result<Vec<Vec<Tones>>, Failure> {
         let of_point = |sensations: &Vec<Sensation>| {
-            let mut voice = Voice::new(self.rate).map_err(Failure::input)?;
+            let voice = Voice::new(&self.mapping, self.rate);
+            let mut voice = voice.map_err(Failure::input)?;
             Ok(sensations.iter().map(|sensation| voice.step(sensation)).collect())
         };
         self.points.iter().map(of_point).collect()
@@ -68,33 +95,115 @@ impl Vibration {
     }
 
     /// Writes a WAV file with a channel for each contact point.
-    pub(super) fn write(&self, destination: &Destination) -> Result<(), Failure> {
-        let channels = self.points.iter().map(|sensations| self.samples(sensations));
+    pub(super) fn write(&self, destination: &Destination) -> Result<Played, Failure> {
+        let channels = self.points.iter().map(|sensations| self.channel(sensations));
         let channels = channels.collect::<Result<Vec<_>, _>>()?;
-        let length = channels.first().map_or(0, Vec::len);
-        let turns = (0..length).flat_map(|i| channels.iter().map(move |samples| samples[i]));
+        let length = channels.first().map_or(0, |channel| channel.samples.len());
+        let turns =
+            (0..length).flat_map(|i| channels.iter().map(move |channel| channel.samples[i]));
         let count = u16::try_from(channels.len().max(1)).map_err(Failure::input)?;
         // The header holds the length and comes first, so the WAV is complete before it is
         // written.
         let mut wav = Cursor::new(Vec::new());
         write_wav(&mut wav, SAMPLE_RATE, count, turns).map_err(Failure::input)?;
-        destination.write(|out| Ok(out.write_all(wav.get_ref())?))
+        destination.write(|out| Ok(out.write_all(wav.get_ref())?))?;
+        let limiting = channels.iter().map(|channel| channel.limiting);
+        Ok(Played {
+            actuator: self.actuator.clone(),
+            limiting: limiting.fold(Limiting::default(), Limiting::and),
+            levels: channels.iter().map(|channel| channel.level).collect(),
+        })
     }
 
-    /// The samples of a contact point.
-    fn samples(&self, sensations: &[Sensation]) -> Result<Vec<f32>, Failure> {
-        let mut synthesiser = Synthesiser::new(&self.mapping, f64::from(SAMPLE_RATE), 1)
-            .map_err(Failure::input)?;
+    /// What the actuator of a contact point plays.
+    fn channel(&self, sensations: &[Sensation]) -> Result<Channel, Failure> {
+        let sample_rate = f64::from(SAMPLE_RATE);
+        let synthesiser = match &self.actuator {
+            Some(actuator) => {
+                Synthesiser::for_actuator(&self.mapping, actuator, sample_rate, 1)
+            }
+            None => Synthesiser::new(&self.mapping, sample_rate, 1),
+        };
+        let mut synthesiser = synthesiser.map_err(Failure::input)?;
         let mut samples = Vec::new();
         for (time, sensation) in self.times.iter().zip(sensations) {
             // All samples until the end of the tick, for rates that do not divide the sample
             // rate.
-            let end = ((time + 1.0 / self.rate) * f64::from(SAMPLE_RATE)).round() as usize;
+            let end = ((time + 1.0 / self.rate) * sample_rate).round() as usize;
             let start = samples.len();
             samples.resize(end.max(start), 0.0);
             synthesiser.render(&[*sensation], &mut samples[start..]);
         }
-        Ok(samples)
+        // The file begins with the run, and not with the limiter's look-ahead.
+        let (delay, length) = (synthesiser.delay(), samples.len());
+        samples.resize(length + delay, 0.0);
+        synthesiser.render(&[], &mut samples[length..]);
+        samples.drain(..delay);
+        let level = self.level(&samples)?;
+        Ok(Channel { samples, limiting: synthesiser.limiting(), level })
+    }
+
+    /// How far the actuator's shaking is above the threshold of the skin [dB].
+    fn level(&self, samples: &[f32]) -> Result<Option<f64>, Failure> {
+        let sample_rate = f64::from(SAMPLE_RATE);
+        let model = self
+            .actuator
+            .as_ref()
+            .map(|actuator| ActuatorModel::new(actuator, sample_rate).map_err(Failure::input));
+        let mut model = model.transpose()?;
+        let shaking = samples.iter().map(|sample| {
+            let sample = f64::from(*sample);
+            model.as_mut().map_or(sample, |model| model.step(sample))
+        });
+        let shaking: Vec<f64> = shaking.collect();
+        sensation_level(&shaking, sample_rate).map_err(Failure::input)
+    }
+}
+
+impl Played {
+    /// The lines of a report.
+    pub(super) fn write(&self, out: &mut String) -> std::fmt::Result {
+        let what = match &self.actuator {
+            Some(actuator) => {
+                format!("{}, {}", actuator.mechanism.kind_name(), shown(&actuator.name))
+            }
+            None => "of any frequency".to_owned(),
+        };
+        let plural = if self.levels.len() == 1 { "" } else { "s" };
+        writeln!(out, "  vibration      {} actuator{plural}: {what}", self.levels.len())?;
+        let loudest = self.levels.iter().flatten().copied().reduce(f64::max);
+        match loudest {
+            Some(level) if level > 0.0 => writeln!(
+                out,
+                "                 felt up to {level:.0} dB above the threshold of the skin"
+            )?,
+            Some(level) => writeln!(
+                out,
+                "                 not felt: {:.0} dB below the threshold of the skin",
+                -level
+            )?,
+            None => writeln!(out, "                 silent")?,
+        }
+        if self.limiting.ticks > 0 {
+            writeln!(
+                out,
+                "                 limited in {} ticks, by up to {:.1} dB",
+                self.limiting.ticks,
+                self.limiting.largest_reduction_db()
+            )?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn json(&self) -> Value {
+        json!({
+            "actuator": self.actuator.as_ref().map(|actuator| actuator.name.as_ref()),
+            "kind": self.actuator.as_ref().map(|actuator| actuator.mechanism.kind_name()),
+            "channels": self.levels.len(),
+            "limited_ticks": self.limiting.ticks,
+            "largest_reduction_db": self.limiting.largest_reduction_db(),
+            "sensation_levels_db": self.levels,
+        })
     }
 }
 

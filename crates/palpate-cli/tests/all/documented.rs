@@ -82,13 +82,14 @@ fn runs() -> (Names, Names) {
         .write("flat.json", &flat.replace(", 0] }", "] }").replace(", 0.1, 0]", ", 0.1]"));
     let rows = "time_s,x_m,y_m,z_m\n0,0,0.049,0\n0.1,0,0.06,0\n";
     let hand = folder.write("hand.csv", rows);
-    let trace = folder.name("trace.csv");
+    let [trace, wav] = ["trace.csv", "touch.wav"].map(|name| folder.name(name));
     let (mut printed, mut columns) = (Names::new(), Names::new());
     let stylus = ["scenes/stylus_in_cup.json", "--fast", "--duration", "0.1"];
     for run in [
         &[&stylus[..], &["--device", "simulated:sigma7"]].concat()[..],
         &[&scene, "--path", &hand, "--device", "simulated:omega"],
         &[&flat, "--fast", "--duration", "0.1"],
+        &["scenes/materials.json", "--fast", "--duration", "2", "--wav", &wav],
     ] {
         let feel = [&["feel"], run, &["--json", "--trace", &trace]].concat();
         keys(&json(&feel), &mut printed);
@@ -108,12 +109,12 @@ fn the_keys_and_columns_of_feel_are_documented() {
 
 #[test]
 fn the_keys_of_devices_and_jitter_are_documented() {
-    for (heading, command) in [
-        ("Devices", &["devices", "--json"][..]),
-        ("Lateness", &["jitter", "--duration", "0.03", "--json"]),
+    for (heading, commands) in [
+        ("Devices", &[&["devices", "--json"][..], &["devices", "--actuators", "--json"]][..]),
+        ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
     ] {
         let mut printed = Names::new();
-        keys(&json(command), &mut printed);
+        commands.iter().for_each(|command| keys(&json(command), &mut printed));
         assert_same(&documented(heading, true), &printed);
     }
 }

@@ -32,7 +32,16 @@ fn devices_lists_limits_with_units_sources_and_what_is_assumed() {
     let cells: Vec<_> = rows[1].split_whitespace().collect();
     assert_eq!(cells[1..5], ["0.2", "~0.2", "~100", "1"]);
     assert!(table.contains("\nomega: Force Dimension omega; source: "));
-    assert!(table.ends_with(&format!("{} devices\n", all.len())));
+    assert!(table.contains(&format!("\n{} devices\n\nactuators", all.len())));
+    let alone = text(&palpate(&["devices", "--actuators"]));
+    assert!(table.ends_with(&alone) && alone.ends_with("\n4 actuators\n"));
+    let lra = "\nlra: LRA, Vybronics VG1040003D, a coin of 10 mm: resonance 170 Hz, \
+               bandwidth ~10 Hz, overdrive ~1.2\nlra: source: ";
+    assert!(alone.contains(lra), "{alone}");
+    let actuators = json(&["devices", "--actuators", "--json"]);
+    let voltage = serde_json::json!({ "value": 1.5, "unit": "", "assumed": false });
+    assert_eq!(actuators[0]["overdrive"], voltage);
+    assert_eq!(actuators[2]["bandwidth"]["assumed"], true);
 }
 
 /// The built-in scene, felt without waiting for the clock, twice the same.
@@ -191,6 +200,84 @@ fn a_glove_feels_what_it_vibrates_like() {
         assert!(words.contains(&word), "{word} in {words:?}");
     }
     assert!(!words.contains(&"force [N]"), "{words:?}");
+}
+
+#[test]
+fn ten_fingers_are_felt_on_every_actuator_and_none_is_clipped() {
+    let folder = Folder::new();
+    let wav = folder.name("touch.wav");
+    let run = ["feel", "--device", "glove", "--duration", "2", "--fast", "--wav", &wav];
+    let mut files = Vec::new();
+    for (name, kind) in [("erm", "ERM"), ("lra", "LRA"), ("voice_coil", "voice coil")] {
+        let report = json(&[&run[..], &["--actuator", name, "--json"]].concat());
+        let vibration = &report["vibration"];
+        assert_eq!((&vibration["kind"], &vibration["channels"]), (&kind.into(), &10.into()));
+        let levels = vibration["sensation_levels_db"].as_array().unwrap();
+        assert_eq!(levels.len(), 10);
+        for level in levels.iter().filter_map(serde_json::Value::as_f64) {
+            assert!(level > 6.0, "{name}: {level} dB");
+        }
+        assert!(levels.iter().any(|level| !level.is_null()), "{name}: silence");
+        files.push(std::fs::read(&wav).unwrap());
+        let said = text(&palpate(&[&run[..], &["--actuator", name]].concat()));
+        assert!(said.contains(&format!("10 actuators: {kind}, ")), "{said}");
+        assert!(said.contains(" dB above the threshold of the skin"), "{said}");
+    }
+    assert!(files[0] != files[1] && files[1] != files[2]);
+    // Pressure and taps together are more than the largest level: they are limited, not cut off.
+    let report = json(&[&run[..], &["--json"]].concat());
+    let vibration = &report["vibration"];
+    assert!(vibration["limited_ticks"].as_u64().unwrap() > 0);
+    assert!(vibration["largest_reduction_db"].as_f64().unwrap() > 1.0);
+    let bytes = std::fs::read(&wav).unwrap();
+    let (samples, _) = bytes[68..].as_chunks::<2>();
+    let samples: Vec<i16> = samples.iter().map(|bytes| i16::from_le_bytes(*bytes)).collect();
+    let channel = |number: usize| samples.iter().skip(number).step_by(10).copied();
+    for number in 0..10 {
+        let samples: Vec<i16> = channel(number).collect();
+        // What is cut off stays at the largest value for several samples.
+        let is_cut = |five: &[i16]| five.iter().all(|sample| sample.unsigned_abs() >= 32767);
+        assert!(!samples.windows(5).any(is_cut), "actuator {number}");
+    }
+    let unknown = palpate(&[&run[..], &["--actuator", "lar"]].concat());
+    assert_eq!(status(&unknown), 2);
+    assert!(errors(&unknown).contains("unknown actuator `lar`, did you mean `lra`?"));
+}
+
+#[test]
+fn the_actuator_of_a_scene_plays_unless_the_command_line_names_another() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 3, "tool": { "actuator": "lra" },
+      "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.05 } } } ] }"#;
+    let (scene, wav) = (folder.write("ball.json", scene), folder.name("touch.wav"));
+    let run = ["feel", &scene, "--fast", "--duration", "0.5", "--wav", &wav, "--json"];
+    assert_eq!(json(&run)["vibration"]["kind"], "LRA");
+    let other = json(&[&run[..], &["--actuator", "erm"]].concat());
+    assert_eq!(other["vibration"]["kind"], "ERM");
+}
+
+#[test]
+fn a_texture_that_is_too_fast_for_the_rate_says_which_rate_it_wants() {
+    let folder = Folder::new();
+    let scene = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "plate",
+      "shape": { "box": { "size": [2, 0.2, 2] } }, "material": { "texture":
+        { "kind": "height", "amplitude": 1e-4, "wavelength": 1e-3, "direction": [1, 0, 0] } } } ] }"#;
+    let scene = folder.write("plate.json", scene);
+    let hand = "time_s,x_m,y_m,z_m\n0,0,0.1,0\n1,0.4,0.1,0\n";
+    let hand = folder.write("hand.csv", hand);
+    let run = |rate| ["feel", &scene, "--path", &hand, "--fast", "--rate", rate];
+    let said = text(&palpate(&run("1000")));
+    assert!(said.contains("crests a second want a rate of 2400 Hz"), "{said}");
+    // The hand goes 0.4 m in a second along a cubic: up to 0.6 m/s over crests 1 mm apart.
+    let report = json(&[&run("1000")[..], &["--json"]].concat());
+    let texture = &report["texture"];
+    assert!((texture["highest_frequency"].as_f64().unwrap() - 600.0).abs() < 1.0, "{texture}");
+    assert!((texture["wanted_rate"].as_f64().unwrap() - 2400.0).abs() < 4.0);
+    // 2.4 t (1 − t) m/s is more than 0.25 m/s for 764 ms.
+    assert!((760..=768).contains(&texture["faded_ticks"].as_u64().unwrap()), "{texture}");
+    let report = json(&[&run("4000")[..], &["--json"]].concat());
+    assert_eq!(report["texture"]["faded_ticks"], 0);
+    assert!(!text(&palpate(&run("4000"))).contains("faded"));
 }
 
 #[test]

@@ -21,7 +21,7 @@ use palpate_field::{Point, Vector};
 use crate::error::HapticsError;
 pub use curve::Curve;
 use limit::{Motion, damped};
-use palpate_safety::NumberError;
+use palpate_safety::{Impedance, NumberError};
 pub use slope::Slope;
 use target::Target;
 
@@ -317,6 +317,31 @@ impl<const D: usize> Guide<D> {
     #[must_use]
     pub fn options(&self) -> &GuideOptions {
         &self.options
+    }
+
+    /// The steepest change of the force [N/m] and the damping [N·s/m].
+    pub(crate) fn impedance(&self) -> Result<Impedance, HapticsError> {
+        let stiffness = match &self.kind {
+            Kind::Target(_) | Kind::Well(_) => self.options.stiffness,
+            Kind::Slope(slope) => slope.stiffness(),
+        };
+        Ok(Impedance::new(stiffness.max(f64::MIN_POSITIVE), self.options.damping)?)
+    }
+
+    /// This guide with these parts of its stiffness and damping. A well or slope keeps its shape and
+    /// pulls less.
+    pub(crate) fn softened(self, stiffness: f64, damping: f64) -> Self {
+        let options = GuideOptions {
+            stiffness: self.options.stiffness * stiffness,
+            damping: self.options.damping * damping,
+            ..self.options
+        };
+        let kind = match self.kind {
+            Kind::Target(target) => Kind::Target(target),
+            Kind::Well(well) => Kind::Well(well.scaled(stiffness)),
+            Kind::Slope(slope) => Kind::Slope(slope.scaled(stiffness)),
+        };
+        Self { kind, options, ..self }
     }
 
     /// `true` if the guide held the hand in the last tick; for a well or slope, if the hand was

@@ -82,6 +82,17 @@ impl<const D: usize> Slope<D> {
         Err(HapticsError::Number(NumberError::new(parameter, rule, edge, "m")))
     }
 
+    /// The steepest change of the force where the gradient has the length one [N/m]: the largest
+    /// slope of `3t² − 2t³` is 3/2.
+    pub(super) fn stiffness(&self) -> f64 {
+        1.5 * self.gain.abs() / self.edge
+    }
+
+    /// This slope with `part` of its force.
+    pub(super) fn scaled(self, part: f64) -> Self {
+        Self { gain: self.gain * part, ..self }
+    }
+
     /// Force and damper along the gradient; `None` outside the band.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic unless a custom field does; one

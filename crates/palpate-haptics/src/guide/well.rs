@@ -38,6 +38,11 @@ impl<const D: usize> Well<D> {
         Err(HapticsError::Number(NumberError::new(parameter, rule, reach, "m")))
     }
 
+    /// This well with `part` of its pull.
+    pub(super) fn scaled(self, part: f64) -> Self {
+        Self { max_force: self.max_force * part, ..self }
+    }
+
     /// The pull at `position` [N], and the part of the damper that acts there; `None` beyond
     /// the reach.
     ///

@@ -9,7 +9,6 @@ use palpate_field::Pose;
 
 use super::{Servo, UnprotectedServo};
 use crate::contact_point::Touch;
-use crate::guide::Guide;
 use palpate_safety::{PointState, TurnState};
 
 macro_rules! methods_of_both {
@@ -37,11 +36,6 @@ macro_rules! methods_of_both {
             /// Real-time: allocates nothing, takes no lock, cannot panic.
             pub fn set_turn(&mut self, turn: Option<TurnState<D>>) {
                 self.renderer.set_turn(turn);
-            }
-
-            /// Sets the guides of every contact point.
-            pub fn guide(&mut self, guides: &[Guide<D>]) {
-                self.renderer.guide(guides);
             }
 
             /// Sets by how much the next tick starts too late [s]; zero in time. A servo loop calls

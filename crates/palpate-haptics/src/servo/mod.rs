@@ -23,6 +23,7 @@ pub use unprotected::UnprotectedServo;
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
+use crate::guide::Guide;
 use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
@@ -62,6 +63,7 @@ use palpate_safety::{Accepted, Device, PointState};
 pub struct Servo<const D: usize> {
     renderer: Renderer<D>,
     protection: Arc<Protection<D>>,
+    accepted_guides: Vec<Accepted>,
 }
 
 impl<const D: usize> Servo<D> {
@@ -131,6 +133,41 @@ impl<const D: usize> Servo<D> {
     #[must_use]
     pub fn accepted(&self) -> &[Accepted] {
         self.renderer.accepted().accepted()
+    }
+
+    /// Sets the guides of every contact point, as soft as the device requires.
+    ///
+    /// # Errors
+    ///
+    /// As [`Protection::accept_guides`].
+    ///
+    /// ```
+    /// use palpate_field::{Shape, Vector};
+    /// use palpate_haptics::{DeviceProfile, Guide, GuideOptions, Protection, UnprotectedServo};
+    ///
+    /// # fn main() -> Result<(), palpate_haptics::HapticsError> {
+    /// let disc = Shape::circle(0.05)?;
+    /// let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    /// let servo = UnprotectedServo::new(disc, 1, Default::default())?;
+    /// let mut servo = servo.protected(&Protection::new(device))?;
+    /// let options = GuideOptions::default().with_stiffness(4000.0);
+    /// servo.guide(&[Guide::to_point(Vector([0.0, 0.1]), options)?])?;
+    /// assert_eq!(servo.accepted_guides()[0].stiffness_factor, 0.25);
+    /// assert_eq!(servo.guides(0)[0].options().stiffness, 1000.0);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn guide(&mut self, guides: &[Guide<D>]) -> Result<(), HapticsError> {
+        let (guides, accepted) = self.protection.accept_guides(guides, self.options().rate)?;
+        self.renderer.guide(&guides);
+        self.accepted_guides = accepted;
+        Ok(())
+    }
+
+    /// The accepted stiffness and damping of each guide; empty for a device that gives no force.
+    #[must_use]
+    pub fn accepted_guides(&self) -> &[Accepted] {
+        &self.accepted_guides
     }
 
     /// Scales bodies to what the servo's device renders, for

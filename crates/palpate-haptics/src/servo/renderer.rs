@@ -287,6 +287,7 @@ impl<const D: usize> Renderer<D> {
         }
     }
 
+    /// Sets the guides of every contact point.
     pub(super) fn guide(&mut self, guides: &[Guide<D>]) {
         for point in &mut self.contacts.points {
             point.guides = guides.to_vec();

@@ -10,6 +10,7 @@ use super::{Renderer, Servo};
 use crate::accepted_bodies::AcceptedBodies;
 use crate::bodies::Bodies;
 use crate::error::HapticsError;
+use crate::guide::Guide;
 use crate::options::ServoOptions;
 use crate::protection::Protection;
 use crate::tool::Tool;
@@ -199,7 +200,15 @@ impl<const D: usize> UnprotectedServo<D> {
             renderer.limit_torque(0.0);
         }
         renderer.exchange(&mut bodies);
-        Ok(Servo { renderer, protection })
+        let guides = renderer.guides(0).to_vec();
+        let mut servo = Servo { renderer, protection, accepted_guides: Vec::new() };
+        servo.guide(&guides)?;
+        Ok(servo)
+    }
+
+    /// Sets the guides of every contact point.
+    pub fn guide(&mut self, guides: &[Guide<D>]) {
+        self.renderer.guide(guides);
     }
 
     /// This servo with the default protection for `profile`.

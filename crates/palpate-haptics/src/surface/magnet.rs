@@ -34,6 +34,16 @@ impl Pull {
         })
     }
 
+    /// The steepest change of the pull, next to the surface [N/m].
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.force / (PEAK * self.reach)
+    }
+
+    /// This pull with `part` of its force.
+    pub(crate) fn scaled(&self, part: f64) -> Self {
+        Self { force: self.force * part, ..*self }
+    }
+
     /// The pull at `height` above the surface [N].
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic.

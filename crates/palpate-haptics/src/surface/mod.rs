@@ -20,6 +20,7 @@ use palpate_safety::{Impedance, NumberError};
 
 pub(crate) use magnet::Pull;
 pub(crate) use ring::{Ring, Ringing};
+pub use ripples::Passing;
 pub(crate) use ripples::Ripples;
 pub(crate) use strata::{Friction, Strata, Stratum};
 
@@ -43,6 +44,10 @@ pub(crate) struct Press<const D: usize> {
     pub(crate) velocity: Vector<f64, D>,
     /// The proxy [m].
     pub(crate) proxy: Point<D>,
+    /// Ticks a second [Hz].
+    pub(crate) rate: f64,
+    /// Whether the dampers act.
+    pub(crate) has_dampers: bool,
 }
 
 /// A material prepared for the servo.
@@ -65,7 +70,11 @@ pub(crate) struct Press<const D: usize> {
 ///   chapter 4). The crests are at the surface and the troughs below it, so the force starts
 ///   gently wherever the hand enters. Below a curved surface the proxy moves farther than the
 ///   hand, or less far; the slope is converted to displacements of the hand, so a closed path
-///   gives no energy. A texture of kind *displacement* is part of the body's shape, not of its
+///   gives no energy. Where crests pass faster than a quarter of the rate, `w` fades: it is whole
+///   up to there, and gone at half of the rate, above which a wave would be felt at another
+///   frequency. While the fade changes, a closed path may give energy: at most `2 a N` for each
+///   crest that is climbed fast and descended slowly, with the normal force `N`; the passivity
+///   stage of a device's safety chain counts it. A texture of kind *displacement* is part of the body's shape, not of its
 ///   force.
 /// - An impact rings as a decaying sinusoid along the normal (Okamura, Cutkosky and
 ///   Dennerlein, "Reality-based models for vibration feedback", 2001).
@@ -224,10 +233,10 @@ impl<const D: usize> Surface<D> {
         press: Press<D>,
         mut turn: impl FnMut(Vector<f64, D>, f64) -> Vector<f64, D>,
     ) -> Vector<f64, D> {
-        let Press { stretch, velocity, proxy } = press;
+        let Press { stretch, velocity, proxy, rate, has_dampers } = press;
         let depth = stretch.norm();
         let layer = self.strata.at(level, depth);
-        let drag = velocity * -layer.viscosity;
+        let drag = if has_dampers { velocity * -layer.viscosity } else { Vector::ZERO };
         if depth == 0.0 {
             return drag;
         }
@@ -235,20 +244,35 @@ impl<const D: usize> Surface<D> {
         let (mut push, mut slope) = (depth, Vector::ZERO);
         if let Some(ripples) = &self.ripples {
             let (height, gradient) = ripples.at(proxy);
+            let Passing { part, .. } = ripples.passing(velocity, normal, rate);
             // If crests rose above the surface, a hand that enters at a crest would feel a jump
             // of force, and a hand that leaves through a trough would not give the energy back.
-            push = (depth + height - ripples.height()).max(0.0);
+            push = (depth + height * part - ripples.height()).max(0.0);
             // Only the gradient along the surface counts: across the surface the wave does not
             // change the depth.
             let along = gradient - normal * gradient.dot(normal);
             // Below a curved surface the proxy moves farther than the hand, or less far.
             let far = FAR * ripples.wavelength();
             let seen = surface_displacement(|way| turn(way, far), along, depth, SOLVED);
-            slope = limited(seen.unwrap_or(along), STEEPER * along.norm());
+            slope = limited(seen.unwrap_or(along), STEEPER * along.norm()) * part;
         }
         let spring = self.strata.force(level, push);
-        let approach = (-velocity.dot(normal)).max(0.0);
+        let approach = if has_dampers { (-velocity.dot(normal)).max(0.0) } else { 0.0 };
         normal * (spring + layer.damping * approach) - slope * spring + drag
+    }
+
+    /// How the crests of the surface's height texture pass under a hand of this velocity [m/s]
+    /// along a surface with this unit normal, both in body coordinates, at `rate` [Hz]. `None`
+    /// without such a texture.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn passing(
+        &self,
+        velocity: Vector<f64, D>,
+        normal: Vector<f64, D>,
+        rate: f64,
+    ) -> Option<Passing> {
+        self.ripples.as_ref().map(|ripples| ripples.passing(velocity, normal, rate))
     }
 
     /// The ringing that an impact at `speed` [m/s] along the normal starts, at `rate` [Hz].

@@ -15,6 +15,48 @@ use palpate_safety::NumberError;
 /// Rounding errors of a wave, from the products of the phase, their sum and the sine.
 const ROUNDINGS: f64 = 16.0;
 
+/// The frequencies at which a height texture begins to fade and is gone, as parts of the rate: a
+/// force that is held for a tick follows a wave well up to four ticks a wave; beyond two it cannot
+/// (Nyquist), and is felt at another frequency. Choi and Tan, "Effect of update rate on perceived
+/// instability of virtual haptic texture" (2004), ask for 5 to 10 kHz for that reason.
+const FADES: [f64; 2] = [0.25, 0.5];
+
+/// The part of a height texture that is rendered at `rate` [Hz] when its crests pass at `frequency`
+/// [Hz]: 1 up to a quarter of the rate, 0 from half of it on, and `(1 − u)² (1 + 2u)` between, with
+/// u from 0 to 1. Zero for NaN.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+fn rendered_part(frequency: f64, rate: f64) -> f64 {
+    let [begins, ends] = FADES;
+    let crests = frequency / rate;
+    if crests <= begins {
+        return 1.0;
+    }
+    // `min` gives 1 for NaN.
+    let faded = ((crests - begins) / (ends - begins)).min(1.0);
+    (1.0 - faded) * (1.0 - faded) * (1.0 + 2.0 * faded)
+}
+
+/// How the crests of a height texture pass under a hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Passing {
+    /// Crests a second [Hz].
+    pub frequency: f64,
+    /// The part of the texture that is rendered, in [0, 1]: less than 1 if crests pass faster than
+    /// a quarter of the rate.
+    pub part: f64,
+}
+
+impl Passing {
+    /// The rate at which the texture is rendered in full [Hz]: four ticks for each crest.
+    #[must_use]
+    pub fn wanted_rate(&self) -> f64 {
+        let [begins, _] = FADES;
+        self.frequency / begins
+    }
+}
+
 /// A wave through space, in a body's coordinates: `a · sin(2π u·p / λ)` along a direction `u`,
 /// or `a · Π sin(2π pᵢ / λ)` along all axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +104,33 @@ impl<const D: usize> Ripples<D> {
     /// The distance between crests [m].
     pub(crate) fn wavelength(&self) -> f64 {
         self.wavelength
+    }
+
+    /// How many crests pass a second at this velocity [Hz]; of waves along all axes, the most along
+    /// one of them.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    fn frequency(&self, velocity: Vector<f64, D>) -> f64 {
+        let radians = match &self.waves {
+            Waves::Plane(along) => velocity.dot(Vector(*along)).abs(),
+            Waves::Product(number) => {
+                number * velocity.0.iter().fold(0.0, |most: f64, v| most.max(v.abs()))
+            }
+        };
+        radians / (2.0 * std::f64::consts::PI)
+    }
+
+    /// How the crests pass under a hand of this velocity along a surface with this unit normal.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn passing(
+        &self,
+        velocity: Vector<f64, D>,
+        normal: Vector<f64, D>,
+        rate: f64,
+    ) -> Passing {
+        let frequency = self.frequency(velocity - normal * velocity.dot(normal));
+        Passing { frequency, part: rendered_part(frequency, rate) }
     }
 
     /// The height of the wave [m] and its gradient.
@@ -139,5 +208,30 @@ mod tests {
             assert!((change - slope.dot(step)).abs() < 1e-12);
             Ok(())
         });
+    }
+
+    #[test]
+    fn crests_pass_as_often_as_the_hand_crosses_them() {
+        let plane = Ripples::<2>::new(&texture(Some(vec![3.0, 4.0]))).unwrap();
+        // 8 m from crest to crest: 16 m/s along the wave are two a second.
+        assert!((plane.frequency(Vector([9.6, 12.8])) - 2.0).abs() < 1e-15);
+        assert!(plane.frequency(Vector([-4.0, 3.0])).abs() < 1e-15);
+        let product = Ripples::<2>::new(&texture(None)).unwrap();
+        assert!((product.frequency(Vector([4.0, -16.0])) - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_texture_is_whole_to_a_quarter_of_the_rate_and_gone_at_half() {
+        let part = |frequency: f64| rendered_part(frequency, 1000.0);
+        assert_eq!(
+            [0.0, 100.0, 250.0, 375.0, 500.0, 1e9].map(part),
+            [1.0, 1.0, 1.0, 0.5, 0.0, 0.0]
+        );
+        assert_eq!(part(f64::NAN), 0.0);
+        for hertz in 0..600 {
+            let (here, next) = (part(f64::from(hertz)), part(f64::from(hertz + 1)));
+            // The steepest slope of the fade is 1.5 over 250 Hz.
+            assert!((0.0..=1.5 / 250.0).contains(&(here - next)), "{hertz} Hz");
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 //! Creases of bodies of several materials: each gives the force of its own, and the sum is smooth.
 
-use palpate_field::kernel::HalfSpace;
+use palpate_field::kernel::{Cuboid, HalfSpace};
 use palpate_field::{Pose, Shape, Vector};
 use palpate_haptics::{
     Bodies, Body, Event, EventKind, Material, PointState, Probe, ServoOptions, Surface,
@@ -215,4 +215,34 @@ fn wedges_of_several_materials_are_smooth() {
         }
         Ok(Ok(()))
     });
+}
+
+/// A box that stands exactly on a table once pulled the hand under it with 30 N.
+#[test]
+fn a_point_finds_no_crack_between_bodies_that_touch() {
+    let table = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0, 0.0]), 0.0).unwrap());
+    let size = Vector([0.1, 0.1, 0.1]);
+    let boxed = Shape::from_kernel(Cuboid::new(size).unwrap());
+    let surface = || Surface::smooth(500.0, 0.0).unwrap();
+    let boxed = Body::new(boxed, surface()).unwrap();
+    let boxed = boxed.at(Pose::translation(Vector([0.0, 0.05, 0.0]))).unwrap();
+    let bodies = vec![Body::new(table, surface()).unwrap(), boxed];
+    let options = ServoOptions::default()
+        .with_probe(Probe::new(0.0).unwrap())
+        .with_max_force(f64::INFINITY)
+        .with_rise_time(1e-9);
+    for below in [1e-5, 1e-3, 5e-3] {
+        let bodies = Bodies::new(bodies.clone()).unwrap();
+        let mut servo = UnprotectedServo::new(bodies, 1, options).unwrap();
+        for tick in 0..2000 {
+            let gone = f64::from(tick) / 2000.0;
+            let device = Vector([0.06 - 0.04 * gone, 0.002 - (0.002 + below) * gone, 0.01]);
+            let touch = servo.step(&[PointState::at_rest(device)])[0];
+            let proxy = touch.proxy;
+            assert!(proxy[0] > 0.05 - 1e-6 && proxy[1] > -1e-6, "{tick}: {touch:?}");
+        }
+        let wanted = servo.touches()[0].wanted;
+        let deep = Vector([500.0 * 0.03, 500.0 * below, 0.0]);
+        assert!((wanted - deep).norm() < 1e-3 * deep.norm(), "{wanted:?}, not {deep:?}");
+    }
 }

@@ -11,7 +11,7 @@ use palpate_haptics::{
     Curve, Guide, GuideOptions, Material, PointState, ServoOptions, UnprotectedServo,
 };
 use palpate_vibration::{
-    ActuatorArray, Cue, Mapping, MappingOptions, Publisher, Synthesiser, Tap, Voice,
+    ACTUATORS, ActuatorArray, Cue, Mapping, MappingOptions, Publisher, Synthesiser, Tap, Voice,
     one_channel, two_channels,
 };
 
@@ -48,8 +48,11 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
     let mut guides = guides();
     let mut servo = UnprotectedServo::new(ball(0.05), 1, ServoOptions::default()).unwrap();
     let mapping = Mapping::new(MappingOptions::default()).unwrap();
-    let mut voice = Voice::new(1000.0).unwrap();
+    let mut voice = Voice::new(&mapping, 1000.0).unwrap();
     let mut synthesiser = Synthesiser::new(&mapping, 8000.0, 1).unwrap();
+    let mut on_actuators = ACTUATORS
+        .each_ref()
+        .map(|(_, actuator)| Synthesiser::for_actuator(&mapping, actuator, 8000.0, 1).unwrap());
     let places = [-0.05, 0.0, 0.05, 0.1].map(|x| Vector([x, 0.05, 0.0]));
     let array = ActuatorArray::new(places.to_vec(), 0.1).unwrap();
     let mut publisher = Publisher::new(1, 1000.0, 50.0).unwrap();
@@ -76,6 +79,9 @@ fn a_tick_with_guides_and_vibration_allocates_nothing() {
             }
             let mut samples = [0.0; 8];
             synthesiser.render(&[felt], &mut samples);
+            for synthesiser in &mut on_actuators {
+                synthesiser.render(&[felt], &mut samples);
+            }
             for guide in &mut guides {
                 let force = guide.force(state.position, state.velocity);
                 assert!(force.norm() <= guide.options().max_force * (1.0 + 1e-15));

@@ -239,6 +239,55 @@ fn grooves_on_what_is_bent_give_back_what_they_took() {
     gains_nothing("a disc", &disc, (0.002, 0.006), 4);
 }
 
+/// The work of the force on a hand that goes over ten crests of a grooved floor and back, 2 mm deep
+/// [J]. `speed(turns, forth)` is the speed that the servo is told, so many crests on, with forth 1
+/// on the way there and −1 on the way back.
+fn work_over_grooves(speed: impl Fn(f64, f64) -> f64) -> f64 {
+    let floor = half_space([0.0, 1.0, 0.0], 0.0);
+    let grooved = grooved(Some(vec![1.0, 0.0, 0.0]));
+    let mut servo = servo(body(&floor, surface(&grooved)), 0.0);
+    let turns = |tick: u32| f64::from(tick.min(2 * TICKS - tick)) * 10.0 / f64::from(TICKS);
+    // From outside, so that the force is whole at once.
+    servo.step(&[PointState::at_rest(Vector([0.0, 0.001, 0.0]))]);
+    let mut last = None;
+    let mut work = 0.0;
+    for tick in 0..=2 * TICKS {
+        let forth = if tick < TICKS { 1.0 } else { -1.0 };
+        let position = Vector([0.003 * turns(tick), -0.002, 0.0]);
+        let velocity = Vector([forth * speed(turns(tick), forth), 0.0, 0.0]);
+        let touch = servo.step(&[PointState { position, velocity }])[0];
+        if let Some((force, place)) = last {
+            work += 0.5 * (touch.force + force).dot(position - place);
+        }
+        last = Some((touch.force, position));
+    }
+    work
+}
+
+#[test]
+fn a_texture_that_fades_gives_back_what_it_took_at_one_speed() {
+    // Crests 3 mm apart at 1 kHz: 0.75 m/s are a quarter of the rate, 1.5 m/s are half of it.
+    for speed in [0.3, 0.9, 1.2, 2.0] {
+        let gained = work_over_grooves(|_, _| speed);
+        assert!(gained.abs() <= MOST, "{gained:e} J at {speed} m/s");
+    }
+}
+
+#[test]
+fn a_texture_gives_2_a_n_for_each_crest_that_is_climbed_fast_and_descended_slowly() {
+    // The wave falls from a quarter of a turn to three quarters on the way there, and rises there
+    // on the way back.
+    let falls = |turns: f64, forth: f64| {
+        (0.25..0.75).contains(&(turns - turns.floor())) == (forth > 0.0)
+    };
+    let gained = work_over_grooves(|x, forth| if falls(x, forth) { 0.0 } else { 3.0 });
+    // 500 N/m, 2 mm deep less the amplitude a of 0.2 mm: N = 0.9 N.
+    let most = 20.0 * 2.0 * 2e-4 * 0.9;
+    assert!((gained / most - 1.0).abs() < 1e-3, "{gained:e} J, not {most:e} J");
+    let lost = work_over_grooves(|x, forth| if falls(x, forth) { 3.0 } else { 0.0 });
+    assert!((lost / most + 1.0).abs() < 1e-3, "{lost:e} J, not {most:e} J");
+}
+
 fn magnetic() -> Material {
     let magnet = Some(Magnet { description: None, force: 1.0, distance: 0.008 });
     Material { magnet, ..spring() }

@@ -41,7 +41,7 @@ fn is_as_it_was<const N: usize>(hashes: [u64; N], stored: [u64; N]) {
 fn in_the_plane_every_bit_is_as_it_was() {
     let hashes =
         [hash(&mut servo::<2>(9, 3, 1.0)), hash(&mut protected(servo::<2>(9, 3, 1.0)))];
-    is_as_it_was(hashes, [0xdf7c_0975_dc7b_3b8c, 0x2ec1_9083_d294_230e]);
+    is_as_it_was(hashes, [0xdf7c_0975_dc7b_3b8c, 0xa451_736b_32c3_21a4]);
 }
 
 #[test]
@@ -51,6 +51,6 @@ fn in_space_every_bit_is_as_it_was() {
     let safe = hash(&mut protected(servo::<3>(20, 3, 1.0)));
     is_as_it_was(
         [few, many, safe],
-        [0x4357_b65f_c9bd_e10a, 0xaafc_a61f_de39_ccb0, 0xad7d_39cd_9fcb_daec],
+        [0x4357_b65f_c9bd_e10a, 0xaafc_a61f_de39_ccb0, 0x37e2_bbc6_ba9e_76a7],
     );
 }

@@ -7,10 +7,12 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use palpate_field::{Point, Vector};
+use palpate_field::kernel::HalfSpace;
+use palpate_field::{Point, Shape, Vector};
 use palpate_haptics::{
-    Bodies, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, PointState,
-    Protection, SafetyError, Servo, ServoOptions, Surface, UnprotectedServo, handoff,
+    Bodies, Body, Device, DeviceLost, DeviceProfile, HandoffOptions, HapticsError, Magnet,
+    Material, PointState, Protection, SafetyError, Servo, ServoOptions, Surface,
+    UnprotectedServo, handoff,
 };
 use palpate_loop::{Pace, RunOptions, ServoThread, ThreadOptions, VirtualClock, run};
 
@@ -232,4 +234,20 @@ fn what_was_stopped_before_it_was_protected_is_released_gently() {
         before = force;
     }
     assert!(before > 1.0, "{before}");
+}
+
+#[test]
+fn a_magnet_pulls_no_steeper_than_the_device_renders() {
+    // 30 N at 0.25 mm are 120 kN/m, of which the device renders 1 kN/m.
+    let magnet = Magnet { description: None, force: 30.0, distance: 0.001 };
+    let material = Material { magnet: Some(magnet), ..Material::default() };
+    let shape = Shape::from_kernel(HalfSpace::new(Vector([0.0, 1.0]), -0.002).unwrap());
+    let body = Body::new(shape, Surface::new(&material).unwrap()).unwrap();
+    let bodies = Bodies::new(vec![body]).unwrap();
+    let device = DeviceProfile::unlimited("example").with_max_stiffness(1000.0);
+    let servo = UnprotectedServo::new(bodies, 1, ServoOptions::default()).unwrap();
+    let protection = Protection::new(device).with_rise_rate(f64::INFINITY);
+    let mut servo = servo.protected(&protection).unwrap();
+    servo.step(&[PointState::at_rest(Vector([0.0, 0.00025]))]);
+    assert!((servo.forces()[0] - Vector([0.0, -0.25])).norm() < 1e-9, "{:?}", servo.forces());
 }

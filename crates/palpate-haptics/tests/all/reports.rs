@@ -99,7 +99,7 @@ fn guides_tell_their_time_force_and_work() {
     let ground = half_space([0.0, 1.0], 0.0);
     let mut servo =
         without_limits(UnprotectedServo::new(ground, 1, Default::default()).unwrap());
-    servo.guide(&guides);
+    servo.guide(&guides).unwrap();
     // 10 mm down and back up onto the plane at 0.1 m/s.
     let hand = hand(&[0.0, 0.1, 0.2], &[1.0, 0.99, 1.0]);
     let report = told(&mut servo, vec![hand], 0.3);

@@ -188,7 +188,7 @@ fn a_servo_made_for_a_tool_keeps_the_tools_force_limit_and_its_guides_share_it()
     let tool = rod_with(options().with_max_force(0.5));
     let mut servo = Servo::for_tool(ground(smooth()), tool, &device).unwrap();
     let pull = GuideOptions::default().with_stiffness(100.0).with_damping(0.0);
-    servo.guide(&[Guide::to_point(Vector([0.0, 0.5, 0.0]), pull).unwrap()]);
+    servo.guide(&[Guide::to_point(Vector([0.0, 0.5, 0.0]), pull).unwrap()]).unwrap();
     servo.step(&[at(0.0, 0.02)]);
     assert!((hardest(&mut servo) - 0.5).abs() < 1e-12);
 }

@@ -17,6 +17,7 @@ use std::collections::hash_map::Entry;
 use palpate_field::{Point, Pose, Shape};
 
 use palpate_haptics::{Acceptance, Guide, Material, ToolOptions, WorkspaceMap};
+use palpate_vibration::Actuator;
 
 use crate::names::shortened;
 use crate::pose::{Turning, Turns, vector};
@@ -73,6 +74,8 @@ pub struct BuiltTool<const D: usize> {
     pub options: ToolOptions,
     /// What a device renders of materials, if the scene says so.
     pub acceptance: Option<Acceptance>,
+    /// What shakes each contact point, if the scene says so.
+    pub actuator: Option<Actuator>,
 }
 
 impl<const D: usize> BuiltTool<D> {
@@ -85,6 +88,7 @@ impl<const D: usize> BuiltTool<D> {
             shape: None,
             options: ToolOptions::default(),
             acceptance: None,
+            actuator: None,
         }
     }
 }
@@ -246,6 +250,7 @@ where
         shape,
         options: tool.options(),
         acceptance: tool.acceptance.map(Into::into),
+        actuator: tool.actuator()?,
     }))
 }
 

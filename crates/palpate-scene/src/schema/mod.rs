@@ -11,6 +11,7 @@ mod tidy;
 
 use std::borrow::Cow;
 
+use palpate_vibration::ACTUATORS;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
@@ -158,6 +159,24 @@ impl JsonSchema for VectorSchema {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({})
+    }
+}
+
+/// The name of an actuator.
+pub(crate) struct ActuatorSchema;
+
+impl JsonSchema for ActuatorSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "Actuator".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let names = ACTUATORS.each_ref().map(|(name, _)| *name);
+        json_schema!({ "enum": names })
     }
 }
 

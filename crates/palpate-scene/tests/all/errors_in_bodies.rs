@@ -52,6 +52,11 @@ fn bad_bodies_tools_motions_and_views_are_refused_with_their_place() {
                 Refuses,
             ),
             (
+                r#""tool": { "actuator": "voicecoil" }"#,
+                "tool.actuator, line 2: unknown actuator `voicecoil`, did you mean `voice_coil`?",
+                Refuses,
+            ),
+            (
                 r#""motions": [{ "body": "b", "to": {} }]"#,
                 "motions[0].body, line 2: unknown body `b`; known are `a`",
                 Accepts,
