@@ -47,7 +47,7 @@ pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath<D>>, Fail
         return Err(table.failure("there are no rows"));
     }
     let path = |(times, positions): Samples<D>| {
-        HandPath::new(times, positions, Interpolation::Smooth)
+        HandPath::new(times, positions, Interpolation::Monotone)
             .map_err(|error| table.failure(error))
     };
     paths.into_iter().map(path).collect()

@@ -36,7 +36,6 @@ mod shapes;
 mod table;
 mod threads;
 mod times;
-mod trace;
 mod views;
 
 use std::ffi::OsString;

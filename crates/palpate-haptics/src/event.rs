@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::fmt;
+
 use palpate_field::{Point, Vector};
 
 /// An event at a contact point.
@@ -79,6 +81,13 @@ impl EventCounts {
     }
 }
 
+impl fmt::Display for EventCounts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { touches, leaves: _, slips, sticks, pops } = self;
+        write!(f, "{touches} touches, {slips} slips, {sticks} sticks, {pops} pops")
+    }
+}
+
 /// Force and torque of all contact points on a body in a tick, in world coordinates: input for
 /// a physics engine that moves the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +117,12 @@ impl<const D: usize> Reaction<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn counts_are_said_in_their_order() {
+        let counts = EventCounts { touches: 5, leaves: 4, slips: 3, sticks: 2, pops: 1 };
+        assert_eq!(counts.to_string(), "5 touches, 3 slips, 2 sticks, 1 pops");
+    }
 
     /// The sum of finite forces may overflow. Found by fuzzing.
     #[test]

@@ -5,10 +5,19 @@
 
 use std::fmt::{Display, Formatter, Result};
 
+use crate::guide_report::GuideReport;
+use crate::lines;
 use crate::pacer::Lateness;
-use crate::report::{Ending, RunReport};
-use crate::statistics::Distribution;
+use crate::report::{Ending, Evaluations, RunReport};
+use crate::statistics::{Bucket, Distribution};
+use crate::texture_report::TextureReport;
 use crate::tool_report::ToolReport;
+
+/// What a report says if the device refused the last forces.
+pub(crate) const NOT_RELEASED: &str = "the device did not take the zero forces at the end";
+
+/// The widest bar of a histogram, in blocks.
+const WIDEST_BAR: u64 = 40;
 
 impl Display for Ending {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
@@ -22,15 +31,50 @@ impl Display for Ending {
 }
 
 impl Display for RunReport {
+    /// A sentence; with `{:#}` the lines that `palpate feel` prints, each of which ends.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        if f.alternate() {
+            return lines::write(f, self);
+        }
         let Self { ending, ticks, rate, contact_time, largest_force, .. } = self;
         write!(f, "{ticks} ticks at {rate} Hz, {contact_time:.3} s in contact, ")?;
         write!(f, "at most {largest_force:.3} N; {ending}")?;
-        if self.is_released {
-            Ok(())
-        } else {
-            f.write_str("; the device did not take the zero forces at the end")
+        if self.rows_dropped > 0 {
+            write!(f, "; {} rows lost", self.rows_dropped)?;
         }
+        if self.is_released { Ok(()) } else { write!(f, "; {NOT_RELEASED}") }
+    }
+}
+
+impl Display for Evaluations {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        write!(f, "{:.2} a tick, {} at most", self.mean, self.max)
+    }
+}
+
+impl Display for GuideReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { kind, time, largest_force, taken, given } = self;
+        if *time == 0.0 {
+            return write!(f, "a {kind}, did not hold the hand");
+        }
+        write!(
+            f,
+            "a {kind}, held the hand for {time:.3} s with at most {largest_force:.3} N; "
+        )?;
+        let [taken, given] = [taken, given].map(|energy| 1e3 * energy);
+        write!(f, "{taken:.3} mJ taken from the hand, {given:.3} mJ given")
+    }
+}
+
+impl Display for TextureReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { ticks, faded_ticks, highest_frequency, wanted_rate, .. } = self;
+        write!(
+            f,
+            "faded in {faded_ticks} of {ticks} ticks: up to {highest_frequency:.0} crests a "
+        )?;
+        write!(f, "second want a rate of {wanted_rate:.0} Hz")
     }
 }
 
@@ -43,9 +87,21 @@ impl Display for ToolReport {
 }
 
 impl Display for Distribution {
+    /// The quantiles; with `{:#}` a line with a bar for each bucket follows.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Self { count, p50_ns, p99_ns, max_ns, .. } = self;
-        write!(f, "{count} times: p50 {p50_ns} ns, p99 {p99_ns} ns, max {max_ns} ns")
+        let times = [self.p50_ns, self.p99_ns, self.p999_ns, self.max_ns];
+        let [p50, p99, p999, max] = times.map(|ns| 1e-3 * ns as f64);
+        write!(f, "p50 {p50:.2} µs, p99 {p99:.2} µs, p99.9 {p999:.2} µs, max {max:.2} µs")?;
+        if !f.alternate() {
+            return Ok(());
+        }
+        let most = self.buckets.iter().map(|bucket| bucket.count).max().unwrap_or(1).max(1);
+        for Bucket { up_to_ns, count } in &self.buckets {
+            // A bucket that is not empty has a bar of at least one block.
+            let bar = "█".repeat((count * WIDEST_BAR).div_ceil(most) as usize);
+            write!(f, "\n    up to {:>8} µs {count:>8} {bar}", up_to_ns / 1000)?;
+        }
+        Ok(())
     }
 }
 
@@ -53,7 +109,10 @@ impl Display for Lateness {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.times {
             None => f.write_str("no tick"),
-            Some(times) => write!(f, "{times}; {} more than a period late", self.missed),
+            Some(times) => {
+                times.fmt(f)?;
+                write!(f, "; {} of {} more than a period late", self.missed, times.count)
+            }
         }
     }
 }
@@ -81,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_and_times_are_a_sentence() {
+    fn a_tool_a_guide_and_times_are_a_sentence() {
         let (points, most_contacts, largest_torque) = (41, 3, 0.0125);
         let tool = ToolReport {
             points,
@@ -92,12 +151,32 @@ mod tests {
         };
         let said = "41 points, at most 3 contacts and 0.0125 N·m, known to 0.500 mm";
         assert_eq!(tool.to_string(), said);
-        let (p50_ns, p99_ns, max_ns) = (1, 2, 3);
+        let mut guide = GuideReport { kind: "well", ..GuideReport::default() };
+        assert_eq!(guide.to_string(), "a well, did not hold the hand");
+        (guide.time, guide.largest_force) = (1.5, 2.25);
+        (guide.taken, guide.given) = (0.003, 0.0005);
+        let said = "a well, held the hand for 1.500 s with at most 2.250 N; \
+                    3.000 mJ taken from the hand, 0.500 mJ given";
+        assert_eq!(guide.to_string(), said);
+    }
+
+    #[test]
+    fn times_are_quantiles_and_bars() {
+        let (p50_ns, p99_ns, p999_ns, max_ns) = (1000, 2500, 2900, 3000);
+        let bucket = |up_to_ns, count| Bucket { up_to_ns, count };
+        let buckets = vec![bucket(1000, 79), bucket(2000, 1), bucket(4000, 0)];
         let times =
-            Distribution { count: 4, p50_ns, p99_ns, max_ns, ..Distribution::default() };
+            Distribution { count: 80, mean_ns: 0.0, p50_ns, p99_ns, p999_ns, max_ns, buckets };
+        let said = "p50 1.00 µs, p99 2.50 µs, p99.9 2.90 µs, max 3.00 µs";
+        assert_eq!(times.to_string(), said);
+        let bars = format!(
+            "{said}\n    up to        1 µs       79 {}\n    up to        2 µs        1 █\n    \
+             up to        4 µs        0 ",
+            "█".repeat(40),
+        );
+        assert_eq!(format!("{times:#}"), bars);
         let lateness = Lateness { times: Some(times), missed: 1 };
-        let said = "4 times: p50 1 ns, p99 2 ns, max 3 ns; 1 more than a period late";
-        assert_eq!(lateness.to_string(), said);
+        assert_eq!(lateness.to_string(), format!("{said}; 1 of 80 more than a period late"));
         assert_eq!(Lateness::default().to_string(), "no tick");
     }
 }

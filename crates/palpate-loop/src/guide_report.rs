@@ -6,7 +6,7 @@
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use palpate_field::{Point, Vector};
-use palpate_haptics::Servo;
+use palpate_haptics::{Guide, Servo};
 
 /// What a guide did in a run, at all contact points together.
 ///
@@ -16,6 +16,8 @@ use palpate_haptics::Servo;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct GuideReport {
+    /// What the guide is, as [`Guide::kind_name`](palpate_haptics::Guide::kind_name) says.
+    pub kind: &'static str,
     /// The time during which the guide held at least one contact point [s].
     pub time: f64,
     /// Its largest force on a contact point [N].
@@ -43,8 +45,12 @@ pub(crate) struct GuideTally<const D: usize> {
 impl<const D: usize> GuideTally<D> {
     pub(crate) fn new(servo: &Servo<D>) -> Self {
         let (points, guides) = (servo.touches().len(), servo.guides(0).len());
+        let report = |guide: &Guide<D>| GuideReport {
+            kind: guide.kind_name(),
+            ..GuideReport::default()
+        };
         Self {
-            reports: vec![GuideReport::default(); guides],
+            reports: servo.guides(0).iter().map(report).collect(),
             ticks: vec![0; guides],
             places: vec![None; points],
             forces: vec![Vector::ZERO; points * guides],

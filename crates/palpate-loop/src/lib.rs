@@ -10,7 +10,8 @@
 //! report says whether the device took them.
 //!
 //! The loop runs on the machine's clock, a [`WallClock`], or, in tests, on a [`VirtualClock`]. A
-//! [`Recorder`] keeps every tick, a [`RunReport`] summarises a run, and [`Lateness`] measures
+//! [`Recorder`] keeps every tick, [`Records`] hand them to another thread while the servo runs, a
+//! [`TraceWriter`] writes them as CSV, a [`RunReport`] summarises a run, and [`Lateness`] measures
 //! how late a machine wakes up.
 //!
 //! # Examples
@@ -40,9 +41,11 @@
 mod clock;
 mod display;
 mod guide_report;
+mod lines;
 mod pacer;
 mod priority;
 mod recorder;
+mod records;
 mod report;
 mod run;
 mod servo_loop;
@@ -51,16 +54,19 @@ mod statistics;
 mod texture_report;
 mod thread;
 mod tool_report;
+mod trace;
 
 pub use clock::{Clock, ClockDriver, VirtualClock, WallClock};
 pub use guide_report::GuideReport;
 pub use pacer::{Lateness, Pace};
 pub use priority::{Priority, raise_priority};
 pub use recorder::{Recorder, TraceRow};
+pub use records::Records;
 pub use report::{Ending, Evaluations, RunError, RunReport};
-pub use run::{Motion, Run, RunOptions, Seconds, Watch, run, run_on};
+pub use run::{Motion, Run, RunOptions, Seconds, Sink, Watch, run, run_on};
 pub use start_report::StartInside;
 pub use statistics::{Bucket, Distribution};
 pub use texture_report::TextureReport;
-pub use thread::{EndedThread, ServoThread, StartError, ThreadOptions};
+pub use thread::{EndedThread, ServoThread, StartError, ThreadMotion, ThreadOptions};
 pub use tool_report::ToolReport;
+pub use trace::TraceWriter;

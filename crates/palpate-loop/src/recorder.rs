@@ -76,6 +76,9 @@ pub(crate) struct TickTimes {
 }
 
 /// Keeps the rows of a run, up to a fixed number.
+///
+/// A run whose rows are more than memory holds goes to a [sink](crate::RunOptions::with_sink);
+/// those of a [`ServoThread`](crate::ServoThread) are taken while it runs, as [`Records`].
 #[derive(Clone, Debug)]
 pub struct Recorder<const D: usize> {
     rows: Vec<TraceRow<D>>,
@@ -103,27 +106,35 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Real-time: allocates nothing, takes no lock, cannot panic.
-    pub(crate) fn record(&mut self, times: TickTimes, servo: &Servo<D>) {
-        for (point, touch) in (0..).zip(servo.touches()) {
-            if self.rows.len() >= self.capacity {
-                self.dropped += 1;
-                continue;
-            }
-            self.rows.push(TraceRow {
-                proxy: touch.proxy,
-                wanted: touch.wanted,
-                force: touch.force,
-                normal: touch.normal,
-                contact: touch.contact,
-                body: touch.body,
-                is_slipping: touch.is_slipping,
-                energy: servo.energy(point),
-                tool: servo.held_tool(),
-                evaluations: touch.evaluations,
-                cost_ns: times.cost_ns,
-                lateness_ns: times.lateness_ns,
-                ..TraceRow::free(times.time_s, point, touch.device)
-            });
+    pub(crate) fn keep(&mut self, row: TraceRow<D>) {
+        if self.rows.len() < self.capacity {
+            self.rows.push(row);
+        } else {
+            self.dropped += 1;
         }
     }
+}
+
+/// The rows of contact points after a tick of `servo`, in their order.
+///
+/// Real-time: allocates nothing, takes no lock, cannot panic.
+pub(crate) fn rows<const D: usize>(
+    times: TickTimes,
+    servo: &Servo<D>,
+) -> impl Iterator<Item = TraceRow<D>> {
+    (0..).zip(servo.touches()).map(move |(point, touch)| TraceRow {
+        proxy: touch.proxy,
+        wanted: touch.wanted,
+        force: touch.force,
+        normal: touch.normal,
+        contact: touch.contact,
+        body: touch.body,
+        is_slipping: touch.is_slipping,
+        energy: servo.energy(point),
+        tool: servo.held_tool(),
+        evaluations: touch.evaluations,
+        cost_ns: times.cost_ns,
+        lateness_ns: times.lateness_ns,
+        ..TraceRow::free(times.time_s, point, touch.device)
+    })
 }

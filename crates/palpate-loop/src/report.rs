@@ -44,7 +44,7 @@ pub struct RunReport {
     pub lateness: Option<Distribution>,
     /// Ticks that started more than a period late.
     pub missed_deadlines: u64,
-    /// Rows dropped because the recorder was full.
+    /// Rows that were not kept, because a recorder was full or a reader of rows fell behind.
     pub rows_dropped: u64,
     /// Counts of events at the contact points.
     pub events: EventCounts,

@@ -12,9 +12,20 @@ use std::time::Duration;
 
 use crate::clock::{Clock, WallClock};
 use crate::pacer::{Pace, ticks};
-use crate::recorder::Recorder;
+use crate::recorder::{Recorder, TraceRow};
+use crate::records::{Records, queue};
 use crate::report::RunReport;
-use crate::servo_loop::{Schedule, ServoLoop};
+use crate::servo_loop::{RowSink, Schedule, ServoLoop};
+
+/// How often the thread of a sink takes rows: seldom enough to cost nothing.
+const TAKEN_EVERY: Duration = Duration::from_millis(5);
+
+/// How far a sink may fall behind before rows are lost [s]: longer than a disk that is busy
+/// writes nothing.
+const BACKLOG: f64 = 1.0;
+
+/// The most rows by which a sink may fall behind, about 50 MB of them.
+const MOST_BACKLOG: f64 = 1e5;
 
 /// A closure that receives the progress of a run, on a separate thread.
 pub struct Watch<'a> {
@@ -39,6 +50,13 @@ impl std::fmt::Debug for Watch<'_> {
 /// Real-time: the closure runs in the loop, and should not allocate, wait or panic.
 pub type Motion<'a, const D: usize> = &'a mut dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>));
 
+/// A closure that receives the rows of all ticks, in order of time, then of contact point.
+///
+/// In real time another thread calls it, through a queue of a second of rows, at most 100 000;
+/// rows that find the queue full are [counted](RunReport::rows_dropped). Without pacing the
+/// loop calls it and waits for it, so that no row is lost. It should not panic.
+pub type Sink<'a, const D: usize> = &'a mut (dyn FnMut(&TraceRow<D>) + Send);
+
 /// Options of a run.
 ///
 /// ```
@@ -59,6 +77,8 @@ pub struct RunOptions<'a, const D: usize> {
     pub rehearses: bool,
     /// Keeps every tick until its memory is full.
     pub recorder: Option<&'a mut Recorder<D>>,
+    /// Receives the rows of all ticks.
+    pub sink: Option<Sink<'a, D>>,
     /// A closure that a separate thread calls.
     pub watch: Option<Watch<'a>>,
     /// Moves bodies before each tick.
@@ -68,7 +88,7 @@ pub struct RunOptions<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> RunOptions<'a, D> {
-    /// A run of `duration` [s] in real time, without rehearsals, recorder and watch.
+    /// A run of `duration` [s] in real time, without rehearsals, recorder, sink and watch.
     #[must_use]
     pub fn new(duration: f64) -> Self {
         Self {
@@ -76,6 +96,7 @@ impl<'a, const D: usize> RunOptions<'a, D> {
             pace: Pace::RealTime,
             rehearses: false,
             recorder: None,
+            sink: None,
             watch: None,
             motion: None,
             interrupt: None,
@@ -98,6 +119,44 @@ impl<'a, const D: usize> RunOptions<'a, D> {
     #[must_use]
     pub const fn with_recorder(self, recorder: &'a mut Recorder<D>) -> Self {
         Self { recorder: Some(recorder), ..self }
+    }
+
+    /// The same options with a closure that receives the rows of all ticks while the servo runs.
+    ///
+    /// # Examples
+    ///
+    /// A trace of a run, as `palpate feel --trace` writes it:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::Shape;
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{RunOptions, TraceRow, TraceWriter, run};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let press = HandPath::new(vec![0.0, 0.05], ends, Interpolation::Smooth)?;
+    /// let mut device = RecordedDevice::new(vec![press])?;
+    /// let mut servo = Servo::for_device(Shape::circle(0.05)?, &device)?;
+    ///
+    /// let mut trace = TraceWriter::new(Vec::new());
+    /// let mut written = Ok(());
+    /// let mut sink = |row: &TraceRow<2>| {
+    ///     if written.is_ok() {
+    ///         written = trace.write(row);
+    ///     }
+    /// };
+    /// let report = run(&mut servo, &mut device, RunOptions::new(0.05).with_sink(&mut sink))?;
+    /// written?;
+    /// let csv = String::from_utf8(trace.finish()?)?;
+    /// assert_eq!(report.rows_dropped, 0);
+    /// assert_eq!(csv.lines().count(), 1 + 50); // the names of the columns, and 50 ticks
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_sink(self, sink: Sink<'a, D>) -> Self {
+        Self { sink: Some(sink), ..self }
     }
 
     /// The same options with a closure that a separate thread calls at `interval`.
@@ -160,7 +219,7 @@ impl<'a, const D: usize> RunOptions<'a, D> {
 pub struct Seconds(pub f64);
 
 impl<const D: usize> From<Seconds> for RunOptions<'_, D> {
-    /// In real time, without rehearsals, recorder and watch.
+    /// In real time, without rehearsals, recorder, sink and watch.
     fn from(duration: Seconds) -> Self {
         Self::new(duration.0)
     }
@@ -215,6 +274,7 @@ impl<const D: usize> std::fmt::Debug for RunOptions<'_, D> {
             .field("pace", &self.pace)
             .field("rehearses", &self.rehearses)
             .field("recorder", &self.recorder.is_some())
+            .field("sink", &self.sink.is_some())
             .field("watch", &self.watch)
             .field("motion", &self.motion.is_some())
             .field("interrupt", &self.interrupt)
@@ -305,40 +365,66 @@ pub fn run_on<const D: usize>(
     servo.check_device(device)?;
     // Within an option the closure's lifetime would have to be that of the loop.
     let motion = options.motion.map(|motion| -> Motion<'_, D> { motion });
+    let (rows, queued) = match (options.sink, options.pace) {
+        (None, _) => (None, None),
+        (Some(sink), Pace::AsFastAsPossible) => (Some(RowSink::Call(sink)), None),
+        (Some(sink), Pace::RealTime) => {
+            let backlog = BACKLOG * servo.options().rate * device.points() as f64;
+            let (writer, reader) = queue(backlog.min(MOST_BACKLOG).ceil() as usize);
+            (Some(RowSink::Queue(writer)), Some((reader, sink)))
+        }
+    };
     let servo_loop = ServoLoop::new(servo, device)
         .recording(options.recorder)
+        .sending(rows)
         .moving(motion)
         .interrupted_by(options.interrupt)
         .handing_off(end.as_mut());
     let run = || servo_loop.run(clock, &schedule);
-    Ok(match control.zip(options.watch) {
-        None => run(),
-        Some((control, watch)) => watched(control, watch, run),
-    })
+    Ok(accompanied(control.zip(options.watch), queued, run))
 }
 
-/// Runs `work` while another thread calls the watch.
-fn watched<T, const D: usize>(
-    mut control: Control<D>,
-    watch: Watch<'_>,
+/// Runs `work` while other threads call the watch and the sink.
+fn accompanied<T, const D: usize>(
+    watched: Option<(Control<D>, Watch<'_>)>,
+    queued: Option<(Records<D>, Sink<'_, D>)>,
     work: impl FnOnce() -> T,
 ) -> T {
     std::thread::scope(|scope| {
-        let watcher = scope.spawn(move || {
-            loop {
-                // Read before the snapshot, so that the last snapshot is that of the last tick.
-                let is_last = control.has_ended();
-                if let Some(snapshot) = control.latest() {
-                    (watch.show)(&snapshot.progress);
-                }
-                if is_last {
-                    break;
-                }
-                std::thread::park_timeout(watch.interval);
-            }
-        });
+        let watcher = watched.map(|(control, show)| scope.spawn(|| watch(control, show)));
+        let taker = queued.map(|(records, sink)| scope.spawn(|| take(records, sink)));
         let result = work();
-        watcher.thread().unpark();
+        for helper in watcher.iter().chain(&taker) {
+            helper.thread().unpark();
+        }
         result
     })
+}
+
+/// Calls a watch until the loop has ended.
+fn watch<const D: usize>(mut control: Control<D>, watch: Watch<'_>) {
+    loop {
+        // Read before the snapshot, so that the last snapshot is that of the last tick.
+        let is_last = control.has_ended();
+        if let Some(snapshot) = control.latest() {
+            (watch.show)(&snapshot.progress);
+        }
+        if is_last {
+            return;
+        }
+        std::thread::park_timeout(watch.interval);
+    }
+}
+
+/// Hands rows to a sink until the loop has ended.
+fn take<const D: usize>(mut records: Records<D>, sink: Sink<'_, D>) {
+    loop {
+        // Read before the rows, so that the last rows are not missed.
+        let is_last = records.has_ended();
+        records.take().for_each(|row| sink(&row));
+        if is_last {
+            return;
+        }
+        std::thread::park_timeout(TAKEN_EVERY);
+    }
 }

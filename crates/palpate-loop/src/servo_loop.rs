@@ -15,7 +15,8 @@ use palpate_field::Vector;
 
 use crate::clock::Clock;
 use crate::pacer::{Pace, Pacer, nanoseconds};
-use crate::recorder::{Recorder, TickTimes};
+use crate::recorder::{Recorder, TickTimes, TraceRow, rows};
+use crate::records::RowQueue;
 use crate::report::{Ending, RunReport, Tally};
 use crate::run::Motion;
 
@@ -23,11 +24,20 @@ use crate::run::Motion;
 /// the branch predictors.
 const REHEARSAL: Duration = Duration::from_micros(60);
 
+/// Where the rows of ticks go, beside a recorder.
+pub(crate) enum RowSink<'a, const D: usize> {
+    /// To another thread, which may fall behind.
+    Queue(RowQueue<D>),
+    /// To a closure in the loop, which the loop waits for.
+    Call(&'a mut (dyn FnMut(&TraceRow<D>) + Send)),
+}
+
 /// A servo with its device, recorder and hand-off.
 pub(crate) struct ServoLoop<'a, const D: usize> {
     servo: &'a mut Servo<D>,
     device: &'a mut dyn Device<D>,
     recorder: Option<&'a mut Recorder<D>>,
+    sink: Option<RowSink<'a, D>>,
     end: Option<&'a mut ServoEnd<D>>,
     motion: Option<Motion<'a, D>>,
     interrupt: Option<&'a AtomicBool>,
@@ -59,6 +69,7 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
             servo,
             device,
             recorder: None,
+            sink: None,
             end: None,
             motion: None,
             interrupt: None,
@@ -72,6 +83,11 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
 
     pub(crate) fn recording(mut self, recorder: Option<&'a mut Recorder<D>>) -> Self {
         self.recorder = recorder;
+        self
+    }
+
+    pub(crate) fn sending(mut self, sink: Option<RowSink<'a, D>>) -> Self {
+        self.sink = sink;
         self
     }
 
@@ -108,7 +124,11 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         if let Some(end) = &self.end {
             end.finish();
         }
-        let dropped = self.recorder.map_or(0, |recorder| recorder.dropped());
+        let lost = match &self.sink {
+            Some(RowSink::Queue(queue)) => queue.lost(),
+            Some(RowSink::Call(_)) | None => 0,
+        };
+        let dropped = lost + self.recorder.map_or(0, |recorder| recorder.dropped());
         self.tally.report(ending, is_released, dropped, self.servo.safety())
     }
 
@@ -187,8 +207,18 @@ impl<'a, const D: usize> ServoLoop<'a, D> {
         if let Some(end) = &mut self.end {
             end.publish(&*self.servo, &progress);
         }
-        if let Some(recorder) = &mut self.recorder {
-            recorder.record(times, self.servo);
+        if self.recorder.is_none() && self.sink.is_none() {
+            return;
+        }
+        for row in rows(times, self.servo) {
+            if let Some(recorder) = &mut self.recorder {
+                recorder.keep(row);
+            }
+            match &mut self.sink {
+                Some(RowSink::Queue(queue)) => queue.push(row),
+                Some(RowSink::Call(take)) => take(&row),
+                None => {}
+            }
         }
     }
 }

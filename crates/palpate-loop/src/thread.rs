@@ -3,6 +3,7 @@
 
 //! A servo in a thread of its own.
 
+use palpate_field::Pose;
 use palpate_haptics::{
     Control, Device, HandoffOptions, HapticsError, NumberError, Servo, ServoEnd, handoff,
 };
@@ -14,13 +15,20 @@ use std::time::{Duration, Instant};
 use crate::clock::{Clock, WallClock};
 use crate::pacer::{Pace, ticks};
 use crate::priority::{Priority, raise_priority};
-use crate::recorder::Recorder;
+use crate::records::{Records, queue};
 use crate::report::RunReport;
-use crate::servo_loop::{Schedule, ServoLoop};
+use crate::run::Motion;
+use crate::servo_loop::{RowSink, Schedule, ServoLoop};
 
 /// How long a drop waits for the zero forces: a device takes them within a tick. A driven clock
 /// that nobody advances lets it wait in vain.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A closure that moves bodies before each tick in a servo's thread, as [`Motion`] does in a
+/// call. That of a built scene of `palpate-scene` is `move |time, set_pose| scene.motion()(time,
+/// set_pose)`.
+pub type ThreadMotion<const D: usize> =
+    Box<dyn FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) + Send>;
 
 /// How a thread runs a servo.
 ///
@@ -39,8 +47,8 @@ pub struct ThreadOptions {
     pub raises_priority: bool,
     /// Whether ticks are rehearsed, as by [`RunOptions::rehearses`](crate::RunOptions::rehearses).
     pub rehearses: bool,
-    /// The capacity of a [`Recorder`], one row for each tick and contact point; `None` for no
-    /// recorder.
+    /// How many rows wait to be [taken](ServoThread::take_records), one for each tick and contact
+    /// point; `None` for no recorder.
     pub rows: Option<usize>,
     /// The capacities of the hand-off.
     pub handoff: HandoffOptions,
@@ -78,7 +86,9 @@ impl ThreadOptions {
         Self { rehearses, ..self }
     }
 
-    /// The same options with a recorder of so many rows.
+    /// The same options with a recorder in which so many rows wait to be
+    /// [taken](ServoThread::take_records). Rows that find it full are
+    /// [counted](RunReport::rows_dropped).
     #[must_use]
     pub const fn with_recorder(self, rows: usize) -> Self {
         Self { rows: Some(rows), ..self }
@@ -161,6 +171,7 @@ pub struct ServoThread<const D: usize> {
     /// Dropped before the handle: that ends the loop, for which the handle then waits.
     control: Control<D>,
     thread: Handle<D>,
+    records: Option<Records<D>>,
 }
 
 /// The thread; `None` once it is joined.
@@ -187,8 +198,8 @@ pub struct EndedThread<const D: usize> {
     pub control: Control<D>,
     /// The report of the run.
     pub report: RunReport,
-    /// The recorded ticks, if a recorder was requested.
-    pub recorder: Option<Recorder<D>>,
+    /// The recorded rows not taken yet, if a recorder was requested and left to the thread.
+    pub records: Option<Records<D>>,
     /// The priority that the thread had.
     pub priority: Priority,
 }
@@ -200,7 +211,6 @@ struct Left<const D: usize> {
     /// Returned so that its content is not freed in the servo's thread.
     _end: ServoEnd<D>,
     report: RunReport,
-    recorder: Option<Recorder<D>>,
     priority: Priority,
 }
 
@@ -215,7 +225,21 @@ impl<const D: usize> ServoThread<D> {
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
-        Self::start_with(WallClock::suited_to, servo, device, options)
+        Self::start_with(WallClock::suited_to, servo, device, None, options)
+    }
+
+    /// As [`start`](Self::start), with a closure that moves bodies before each tick.
+    ///
+    /// # Errors
+    ///
+    /// As [`start`](Self::start).
+    pub fn start_moving(
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        motion: ThreadMotion<D>,
+        options: ThreadOptions,
+    ) -> Result<Self, StartError> {
+        Self::start_with(WallClock::suited_to, servo, device, Some(motion), options)
     }
 
     /// As [`start`](Self::start), on the caller's clock.
@@ -229,13 +253,58 @@ impl<const D: usize> ServoThread<D> {
         device: Box<dyn Device<D> + Send>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
-        Self::start_with(|_| clock, servo, device, options)
+        Self::start_with(|_| clock, servo, device, None, options)
+    }
+
+    /// As [`start_moving`](Self::start_moving), on the caller's clock.
+    ///
+    /// # Errors
+    ///
+    /// As [`start`](Self::start).
+    ///
+    /// # Examples
+    ///
+    /// A floor that rises by 1 m/s reaches a hand at rest 3 mm above it:
+    ///
+    /// ```
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::{Pose, Shape, Vector};
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let rest = vec![Vector([0.0, 0.005]); 2];
+    /// let hand = HandPath::new(vec![0.0, 0.01], rest, Interpolation::Linear)?;
+    /// let device = Box::new(RecordedDevice::new(vec![hand])?);
+    /// let floor = Shape::half_space([0.0, 1.0], 0.0)?;
+    /// let servo = Servo::for_device(floor, &*device)?; // with a probe of 2 mm
+    /// let rise = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<2>)| {
+    ///     set_pose(0, Pose::translation(Vector([0.0, time])));
+    /// };
+    /// let options = ThreadOptions::default().with_raised_priority(false).with_duration(0.01);
+    /// let clock = VirtualClock::new();
+    /// let thread =
+    ///     ServoThread::start_moving_on(clock, servo, device, Box::new(rise), options)?;
+    /// let report = thread.join().report;
+    /// assert!((report.largest_depth - 0.006).abs() < 1e-9); // after 9 ms
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn start_moving_on(
+        clock: impl Clock + Send + 'static,
+        servo: Servo<D>,
+        device: Box<dyn Device<D> + Send>,
+        motion: ThreadMotion<D>,
+        options: ThreadOptions,
+    ) -> Result<Self, StartError> {
+        Self::start_with(|_| clock, servo, device, Some(motion), options)
     }
 
     fn start_with<C: Clock>(
         clock: impl FnOnce(&Priority) -> C + Send + 'static,
         mut servo: Servo<D>,
         mut device: Box<dyn Device<D> + Send>,
+        mut motion: Option<ThreadMotion<D>>,
         options: ThreadOptions,
     ) -> Result<Self, StartError> {
         servo.check_device(&*device)?;
@@ -247,30 +316,77 @@ impl<const D: usize> ServoThread<D> {
             ),
         };
         let schedule = Schedule { ticks, pace: Pace::RealTime, rehearses: options.rehearses };
-        let mut recorder = options.rows.map(Recorder::new);
+        let (rows, records) = options.rows.map(queue).unzip();
         let (control, mut end) = handoff(&servo, options.handoff);
         let work = move || {
             let priority =
                 if options.raises_priority { raise_priority() } else { Priority::Normal };
             let mut clock = clock(&priority);
             let report = ServoLoop::new(&mut servo, &mut *device)
-                .recording(recorder.as_mut())
+                .sending(rows.map(RowSink::Queue))
+                .moving(motion.as_deref_mut().map(|motion| -> Motion<'_, D> { motion }))
                 .handing_off(Some(&mut end))
                 .run(&mut clock, &schedule);
-            Left { servo, device, _end: end, report, recorder, priority }
+            Left { servo, device, _end: end, report, priority }
         };
         let thread =
             std::thread::Builder::new()
                 .name("palpate servo".to_owned())
                 .spawn(work)
                 .map_err(|error| StartError::ThreadNotStarted { reason: error.to_string() })?;
-        Ok(Self { control, thread: Handle(Some(thread)) })
+        Ok(Self { control, thread: Handle(Some(thread)), records })
     }
 
     /// The hand-off to the servo: edits what is rendered, and reads its state.
     #[must_use]
     pub fn control(&mut self) -> &mut Control<D> {
         &mut self.control
+    }
+
+    /// The recorded rows, if a [recorder](ThreadOptions::with_recorder) was requested; `None` from
+    /// the second call on. Any thread may take rows from them while the servo runs, and after;
+    /// rows that nobody takes are in [`EndedThread::records`].
+    ///
+    /// # Examples
+    ///
+    /// A recorder for 100 rows records 250, as they are taken meanwhile:
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use palpate_devices::{HandPath, Interpolation, RecordedDevice};
+    /// use palpate_field::Shape;
+    /// use palpate_haptics::Servo;
+    /// use palpate_loop::{ServoThread, ThreadOptions, VirtualClock};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let ends = vec![[0.0, 0.08].into(), [0.0, 0.05].into()];
+    /// let press = HandPath::new(vec![0.0, 0.25], ends, Interpolation::Smooth)?;
+    /// let device = Box::new(RecordedDevice::new(vec![press])?);
+    /// let servo = Servo::for_device(Shape::circle(0.05)?, &*device)?;
+    ///
+    /// let (clock, mut driver) = VirtualClock::driven();
+    /// let options = ThreadOptions::default()
+    ///     .with_raised_priority(false)
+    ///     .with_duration(0.25)
+    ///     .with_recorder(100);
+    /// let mut thread = ServoThread::start_on(clock, servo, device, options)?;
+    /// let mut records = thread.take_records().ok_or("a recorder was requested")?;
+    /// let mut rows = Vec::new();
+    /// for _ in 0..10 {
+    ///     driver.advance(Duration::from_millis(25));
+    ///     rows.extend(records.take());
+    /// }
+    /// drop(driver);
+    /// let ended = thread.join();
+    /// rows.extend(records.take());
+    /// assert_eq!((rows.len(), records.lost(), ended.report.rows_dropped), (250, 0, 0));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn take_records(&mut self) -> Option<Records<D>> {
+        self.records.take()
     }
 
     /// Whether the loop has ended, by its duration or by a failure.
@@ -296,12 +412,12 @@ impl<const D: usize> ServoThread<D> {
         reason = "only this method takes the thread, and it consumes the handle"
     )]
     pub fn join(self) -> EndedThread<D> {
-        let Self { control, mut thread } = self;
+        let Self { control, mut thread, records } = self;
         let thread = thread.0.take().expect("a thread that was not joined");
         // Panics in the loop are part of the report.
         let left = thread.join().unwrap_or_else(|panic| resume_unwind(panic));
-        let Left { servo, device, report, recorder, priority, _end } = left;
-        EndedThread { servo, device, control, report, recorder, priority }
+        let Left { servo, device, report, priority, _end } = left;
+        EndedThread { servo, device, control, report, records, priority }
     }
 }
 

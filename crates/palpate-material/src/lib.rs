@@ -197,6 +197,28 @@ pub struct Texture {
     pub direction: Option<Vec<f64>>,
 }
 
+impl Texture {
+    /// The radius of curvature of the wave's valleys [m], where its second derivative is largest:
+    /// `λ² / (4 π² a)` for `a sin(2 π x / λ)`.
+    ///
+    /// A probe that is larger, with the depth to which a hand presses it, is caught in the valleys
+    /// of a [displacement](TextureKind::Displacement) and jumps over waves.
+    ///
+    /// ```
+    /// use palpate_material::{Texture, TextureKind};
+    ///
+    /// let pi = std::f64::consts::PI;
+    /// let (kind, amplitude, wavelength) = (TextureKind::Displacement, 0.001, 0.02 * pi);
+    /// let wave = Texture { description: None, kind, amplitude, wavelength, direction: None };
+    /// assert!((wave.valley_radius() - 0.1).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn valley_radius(&self) -> f64 {
+        let per_radian = self.wavelength / (2.0 * std::f64::consts::PI);
+        per_radian * per_radian / self.amplitude
+    }
+}
+
 /// Whether a texture changes the surface or the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

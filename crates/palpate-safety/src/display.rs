@@ -6,6 +6,7 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::acceptance::{Accepted, Rule};
+use crate::passivity::PassivityReport;
 use crate::report::SafetyReport;
 
 impl Display for Accepted {
@@ -42,12 +43,25 @@ impl Display for SafetyReport {
     }
 }
 
+impl Display for PassivityReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let [taken, given, kept] =
+            [self.energy_in, self.energy_out, self.dissipated].map(|energy| 1e3 * energy);
+        write!(
+            f,
+            "{taken:.3} mJ taken from the hand, {given:.3} mJ given, {kept:.3} mJ kept back "
+        )?;
+        write!(f, "in {} ticks", self.effect.ticks)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use palpate_field::Vector;
 
     use crate::{
-        Accepted, DeviceProfile, Impedance, PortState, SafetyChain, SafetyError, SafetyOptions,
+        Accepted, DeviceProfile, Impedance, PassivityReport, PortState, SafetyChain,
+        SafetyError, SafetyOptions,
     };
 
     #[test]
@@ -78,5 +92,18 @@ mod tests {
         let said = "2 ticks, changed by: force limit 1";
         assert_eq!(chain.report().to_string(), said);
         Ok(())
+    }
+
+    #[test]
+    fn energies_are_said_in_millijoules() {
+        let report = PassivityReport {
+            energy_in: 0.0125,
+            energy_out: 0.002,
+            dissipated: 5e-4,
+            ..PassivityReport::default()
+        };
+        let said =
+            "12.500 mJ taken from the hand, 2.000 mJ given, 0.500 mJ kept back in 0 ticks";
+        assert_eq!(report.to_string(), said);
     }
 }

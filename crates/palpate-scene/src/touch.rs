@@ -3,7 +3,7 @@
 
 //! From a built scene to what can be touched: bodies, a world, a servo.
 
-use palpate_field::{Aabb, Rotation};
+use palpate_field::{Aabb, Rotation, Vector};
 use palpate_haptics::{
     Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Servo,
     ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
@@ -99,6 +99,36 @@ impl<const D: usize> BuiltScene<D> {
         self.workspace.map_or_else(Rotation::identity, |map| map.rotation())
     }
 
+    /// Where the contact points of the tool lie beside the hand [m], in the axes of the world; empty
+    /// for a scene whose tool names none, where each point of a device is a contact point.
+    ///
+    /// # Examples
+    ///
+    /// The hands of a device, one for each contact point, around a hand at 0.1 m:
+    ///
+    /// ```
+    /// use palpate_devices::Hand;
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "table", "shape": { "circle": { "radius": 0.05 } } } ],
+    ///          "tool": { "points": [[-0.01, 0], [0.01, 0]] } }"#,
+    /// )?;
+    /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
+    /// let places = scene.contact_points().map(|arm| arm + [0.0, 0.1].into());
+    /// let hands: Result<Vec<_>, _> = places.map(Hand::<2>::resting).collect();
+    /// assert_eq!(hands?.len(), 2);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn contact_points(&self) -> impl Iterator<Item = Vector<f64, D>> {
+        let rotation = self.device_rotation();
+        let points = self.tool.iter().flat_map(|tool| &tool.points);
+        points.map(move |arm| rotation.rotate(*arm))
+    }
+
     /// Where the workspace of a device lies: where the scene says, or else so that it holds the
     /// scene, and the places from which a `tool` touches it. A device without a radius, or a
     /// scene without bounds, lies in the world as it is.
@@ -178,30 +208,38 @@ impl<const D: usize> BuiltScene<D> {
         sizes.reduce(f64::min).filter(|size| *size > 0.0)
     }
 
-    /// A servo that renders the scene to `device`, protected: with its bodies, materials, guides,
-    /// and tool.
+    /// A servo that renders the scene to `device`, protected: its bodies with their materials, its
+    /// guides, its tool with the radius, the coupling and the largest force, what the device is to
+    /// render of materials, and the workspace, which is made to hold the scene if the scene gives
+    /// none. What moves the bodies is [`motion`](Self::motion).
     ///
     /// # Errors
     ///
-    /// As [`Servo::for_device`], and if a tool has no surface.
+    /// As [`Servo::for_device`], if a tool has no surface, and
+    /// [`HapticsError::ContactPoints`] if the tool has contact points and the device another
+    /// number of them.
     ///
     /// # Examples
     ///
+    /// A scene file, felt by a hand that rests in the workspace of a device:
+    ///
     /// ```
     /// use palpate_devices::{Hand, SimulatedDevice, profile_named};
+    /// use palpate_loop::{Pace, RunOptions, run};
     /// use palpate_scene::{AnyScene, Scene};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let scene = Scene::from_json(
-    ///     r#"{ "palpate": 1, "dimension": 3,
-    ///          "bodies": [ { "name": "table", "shape": { "ball": { "radius": 0.05 } },
-    ///                        "material": "wood" } ] }"#,
-    /// )?;
-    /// let AnyScene::Spatial(scene) = scene.build()? else { unreachable!("dimension is 3") };
-    /// let hand = Hand::resting([0.0, 0.06, 0.0])?;
-    /// let device = SimulatedDevice::new(profile_named("omega")?, vec![hand])?;
-    /// let servo = scene.servo(&device)?;
-    /// assert_eq!(servo.accepted().len(), 1);
+    /// let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/terrain.json");
+    /// let AnyScene::Spatial(scene) = Scene::from_file(file)?.build()? else {
+    ///     return Err("the terrain is in space".into());
+    /// };
+    /// let mut device =
+    ///     SimulatedDevice::new(profile_named("omega")?, vec![Hand::resting([0.0; 3])?])?;
+    /// let mut servo = scene.servo(&device)?;
+    /// let mut motion = scene.motion();
+    /// let options = RunOptions::new(0.5).with_pace(Pace::AsFastAsPossible);
+    /// let report = run(&mut servo, &mut device, options.with_motion(&mut motion))?;
+    /// assert_eq!(report.ticks, 500);
     /// # Ok(())
     /// # }
     /// ```
@@ -220,6 +258,10 @@ impl<const D: usize> BuiltScene<D> {
         settings: ServoSettings,
     ) -> Result<Servo<D>, HapticsError> {
         let profile = device.profile();
+        let points = self.contact_points().count();
+        if points > 0 && points != device.points() {
+            return Err(HapticsError::ContactPoints { servo: points, device: device.points() });
+        }
         let tool = self.tool.as_ref().map_or(Ok(None), BuiltTool::in_hand)?;
         let map = self.workspace_of(profile, tool.as_ref())?;
         let options = self.servo_options(profile, settings.rate)?;

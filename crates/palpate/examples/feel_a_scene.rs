@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! A scene file, felt by a simulated hand in a servo thread; every tick goes to a CSV file.
+//! A scene file, felt by a simulated hand in a servo thread; every tick goes to a CSV file while
+//! the servo runs.
 
-use std::io::Write as _;
+use std::time::Duration;
 
 use palpate::devices::{Hand, SimulatedDevice, Tour, profile_named};
 use palpate::prelude::*;
 use palpate::scene::AnyScene;
-use palpate::servo_loop::{ServoThread, ThreadOptions};
+use palpate::servo_loop::{ServoThread, ThreadOptions, TraceWriter};
 
 const SECONDS: f64 = 2.0;
 
@@ -26,17 +27,32 @@ fn main() -> Result<(), Error> {
     let device = SimulatedDevice::new(profile, vec![hand])?;
 
     let servo = scene.servo(&device)?;
-    let options = ThreadOptions::default().with_duration(SECONDS).with_recorder(2000);
-    let ended = ServoThread::start(servo, Box::new(device), options)?.join();
-
     let path = std::env::temp_dir().join("palpate_touch.csv");
-    let mut csv = std::io::BufWriter::new(std::fs::File::create(&path)?);
-    writeln!(csv, "time_s,x_m,y_m,z_m,force_N")?;
-    for row in ended.recorder.iter().flat_map(|recorder| recorder.rows()) {
-        let [x, y, z] = row.device.0;
-        writeln!(csv, "{},{x},{y},{z},{}", row.time_s, row.force.norm())?;
+    let file = std::fs::File::create(&path)?;
+    let moving: Vec<_> = scene.moving().collect();
+    let mut trace =
+        TraceWriter::new(file).with_poses(moving, |body, time| scene.pose_at(body, time));
+
+    // The servo never waits for the file: rows wait for it, for up to half a second.
+    let options = ThreadOptions::default().with_duration(SECONDS).with_recorder(500);
+    let moved = scene.clone();
+    let motion = Box::new(move |time: f64, set_pose: &mut dyn FnMut(usize, Pose<3>)| {
+        moved.motion()(time, set_pose);
+    });
+    let mut thread = ServoThread::start_moving(servo, Box::new(device), motion, options)?;
+    let records = thread.take_records();
+    let mut records =
+        records.ok_or_else(|| std::io::Error::other("no recorder was requested"))?;
+    while !records.has_ended() {
+        std::thread::sleep(Duration::from_millis(10));
+        records.take().try_for_each(|row| trace.write(&row))?;
     }
-    ended.report.clone().unless_failed()?;
-    println!("{}: {}", ended.report, path.display());
+    records.take().try_for_each(|row| trace.write(&row))?;
+    let (rows, lost) = (trace.rows(), records.lost());
+    trace.finish()?;
+
+    let ended = thread.join();
+    print!("{:#}", ended.report.unless_failed()?);
+    println!("{}: {rows} rows, {lost} lost", path.display());
     Ok(())
 }

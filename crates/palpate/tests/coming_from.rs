@@ -24,45 +24,82 @@ fn none() -> std::io::Error {
 
 #[test]
 fn chai3d() -> Outcome {
-    use palpate::haptics::Probe;
-    use palpate::haptics::{Bodies, Protection, Proxy};
+    use palpate::haptics::{
+        Bodies, Guide, GuideOptions, Probe, Protection, Proxy, Recovery, ServoOptions,
+        WorkspaceMap,
+    };
     let (plate, mut device) = (plate()?, device()?);
+    let bounds = plate.promise().bounds.ok_or_else(none)?.aabb;
     let bodies = Bodies::new(vec![Body::new(plate, Material::wood())?])?;
     let profile = device.profile().clone();
     let _ = Proxy::<3>::new(Probe::default());
+    let _ = ServoOptions::default().with_probe(Probe::new(0.002)?);
     let _ = Material { stiffness: 800.0, static_friction: 0.5, ..Material::wood() };
-    let _ = Material::magnet();
-    let _: Protection<3> =
-        Protection::new(profile).with_recovery(palpate::haptics::Recovery::OnceOut);
+    let _ = (Material::magnet(), Material::sandpaper());
+    let _: Protection<3> = Protection::new(profile.clone()).with_recovery(Recovery::OnceOut);
+    let _: Protection<3> = Protection::new(profile.clone()).with_rise_rate(20.0);
+    let _ = Protection::new(profile).with_map(WorkspaceMap::fitting(bounds, 0.075)?);
     let _ = Shape::sphere(0.05)?;
+    let _ = Guide::on_plane([0.0; 3], [0.0, 1.0, 0.0], GuideOptions::default())?;
+    assert!(device.profile().max_force > 0.0);
     let mut servo = Servo::for_device(bodies, &device)?;
     let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];
     device.read(0.0, &mut states)?;
     servo.step(&states);
     device.write(servo.forces())?;
     assert_eq!(servo.touches()[0].device, servo.touches()[0].proxy);
+    assert_eq!(servo.touches()[0].wanted, Vector::ZERO);
+    let report = servo.run(&mut device, Seconds(0.01))?;
+    assert!(report.lateness.is_some());
     Ok(())
 }
 
 #[test]
 fn openhaptics() -> Outcome {
     use palpate::{
-        haptics::WorkspaceMap,
+        haptics::{Guide, GuideOptions, WorkspaceMap},
         servo_loop::{ServoThread, ThreadOptions},
     };
     let mut device = device()?;
     let profile = device.profile().clone();
     let plate = plate()?;
-    let bounds = plate.promise().bounds.ok_or_else(|| std::io::Error::other("no bounds"))?.aabb;
+    let bounds = plate.promise().bounds.ok_or_else(none)?.aabb;
     let mut servo = Servo::for_device(plate, &device)?;
-    servo.step(&[]);
+    let mut states = [palpate::devices::PointState::at_rest(Vector::ZERO)];
+    device.read(0.0, &mut states)?;
+    assert_eq!(states[0].position, Vector([0.0, 0.05, 0.0]));
+    servo.step(&states);
     device.write(servo.forces())?;
     assert!(device.profile().max_force > 0.0);
+    assert!(device.profile().max_force_rate > 0.0);
     assert!(servo.accepted()[0].stiffness_factor <= 1.0);
+    assert_eq!(servo.safety().len(), 1);
     let _ = WorkspaceMap::fitting(bounds, profile.workspace_radius)?;
+    let _ = GuideOptions::default().with_snap_distance(0.01);
+    let _ = Guide::to_point([0.0; 3], GuideOptions::default())?;
     assert!(servo.events().is_empty());
-    let thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;
+    let mut thread = ServoThread::start(servo, Box::new(device), ThreadOptions::default())?;
+    let _ = thread.control().latest();
     thread.end().report.unless_failed()?;
+    Ok(())
+}
+
+#[test]
+fn haply() -> Outcome {
+    use palpate::{
+        devices::{DeviceProfile, MailboxDevice, PointState},
+        haptics::WorkspaceMap,
+    };
+    let profile = DeviceProfile::unlimited("my stylus").with_max_force(3.0);
+    let start = PointState::at_rest([0.0, 0.1, 0.0]);
+    let (mut device, mut mailbox) = MailboxDevice::new(profile, &[start])?;
+    mailbox.set(&[PointState::at_rest([0.0, 0.049, 0.0])])?;
+    let _ = WorkspaceMap::new(Pose::translation([0.0, 0.1, 0.0]), 2.0)?;
+    let shape = Shape::sphere(0.05)? & Shape::cuboid([0.1, 0.1, 0.1])?;
+    let mut servo = Servo::for_device(shape, &device)?;
+    servo.run(&mut device, Seconds(0.01))?.unless_failed()?;
+    assert_eq!(mailbox.forces(), [Vector::ZERO]); // the last write
+    assert!(servo.touches()[0].proxy.is_finite());
     Ok(())
 }
 
@@ -162,6 +199,28 @@ fn cells(page: &str) -> impl Iterator<Item = String> {
     page.lines().filter(|line| line.starts_with("| ")).flat_map(code)
 }
 
+/// The page up to this heading, and from it on.
+fn parts() -> (&'static str, &'static str) {
+    let page = include_str!("../../../docs/guide/coming-from.md");
+    let proofs = "## What palpate does beside";
+    let others = "## parry and rapier";
+    let (start, rest) = page.split_once(proofs).unwrap_or_default();
+    let (claims, others) = rest.split_once(others).unwrap_or_default();
+    assert!(start.contains("## Haply") && others.contains("## MuJoCo"));
+    (page, claims)
+}
+
+#[test]
+fn what_shows_a_claim_is_there() {
+    let (_, claims) = parts();
+    let proofs = cells(claims).filter(|cell| !cell.starts_with("palpatedevices"));
+    let proofs: Vec<_> = proofs.collect();
+    assert!(proofs.len() > 15, "{proofs:?}");
+    let crates = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    let missing: Vec<_> = proofs.iter().filter(|proof| !crates.join(proof).is_file()).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
 /// Without spaces, and without what a borrow, a clone or the end of a list adds.
 fn bare(code: &str) -> String {
     let code = code.replace(".clone()", "");
@@ -172,12 +231,13 @@ fn bare(code: &str) -> String {
 #[test]
 fn every_line_of_the_page_is_tried_here() {
     let here = bare(include_str!("coming_from.rs"));
-    let page = include_str!("../../../docs/guide/coming-from.md");
+    let (page, claims) = parts();
+    let page = page.replace(claims, "");
     let imports = page
         .lines()
         .filter(|line| line.starts_with("`use "))
         .map(|line| bare(line.trim_matches('`')));
-    let code = cells(page).filter(|cell| cell.contains(['(', '.'])).chain(imports);
+    let code = cells(&page).filter(|cell| cell.contains(['(', '.'])).chain(imports);
     let code: Vec<_> = code.collect();
     assert!(code.len() > 40, "{code:#?}");
     let missing: Vec<_> = code.iter().filter(|code| !here.contains(code.as_str())).collect();

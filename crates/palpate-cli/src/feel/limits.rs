@@ -39,9 +39,8 @@ pub(super) fn ticks(duration: f64, rate: f64) -> Result<f64, Failure> {
 pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
     const SHORTEN: &str = "shorten --duration, lower --rate, or use fewer contact points";
     if count > MOST_ROWS {
-        let problem = format!(
-            "--trace, --plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}"
-        );
+        let problem =
+            format!("--plot and --wav keep {MOST_ROWS} rows at most, got {count}; {SHORTEN}");
         return Err(Failure::input(problem));
     }
     let rows = count.max(0.0).ceil() as usize;
@@ -49,7 +48,7 @@ pub(super) fn rows<const D: usize>(count: f64) -> Result<usize, Failure> {
     if Vec::<TraceRow<D>>::new().try_reserve_exact(rows).is_err() {
         let memory = 1e-9 * (rows * size_of::<TraceRow<D>>()) as f64;
         return Err(Failure::input(format!(
-            "--trace, --plot and --wav keep {rows} rows of this run, {memory:.1} GB of memory, \
+            "--plot and --wav keep {rows} rows of this run, {memory:.1} GB of memory, \
              which the system does not give; {SHORTEN}"
         )));
     }

@@ -4,7 +4,6 @@
 //! `palpate feel`: runs a servo with a device in a hand, and reports.
 
 mod figure;
-mod guides;
 mod held;
 mod inside;
 mod limits;
@@ -21,7 +20,6 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use palpate::devices::{HandPath, profile_named};
-use palpate::field::Pose;
 use palpate::haptics::{Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
@@ -93,30 +91,32 @@ where
     let mut recorder = Recorder::new(rows);
     let shows_line = io::stderr().is_terminal();
     let mut show = |progress: &Progress| output::live(report::live_line(progress));
-    let mut run_options = RunOptions::new(duration)
-        .with_pace(if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime })
-        .with_rehearsals(true)
-        .with_interrupt(interrupt.flag());
-    if keeps_rows {
-        run_options = run_options.with_recorder(&mut recorder);
-    }
-    let mut motion = |time: f64, set_pose: &mut dyn FnMut(usize, Pose<D>)| {
-        scene.moving().for_each(|body| set_pose(body, scene.pose_at(body, time)));
-    };
-    if !scene.motions.is_empty() {
-        run_options = run_options.with_motion(&mut motion);
-    }
-    if shows_line {
-        run_options = run_options.with_watch(LIVE_EVERY, &mut show);
-    }
+    let mut motion = scene.motion();
     interrupt.heed();
     if !options.fast {
         output::remark(format_args!(
             "feeling {name} for {duration} s; Ctrl-C ends that, with the report"
         ));
     }
-    let outcome =
-        run_servo(&mut servo, device.as_mut(), run_options).map_err(Failure::input)?;
+    let (outcome, traced) = outputs.traced(scene, |sink| {
+        let mut run_options = RunOptions::new(duration)
+            .with_pace(if options.fast { Pace::AsFastAsPossible } else { Pace::RealTime })
+            .with_rehearsals(true)
+            .with_interrupt(interrupt.flag());
+        if let Some(sink) = sink {
+            run_options = run_options.with_sink(sink);
+        }
+        if keeps_rows {
+            run_options = run_options.with_recorder(&mut recorder);
+        }
+        if !scene.motions.is_empty() {
+            run_options = run_options.with_motion(&mut motion);
+        }
+        if shows_line {
+            run_options = run_options.with_watch(LIVE_EVERY, &mut show);
+        }
+        run_servo(&mut servo, device.as_mut(), run_options).map_err(Failure::input)
+    })?;
     if shows_line {
         output::remark("");
     }
@@ -132,7 +132,7 @@ where
             .map(|body| body.surface().stiffness())
             .collect(),
     };
-    let (written, played) = outputs.write(scene, &recorder, &ran);
+    let (written, played) = outputs.write(scene, &recorder, traced, &ran);
     let felt = report::Felt {
         name,
         scene,
@@ -227,7 +227,7 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
     }
 }
 
-/// The scene, with materials and tool replaced by those of the command line.
+/// The scene, with materials, tool and contact points replaced by those of the command line.
 fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltScene<D> {
     let mut scene = scene.clone();
     for body in &mut scene.bodies {
@@ -238,6 +238,9 @@ fn asked<const D: usize>(scene: &BuiltScene<D>, options: &FeelOptions) -> BuiltS
         material.relative_stiffness =
             options.relative_stiffness.or(material.relative_stiffness);
         material.damping = options.damping.unwrap_or(material.damping);
+    }
+    if let (Some(_), Some(tool)) = (options.points, &mut scene.tool) {
+        tool.points.clear();
     }
     if options.radius.is_some() || options.max_force.is_some() {
         let radius = Probe::default().radius();

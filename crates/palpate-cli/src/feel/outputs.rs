@@ -4,7 +4,7 @@
 //! The files that a run leaves: trace, vibration, picture.
 
 use palpate::scene::BuiltScene;
-use palpate::servo_loop::Recorder;
+use palpate::servo_loop::{Recorder, Sink, TraceRow, TraceWriter};
 use palpate::vibration::Actuator;
 
 use super::figure::Run;
@@ -13,7 +13,6 @@ use crate::arguments::FeelOptions;
 use crate::outcome::Failure;
 use crate::output::{self, Destination, Files};
 use crate::picture::{Dimensions, Drawable, Picture};
-use crate::trace;
 
 /// The requested files.
 pub(super) struct Outputs {
@@ -23,6 +22,9 @@ pub(super) struct Outputs {
     /// What plays the vibration, if the command line says so.
     actuator: Option<Actuator>,
 }
+
+/// The rows of the trace, if one was written, or why it could not be.
+pub(super) struct Traced(Result<Option<u64>, Failure>);
 
 /// What else files tell of a run.
 pub(super) struct Ran<'a> {
@@ -60,17 +62,49 @@ impl Outputs {
         })
     }
 
-    /// `true` if any file needs the recorded ticks.
+    /// `true` if any file needs the ticks after the run.
     pub(super) fn keep_ticks(&self) -> bool {
-        self.trace.is_some() || self.wav.is_some() || self.plot.is_some()
+        self.wav.is_some() || self.plot.is_some()
     }
 
-    /// Writes all files from the ticks, and says which; if one fails, the others are still
-    /// written. Returns what actuators played, if that was written.
+    /// Calls `run` with a sink that writes the trace meanwhile, if one is requested. The trace is
+    /// whole even if a device was lost or the run was interrupted.
+    pub(super) fn traced<T, const D: usize>(
+        &self,
+        scene: &BuiltScene<D>,
+        run: impl FnOnce(Option<Sink<'_, D>>) -> Result<T, Failure>,
+    ) -> Result<(T, Traced), Failure> {
+        let Some(to) = &self.trace else { return Ok((run(None)?, Traced(Ok(None)))) };
+        let mut ran = None;
+        let written = to.write(|out| {
+            let pose_at = |body, time| scene.pose_at(body, time);
+            let mut trace = TraceWriter::new(out).with_poses(scene.moving(), pose_at);
+            let mut written = Ok(());
+            let mut sink = |row: &TraceRow<D>| {
+                if written.is_ok() {
+                    written = trace.write(row);
+                }
+            };
+            ran = Some(run(Some(&mut sink))?);
+            written?;
+            let rows = trace.rows();
+            trace.finish()?;
+            Ok(rows)
+        });
+        match (ran, written) {
+            (Some(ran), written) => Ok((ran, Traced(written.map(Some)))),
+            (None, Err(failure)) => Err(failure),
+            (None, Ok(_)) => unreachable!("a trace is written by a run"),
+        }
+    }
+
+    /// Writes the other files from the ticks, and says which were written; if one fails, the
+    /// others are still written. Returns what actuators played, if that was written.
     pub(super) fn write<const D: usize>(
         &self,
         scene: &BuiltScene<D>,
         recorder: &Recorder<D>,
+        traced: Traced,
         ran: &Ran<'_>,
     ) -> (Result<(), Failure>, Option<Played>)
     where
@@ -89,10 +123,11 @@ impl Outputs {
             let written = vibration.write(to).map(|of_file| played = Some(of_file));
             wav = Some((to.name(), written));
         }
-        let trace = self
-            .trace
-            .iter()
-            .map(|to| (to.name(), to.write(|out| trace::write(scene, recorder, out))));
+        let (rows, traced) = match traced.0 {
+            Ok(rows) => (rows, Ok(())),
+            Err(failure) => (None, Err(failure)),
+        };
+        let trace = self.trace.iter().map(Destination::name).zip([traced]);
         let shown_vibration = vibration.as_ref().filter(|_| !ran.has_forces);
         let run = Run {
             scene,
@@ -103,10 +138,12 @@ impl Outputs {
         };
         let plot = self.plot.iter().map(|to| (to.path(), run.draw(to)));
         let written: Vec<_> = trace.chain(wav).chain(plot).collect();
-        let rows = recorder.rows().len();
         let said = written.iter().filter(|(_, written)| written.is_ok()).map(|(path, _)| {
-            let is_trace = self.trace.iter().any(|trace| trace.name() == *path);
-            let rows = if is_trace { format!(" ({rows} rows)") } else { String::new() };
+            let rows = rows.filter(|_| {
+                let mut trace = self.trace.iter();
+                trace.any(|trace| trace.name() == *path)
+            });
+            let rows = rows.map_or(String::new(), |rows| format!(" ({rows} rows)"));
             format!("{}{rows}", path.display())
         });
         let said: Vec<_> = said.collect();

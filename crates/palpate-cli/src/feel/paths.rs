@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use palpate::devices::{DeviceError, HandPath, Interpolation, Tour};
+use palpate::devices::{DeviceError, HandPath, Tour};
 use palpate::field::{Shape, Vector};
 use palpate::haptics::Probe;
 use palpate::scene::BuiltScene;
@@ -31,7 +31,7 @@ struct Fingers<const D: usize> {
 
 impl<const D: usize> Fingers<D> {
     fn of(scene: &BuiltScene<D>, options: &FeelOptions) -> Self {
-        let arms = if options.points.is_some() { Vec::new() } else { arms(scene) };
+        let arms: Vec<_> = scene.contact_points().collect();
         let default = if options.scene.is_none() { FINGERS } else { 1 };
         let alone = options.points.unwrap_or(default);
         Self { count: if arms.is_empty() { alone } else { arms.len() }, arms }
@@ -84,7 +84,7 @@ pub(super) fn in_file<const D: usize>(
         ));
     }
     let paths = hand_csv::read(file)?;
-    let arms = arms(scene);
+    let arms: Vec<_> = scene.contact_points().collect();
     match (&paths[..], arms.len()) {
         (_, 0) => Ok(paths),
         ([hand], _) => {
@@ -122,13 +122,6 @@ fn moved<const D: usize>(
 ) -> Result<HandPath<D>, Failure> {
     let times = path.times().iter().map(|time| time - ahead).collect();
     let positions = path.positions().iter().map(|point| *point + by).collect();
-    let moved: Result<_, DeviceError> = HandPath::new(times, positions, Interpolation::Smooth);
+    let moved: Result<_, DeviceError> = HandPath::new(times, positions, path.interpolation());
     moved.map_err(Failure::input)
-}
-
-/// The contact points of the scene's tool, relative to the hand; empty if it has none.
-fn arms<const D: usize>(scene: &BuiltScene<D>) -> Vec<Vector<f64, D>> {
-    let rotation = scene.device_rotation();
-    let points = scene.tool.as_ref().map_or(&[][..], |tool| tool.points.as_slice());
-    points.iter().map(|arm| rotation.rotate(*arm)).collect()
 }

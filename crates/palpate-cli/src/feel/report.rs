@@ -8,20 +8,19 @@ use std::io::Write as _;
 use std::path::Path;
 
 use palpate::haptics::{
-    Accepted, Body, DeviceProfile, Material, PassivityReport, Progress, Rule, SafetyReport,
-    Servo, Surface, TurningReport,
+    Accepted, Body, DeviceProfile, Material, Progress, Rule, Servo, Surface, Texture,
+    TextureKind,
 };
 use palpate::scene::BuiltScene;
-use palpate::servo_loop::{Ending, RunReport, TextureReport, ToolReport};
+use palpate::servo_loop::RunReport;
 use serde_json::Value;
 
 use crate::numbers::rounded;
 use crate::outcome::Failure;
 use crate::output::{self, shown};
-use crate::times::{quantiles, write_histogram};
 
+use super::inside;
 use super::vibration::Played;
-use super::{guides, inside};
 
 /// The line that is shown while the servo runs.
 pub(crate) fn live_line(progress: &Progress) -> String {
@@ -83,9 +82,6 @@ impl<const D: usize> Felt<'_, D> {
         {
             told["name"] = self.name_of(start.body).into();
         }
-        for (guide, told) in self.servo.guides(0).iter().zip(json_items(&mut json, "guides")) {
-            told["kind"] = guide.kind_name().into();
-        }
         if let Some(scale) = self.workspace_scale {
             json["workspace_scale"] = scale.into();
         }
@@ -109,12 +105,6 @@ impl<const D: usize> Felt<'_, D> {
     /// The name of a body; empty for one that is not there.
     pub(super) fn name_of(&self, body: u32) -> &str {
         self.scene.bodies.get(body as usize).map_or("", |body| &body.name)
-    }
-
-    /// `true` if forces act on the hand that no contact gives: of guides or magnets.
-    fn has_free_forces(&self) -> bool {
-        let has_magnet = self.scene.bodies.iter().any(|body| body.material.magnet.is_some());
-        has_magnet || !self.report.guides.is_empty()
     }
 
     /// The names of the bodies that have motions.
@@ -210,24 +200,7 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
             write_accepted(out, accepted, |count| format!("{count} of {all} bodies"))?;
         }
     }
-    match &report.ending {
-        Ending::Finished => {}
-        Ending::Interrupted => {
-            writeln!(out, "  interrupted: this report covers the run until then")?
-        }
-        ending => writeln!(out, "  {}", shown(&ending.to_string()))?,
-    }
-    if !report.is_released {
-        writeln!(out, "  the device did not take the zero forces at the end")?;
-    }
     inside::write(out, felt)?;
-    let share = 100.0 * report.contact_time / report.duration.max(f64::MIN_POSITIVE);
-    writeln!(out, "  ticks          {} at {} Hz", report.ticks, report.rate)?;
-    writeln!(
-        out,
-        "  contact time   {:.3} s of {:.3} s ({share:.0} %)",
-        report.contact_time, report.duration
-    )?;
     if let Some(nearest) = felt.nearest {
         let nearest = rounded(nearest);
         writeln!(
@@ -236,51 +209,34 @@ fn write_report<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fm
              and in the coordinates of the scene?"
         )?;
     }
-    if has_forces {
-        writeln!(out, "  largest force  {:.3} N", report.largest_force)?;
-    }
-    writeln!(out, "  largest depth  {:.3} mm", 1e3 * report.largest_depth)?;
-    if let Some(tool) = &report.tool {
-        write_tool(out, tool)?;
-    }
-    let evaluations = &report.evaluations;
-    writeln!(
-        out,
-        "  evaluations    {:.2} a tick, {} at most",
-        evaluations.mean, evaluations.max
-    )?;
-    if evaluations.budget_spent > 0 {
-        writeln!(
-            out,
-            "                 {} ticks spent their budget",
-            evaluations.budget_spent
-        )?;
-    }
-    let events = &report.events;
-    writeln!(
-        out,
-        "  events         {} touches, {} slips, {} sticks, {} pops",
-        events.touches, events.slips, events.sticks, events.pops
-    )?;
-    guides::write(out, felt)?;
-    if let Some(texture) = report.texture.as_ref().filter(|texture| texture.faded_ticks > 0) {
-        write_texture(out, texture)?;
-    }
+    write_textures(out, felt)?;
     if let Some(played) = felt.played {
         played.write(out)?;
     }
-    write_safety(out, felt)?;
-    if let Some(cost) = &report.cost {
-        writeln!(out, "  cost a tick    {}", quantiles(cost))?;
+    write!(out, "{report:#}")
+}
+
+/// A line for each body whose waves the contact points were too large or too deep to follow.
+fn write_textures<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
+    let Felt { report, servo, scene, .. } = felt;
+    if report.tool.is_some() || report.contact_time == 0.0 {
+        return Ok(());
     }
-    if let Some(lateness) = &report.lateness {
-        writeln!(out, "  lateness       {}", quantiles(lateness))?;
-        write_histogram(out, lateness)?;
-        writeln!(
-            out,
-            "  missed         {} ticks more than a period late",
-            report.missed_deadlines
-        )?;
+    let reach = servo.options().probe.radius() + report.largest_depth;
+    for body in &scene.bodies {
+        let texture = body.material.texture.as_ref();
+        let texture = texture.filter(|texture| texture.kind == TextureKind::Displacement);
+        let Some(radius) = texture.map(Texture::valley_radius) else { continue };
+        if radius < reach {
+            let [radius, reach] = [radius, reach].map(|length| rounded(1e3 * length));
+            writeln!(
+                out,
+                "  texture        the valleys of body \"{}\" have a radius of {radius} mm, less than \
+                 probe and depth together, {reach} mm: waves may be skipped; lower their amplitude, \
+                 or use kind \"height\"",
+                shown(&body.name),
+            )?;
+        }
     }
     Ok(())
 }
@@ -314,85 +270,6 @@ fn write_accepted(
         writeln!(out, "                 the device's least damping b is assumed")?;
     }
     Ok(())
-}
-
-/// What was not rendered of height textures.
-fn write_texture(out: &mut String, texture: &TextureReport) -> std::fmt::Result {
-    let [crests, rate] = [texture.highest_frequency, texture.wanted_rate].map(rounded);
-    writeln!(
-        out,
-        "  texture        faded in {} of {} ticks: up to {crests} crests a second want a --rate of \
-         {rate} Hz",
-        texture.faded_ticks, texture.ticks
-    )
-}
-
-/// The lines of a tool's report that contact points do not have.
-fn write_tool(out: &mut String, tool: &ToolReport) -> std::fmt::Result {
-    write!(out, "  largest torque {:.3} mN·m", 1e3 * tool.largest_torque)?;
-    match tool.largest_torque_written {
-        Some(written) => writeln!(out, ", {:.3} mN·m written to the device", 1e3 * written)?,
-        None => writeln!(out)?,
-    }
-    writeln!(
-        out,
-        "  contacts       {:.2} on average in contact, {} at most",
-        tool.mean_contacts, tool.most_contacts
-    )?;
-    writeln!(
-        out,
-        "  resolution     {:.3} mm, in the worst tick {:.3} mm; {} ticks with a coarser shell",
-        1e3 * tool.resolution,
-        1e3 * tool.coarsest_resolution,
-        tool.degraded_ticks,
-    )?;
-    if tool.covered_ticks > 0 {
-        writeln!(out, "                 {} ticks covered by bodies", tool.covered_ticks)?;
-    }
-    Ok(())
-}
-
-/// The actions of the safety chains of all points together.
-fn write_safety<const D: usize>(out: &mut String, felt: &Felt<'_, D>) -> std::fmt::Result {
-    let safety = &felt.report.safety[..];
-    if safety.is_empty() {
-        return Ok(());
-    }
-    let energy = |of: fn(&PassivityReport) -> f64| -> f64 {
-        1e3 * safety.iter().map(|point| of(&point.passivity)).sum::<f64>()
-    };
-    writeln!(
-        out,
-        "  energy         {:.3} mJ taken from the hand, {:.3} mJ given, {:.3} mJ kept back{}",
-        energy(|p| p.energy_in),
-        energy(|p| p.energy_out),
-        energy(|p| p.dissipated),
-        if felt.has_free_forces() { "; of contacts alone" } else { "" },
-    )?;
-    let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
-    let turns = |of: fn(&TurningReport) -> u64| -> u64 {
-        safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
-    };
-    let stages = [
-        ("passivity", ticks(|point| point.passivity.effect.ticks)),
-        ("force rate", ticks(|point| point.slew.ticks)),
-        ("largest force", ticks(|point| point.force_limit.ticks)),
-        ("lasting force", ticks(|point| point.continuous.effect.ticks)),
-        ("not a number", ticks(|point| point.guard.ticks)),
-        ("rise from zero", ticks(|point| point.ramp.ticks)),
-        ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
-        ("torque rate", turns(|turning| turning.slew.ticks)),
-        ("largest torque", turns(|turning| turning.torque_limit.ticks)),
-        ("lasting torque", turns(|turning| turning.continuous.effect.ticks)),
-    ];
-    let acted: Vec<_> = stages
-        .iter()
-        .filter(|(_, ticks)| *ticks > 0)
-        .map(|(stage, ticks)| format!("{stage} {ticks}"))
-        .collect();
-    let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
-    writeln!(out, "  safety, ticks  {acted}")?;
-    writeln!(out, "                 {} watchdog trips", ticks(|point| point.watchdog.trips))
 }
 
 /// The stiffness that materials ask for [N/m], or the part of the device's if all ask for one.

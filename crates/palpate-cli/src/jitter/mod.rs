@@ -16,7 +16,6 @@ use serde_json::{Value, json};
 use crate::arguments::JitterOptions;
 use crate::outcome::{Failure, Outcome};
 use crate::output;
-use crate::times::{quantiles, write_histogram};
 
 /// The highest rate [Hz], which is that of the fastest servo.
 const MOST_RATE: f64 = 10_000.0;
@@ -161,8 +160,7 @@ fn write_text(
             writeln!(out, "  no tick: raise --duration")?;
             continue;
         };
-        writeln!(out, "  lateness       {}", quantiles(times))?;
-        write_histogram(out, times)?;
+        writeln!(out, "  lateness       {times:#}")?;
         writeln!(out, "  missed         {missed} of {} ticks", times.count)?;
     }
     if let Priority::Refused { reason } = priority {

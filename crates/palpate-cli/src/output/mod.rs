@@ -71,7 +71,7 @@ impl Destination {
     /// Writes what `fill` writes. If that fails, an existing file stays as it was.
     pub(crate) fn write<T>(
         &self,
-        fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+        fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         self.write_whole(fill, |_| true)
     }
@@ -80,11 +80,11 @@ impl Destination {
     /// [`part`](Self::part), and an existing file stays as it was.
     pub(crate) fn write_whole<T>(
         &self,
-        fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+        fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Failure>,
         is_whole: impl FnOnce(&T) -> bool,
     ) -> Result<T, Failure> {
         match &self.target {
-            Target::Standard => filled(io::stdout().lock(), fill),
+            Target::Standard => filled(io::stdout(), fill),
             Target::Direct => {
                 // Append: a path such as /dev/stdout may lead to a file that other programs
                 // write.
@@ -104,8 +104,8 @@ impl Destination {
 
 /// Calls `fill` with a buffer to `out`, and flushes it.
 fn filled<T>(
-    out: impl Write,
-    fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+    out: impl Write + Send,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let mut out = BufWriter::new(out);
     let answer = fill(&mut out)?;
@@ -116,7 +116,7 @@ fn filled<T>(
 /// Calls `fill` with a new file beside `place`, and renames it to `place`, or to its part.
 fn replaced<T>(
     place: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> Result<T, Failure>,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Failure>,
     is_whole: impl FnOnce(&T) -> bool,
 ) -> Result<T, Failure> {
     let file = beside(place)?;

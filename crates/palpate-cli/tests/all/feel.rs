@@ -77,7 +77,7 @@ fn a_path_that_starts_inside_a_body_is_said() {
 fn what_is_too_much_or_too_little_is_refused_before_the_run() {
     let folder = Folder::new();
     let scene = folder.write("ball.json", BALL);
-    let trace = folder.name("trace.csv");
+    let plot = folder.name("touch.svg");
     let feel = |more: &[&str], said: &str| {
         assert_refused(&[&["feel", &scene, "--fast"], more].concat(), said);
     };
@@ -86,8 +86,8 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
         "a run of 1e-9 s has no tick at 1000 Hz; the least duration is 0.0005 s",
     );
     feel(
-        &["--duration", "40000", "--trace", &trace],
-        "--trace, --plot and --wav keep 3600000 rows at most, got 40000000; \
+        &["--duration", "40000", "--plot", &plot],
+        "--plot and --wav keep 3600000 rows at most, got 40000000; \
          shorten --duration, lower --rate, or use fewer contact points",
     );
     let output = palpate(&["feel", &scene, "--fast", "--points", "1000", "--duration", "100"]);
@@ -108,9 +108,9 @@ fn what_is_too_much_or_too_little_is_refused_before_the_run() {
 #[test]
 fn rows_that_the_system_has_no_memory_for_are_refused() {
     let folder = Folder::new();
-    let trace = folder.name("trace.csv");
+    let plot = folder.name("touch.svg");
     let shell = "ulimit -v 1000000; exec \"$@\"";
-    let feel = ["feel", "scenes/s1.json", "--fast", "--duration", "3600", "--trace", &trace];
+    let feel = ["feel", "scenes/s1.json", "--fast", "--duration", "3600", "--plot", &plot];
     let output = std::process::Command::new("sh")
         .args(["-c", shell, "sh", env!("CARGO_BIN_EXE_palpate")])
         .args(feel)
@@ -118,7 +118,7 @@ fn rows_that_the_system_has_no_memory_for_are_refused() {
         .output()
         .unwrap();
     let said = errors(&output);
-    let start = "palpate: --trace, --plot and --wav keep 3600000 rows of this run, ";
+    let start = "palpate: --plot and --wav keep 3600000 rows of this run, ";
     let end = " GB of memory, which the system does not give; shorten --duration, lower --rate, \
                or use fewer contact points\n";
     assert!(said.starts_with(start) && said.ends_with(end), "{said}");
@@ -234,15 +234,17 @@ fn guides_are_named_counted_and_drawn() {
     assert!(well["given"].as_f64().unwrap() > 1e-3, "{well}");
     let said = text(&palpate(&feel));
     assert!(
-        said.contains("  guide 0        a line, held the hand for 1 s with at most 0.6 N; "),
+        said.contains(
+            "  guide 0        a line, held the hand for 1.000 s with at most 0.600 N; "
+        ),
         "{said}"
     );
     assert!(said.contains("  guide 2        a plane, did not hold the hand\n"), "{said}");
-    assert!(said.contains(" mJ kept back; of contacts alone\n"), "{said}");
+    assert!(said.contains("  energy         contacts took "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     assert!(words(&svg).contains(&"guides"), "{:?}", words(&svg));
     let cup = ["feel", "scenes/cup.json", "--fast", "--duration", "0.1"];
-    assert!(text(&palpate(&cup)).contains(" mJ kept back\n"));
+    assert!(text(&palpate(&cup)).contains(" mJ were kept back\n"));
     assert_eq!(json(&[&cup[..], &["--json"]].concat())["guides"], serde_json::json!([]));
 }
 
@@ -278,4 +280,52 @@ fn the_stiffness_that_a_device_renders_is_told_beside_the_one_asked_for() {
     assert!(said.contains("\n  stiffness 500 N/m, damping 1 N·s/m, "), "{said}");
     let svg = std::fs::read_to_string(&plot).unwrap();
     assert!(has(&svg, "500 N/m") && !has(&svg, "asked"), "{:?}", words(&svg));
+}
+
+/// A path through irregular samples left them by several times their range.
+#[test]
+fn a_path_stays_between_the_rows_of_its_file() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let rows = "time_s,x_m,y_m,z_m\n0,0,0.62,0\n1,0,0.61,0\n1.002,0,0.63,0\n1.9,0,0.63,0\n\
+                1.91,0,0.6,0\n3,0,0.61,0\n";
+    let (hand, trace) = (folder.write("hand.csv", rows), folder.name("trace.csv"));
+    let feel = ["feel", &scene, "--path", &hand, "--fast", "--trace", &trace];
+    assert_eq!(status(&palpate(&feel)), 0);
+    let trace = std::fs::read_to_string(&trace).unwrap();
+    let heights = column(&trace, "device_y_m");
+    let heights: Vec<f64> = heights.iter().map(|height| height.parse().unwrap()).collect();
+    assert_eq!(heights.len(), 3000);
+    let within = |times: std::ops::Range<usize>, least: f64, most: f64| {
+        let outside = heights[times].iter().find(|y| !(least..=most).contains(*y));
+        assert_eq!(outside, None, "{least} to {most}");
+    };
+    within(0..1000, 0.61, 0.62);
+    within(1002..1900, 0.63, 0.63);
+    within(1910..3000, 0.6, 0.61);
+}
+
+/// The report of a texture whose waves no probe follows did not say so.
+#[test]
+fn a_texture_that_is_too_narrow_for_the_probe_is_told() {
+    let folder = Folder::new();
+    let scene = |amplitude: f64| {
+        format!(
+            r#"{{ "palpate": 1, "dimension": 2, "bodies": [ {{ "name": "plate",
+                "shape": {{ "rectangle": {{ "size": [0.4, 0.1] }} }},
+                "material": {{ "stiffness": 500, "texture": {{ "kind": "displacement",
+                "amplitude": {amplitude}, "wavelength": 0.01, "direction": [1, 0] }} }} }} ] }}"#
+        )
+    };
+    let hand = folder.write("hand.csv", "time_s,x_m,y_m\n0,0,0.06\n0.5,0,0.051\n");
+    let said = |amplitude: f64| {
+        let scene = folder.write("plate.json", &scene(amplitude));
+        text(&palpate(&["feel", &scene, "--path", &hand, "--fast"]))
+    };
+    // A radius of 10⁻⁴ m² / (4 π² · 2 mm) = 1.267 mm.
+    let narrow = said(0.002);
+    let line = "  texture        the valleys of body \"plate\" have a radius of 1.267 mm, less than \
+                probe and depth together, ";
+    assert!(narrow.contains(line), "{narrow}");
+    assert!(!said(0.0001).contains("  texture  "));
 }

@@ -267,7 +267,7 @@ fn a_texture_that_is_too_fast_for_the_rate_says_which_rate_it_wants() {
     let hand = folder.write("hand.csv", hand);
     let run = |rate| ["feel", &scene, "--path", &hand, "--fast", "--rate", rate];
     let said = text(&palpate(&run("1000")));
-    assert!(said.contains("crests a second want a --rate of 2400 Hz"), "{said}");
+    assert!(said.contains("crests a second want a rate of 2400 Hz"), "{said}");
     // The hand goes 0.4 m in a second along a cubic: up to 0.6 m/s over crests 1 mm apart.
     let report = json(&[&run("1000")[..], &["--json"]].concat());
     let texture = &report["texture"];

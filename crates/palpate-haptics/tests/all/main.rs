@@ -26,6 +26,7 @@ mod moving;
 mod places;
 mod protected;
 mod real_time;
+mod records;
 mod reports;
 mod runs;
 mod safety;

@@ -101,6 +101,39 @@ impl<const D: usize> BuiltScene<D> {
         })
     }
 
+    /// Moves the bodies of a servo as the scene says: a closure for
+    /// `palpate_loop::RunOptions::with_motion`, which gets the time of a tick [s] and a function
+    /// that sets the pose of a body by its number.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use palpate_field::Pose;
+    /// use palpate_scene::{AnyScene, Scene};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let scene = Scene::from_json(
+    ///     r#"{ "palpate": 1, "dimension": 2,
+    ///          "bodies": [ { "name": "table", "shape": { "rectangle": { "size": [1, 0.1] } } },
+    ///                      { "name": "lid", "shape": { "rectangle": { "size": [0.1, 0.1] } } } ],
+    ///          "motions": [ { "body": "lid", "to": { "translation": [0, 0.5] }, "duration": 2 } ] }"#,
+    /// )?;
+    /// let AnyScene::Planar(scene) = scene.build()? else { unreachable!("dimension is 2") };
+    /// let mut moved = Vec::new();
+    /// let mut set_pose = |body: usize, pose: Pose<2>| moved.push((body, pose.translation.0));
+    /// scene.motion()(2.0, &mut set_pose);
+    /// assert_eq!(moved, [(1, [0.0, 0.5])]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// Real-time: the closure allocates nothing, takes no lock, cannot panic.
+    pub fn motion(&self) -> impl FnMut(f64, &mut dyn FnMut(usize, Pose<D>)) {
+        |time, set_pose| {
+            self.moving().for_each(|body| set_pose(body, self.pose_at(body, time)));
+        }
+    }
+
     /// The scene at a time [s]: its bodies where their motions have taken them.
     ///
     /// # Errors

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The report of a run as lines, each with what it is about before it.
+
+use std::fmt::{Display, Formatter, Result};
+
+use palpate_haptics::{PassivityReport, SafetyReport, TurningReport};
+
+use crate::display::NOT_RELEASED;
+use crate::report::{Ending, RunReport};
+use crate::tool_report::ToolReport;
+
+/// A line that begins with what it is about; one that continues the line before has no label.
+pub(crate) fn line(f: &mut Formatter<'_>, label: &str, what: impl Display) -> Result {
+    writeln!(f, "  {label:14} {what}")
+}
+
+/// Writes all lines.
+pub(crate) fn write(f: &mut Formatter<'_>, report: &RunReport) -> Result {
+    match &report.ending {
+        Ending::Finished => {}
+        Ending::Interrupted => {
+            writeln!(f, "  interrupted: this report covers the run until then")?
+        }
+        ending => writeln!(f, "  {ending}")?,
+    }
+    if !report.is_released {
+        writeln!(f, "  {NOT_RELEASED}")?;
+    }
+    line(f, "ticks", format_args!("{} at {} Hz", report.ticks, report.rate))?;
+    let (contact, duration) = (report.contact_time, report.duration);
+    let share = 100.0 * contact / duration.max(f64::MIN_POSITIVE);
+    let said = format_args!("{contact:.3} s of {duration:.3} s ({share:.0} %)");
+    line(f, "contact time", said)?;
+    // A device that gives no force has no safety chain.
+    if !report.safety.is_empty() {
+        line(f, "largest force", format_args!("{:.3} N", report.largest_force))?;
+    }
+    line(f, "largest depth", format_args!("{:.3} mm", 1e3 * report.largest_depth))?;
+    if let Some(tool) = &report.tool {
+        write_tool(f, tool)?;
+    }
+    line(f, "evaluations", report.evaluations)?;
+    if report.evaluations.budget_spent > 0 {
+        let spent = report.evaluations.budget_spent;
+        line(f, "", format_args!("{spent} ticks spent their budget"))?;
+    }
+    line(f, "events", report.events)?;
+    if report.rows_dropped > 0 {
+        let said = "ticks were faster than their rows were written";
+        line(f, "rows lost", format_args!("{}; {said}", report.rows_dropped))?;
+    }
+    for (number, guide) in report.guides.iter().enumerate() {
+        line(f, &format!("guide {number}"), guide)?;
+    }
+    if let Some(texture) = report.texture.filter(|texture| texture.faded_ticks > 0) {
+        line(f, "texture", texture)?;
+    }
+    write_safety(f, &report.safety)?;
+    if let Some(cost) = &report.cost {
+        line(f, "cost a tick", cost)?;
+    }
+    if let Some(lateness) = &report.lateness {
+        line(f, "lateness", format_args!("{lateness:#}"))?;
+        let missed = report.missed_deadlines;
+        line(f, "missed", format_args!("{missed} ticks more than a period late"))?;
+    }
+    Ok(())
+}
+
+/// The lines of a tool that contact points do not have.
+fn write_tool(f: &mut Formatter<'_>, tool: &ToolReport) -> Result {
+    let torque = 1e3 * tool.largest_torque;
+    match tool.largest_torque_written {
+        Some(written) => {
+            let written = 1e3 * written;
+            let said =
+                format_args!("{torque:.3} mN·m, {written:.3} mN·m written to the device");
+            line(f, "largest torque", said)?;
+        }
+        None => line(f, "largest torque", format_args!("{torque:.3} mN·m"))?,
+    }
+    let (mean, most) = (tool.mean_contacts, tool.most_contacts);
+    let said = format_args!("{mean:.2} on average in contact, {most} at most");
+    line(f, "contacts", said)?;
+    let said = format_args!(
+        "{:.3} mm, in the worst tick {:.3} mm; {} ticks with a coarser shell",
+        1e3 * tool.resolution,
+        1e3 * tool.coarsest_resolution,
+        tool.degraded_ticks,
+    );
+    line(f, "resolution", said)?;
+    if tool.covered_ticks > 0 {
+        line(f, "", format_args!("{} ticks covered by bodies", tool.covered_ticks))?;
+    }
+    Ok(())
+}
+
+/// The actions of the safety chains of all points together.
+fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
+    if safety.is_empty() {
+        return Ok(());
+    }
+    let energy = |of: fn(&PassivityReport) -> f64| -> f64 {
+        1e3 * safety.iter().map(|point| of(&point.passivity)).sum::<f64>()
+    };
+    let said = format_args!(
+        "contacts took {:.3} mJ from the hand and gave {:.3} mJ; {:.3} mJ were kept back",
+        energy(|p| p.energy_in),
+        energy(|p| p.energy_out),
+        energy(|p| p.dissipated),
+    );
+    line(f, "energy", said)?;
+    let ticks = |of: fn(&SafetyReport) -> u64| safety.iter().map(of).sum::<u64>();
+    let turns = |of: fn(&TurningReport) -> u64| -> u64 {
+        safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
+    };
+    let stages = [
+        ("passivity", ticks(|point| point.passivity.effect.ticks)),
+        ("force rate", ticks(|point| point.slew.ticks)),
+        ("largest force", ticks(|point| point.force_limit.ticks)),
+        ("lasting force", ticks(|point| point.continuous.effect.ticks)),
+        ("not a number", ticks(|point| point.guard.ticks)),
+        ("rise from zero", ticks(|point| point.ramp.ticks)),
+        ("watchdog", ticks(|point| point.watchdog.effect.ticks)),
+        ("emergency stop", ticks(|point| point.emergency_stop.ticks)),
+        ("torque rate", turns(|turning| turning.slew.ticks)),
+        ("largest torque", turns(|turning| turning.torque_limit.ticks)),
+        ("lasting torque", turns(|turning| turning.continuous.effect.ticks)),
+    ];
+    let acted = stages.iter().filter(|(_, ticks)| *ticks > 0);
+    let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
+    let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
+    line(f, "safety, ticks", acted)?;
+    let trips = ticks(|point| point.watchdog.trips);
+    line(f, "", format_args!("{trips} watchdog trips"))
+}
