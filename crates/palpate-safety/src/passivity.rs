@@ -245,7 +245,7 @@ impl<V: InnerProduct> Passivity<V> {
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
         let may_give = self.options.is_on && wanted != V::ZERO;
-        let part = |spare| self.part(wanted, held, way, state, spare);
+        let part = |spare| self.part(wanted, [held, way], state, spare);
         let parts = if may_give { [part(0.0), part(SPARE)] } else { [1.0; 2] };
         let part = self.smoothed(parts, wanted.norm());
         let changed = (part < 1.0).then(|| wanted * part);
@@ -345,8 +345,9 @@ impl<V: InnerProduct> Passivity<V> {
         self.leaks <= self.losses
     }
 
-    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J].
-    fn part(&self, wanted: V, held: V, way: V, state: &PortMotion<V>, spare: f64) -> f64 {
+    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J], where
+    /// the force `held` moved the device by `way` in the last tick.
+    fn part(&self, wanted: V, [held, way]: [V; 2], state: &PortMotion<V>, spare: f64) -> f64 {
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve + spare).max(0.0);
         let compliance = self.compliance;
