@@ -32,7 +32,7 @@ const STEP: f64 = 0.3;
 
 /// Energy that may be given out beyond the balance and the reserve while the controller takes the
 /// force away smoothly [J].
-const SPARE: f64 = 5e-4;
+const SPARE: f64 = 3e-4;
 
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
