@@ -5,8 +5,8 @@
 
 use palpate_field::{Aabb, Rotation, Vector};
 use palpate_haptics::{
-    Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Servo,
-    ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
+    Acceptance, Bodies, Body, Device, DeviceProfile, HapticsError, Probe, Protection, Recovery,
+    Servo, ServoOptions, Shell, Surface, Tool, UnprotectedServo, WorkspaceMap,
 };
 use palpate_query::{QueryError, World, WorldSettings};
 
@@ -27,13 +27,15 @@ pub struct ServoSettings {
     pub acceptance: Option<Acceptance>,
     /// Whether materials are refused of which the device renders less than all.
     pub is_strict: bool,
+    /// How a force comes back after it was zeroed.
+    pub recovery: Recovery,
 }
 
 impl Default for ServoSettings {
     /// 1 kHz; the device renders of materials what the scene says.
     fn default() -> Self {
         let rate = ServoOptions::default().rate;
-        Self { rate, acceptance: None, is_strict: false }
+        Self { rate, acceptance: None, is_strict: false, recovery: Recovery::Rise }
     }
 }
 
@@ -54,6 +56,12 @@ impl ServoSettings {
     #[must_use]
     pub fn with_strictness(self, is_strict: bool) -> Self {
         Self { is_strict, ..self }
+    }
+
+    /// With another way in which a force comes back after it was zeroed.
+    #[must_use]
+    pub fn with_recovery(self, recovery: Recovery) -> Self {
+        Self { recovery, ..self }
     }
 }
 
@@ -283,6 +291,7 @@ impl<const D: usize> BuiltScene<D> {
         let protection = Protection::new(profile.clone())
             .with_map(map)
             .with_acceptance(acceptance)
+            .with_recovery(settings.recovery)
             .with_strictness(settings.is_strict);
         let mut servo = servo.protected(&protection)?;
         servo.guide(&self.guides)?;

@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
 use palpate::devices::{DeviceProfile, PROFILES, profile_named};
-use palpate::haptics::Acceptance;
+use palpate::haptics::{Acceptance, Recovery};
 use palpate::scene::unknown_name;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
@@ -55,6 +55,10 @@ pub(crate) struct FeelOptions {
     /// What the device renders of materials; what the scene says, or else device, if left out.
     #[arg(long, value_enum)]
     pub(crate) acceptance: Option<AcceptanceChoice>,
+    /// How a force comes back after it was zeroed, by late ticks or at the start: rise, by 20 N/s, or
+    /// once-out, when no body pushes the hand any more.
+    #[arg(long, value_enum, default_value_t = RecoveryChoice::Rise, hide_default_value = true)]
+    pub(crate) recovery: RecoveryChoice,
     /// Refuse bodies of which the device renders less than all. A glove, which has no forces, takes
     /// neither this nor the options of stiffness, damping, acceptance and force.
     #[arg(long)]
@@ -164,6 +168,24 @@ impl From<AcceptanceChoice> for Acceptance {
             AcceptanceChoice::Passive => Self::Passive,
             AcceptanceChoice::Device => Self::Device,
             AcceptanceChoice::AsIs => Self::AsIs,
+        }
+    }
+}
+
+/// How a force comes back after it was zeroed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RecoveryChoice {
+    /// By 20 N/s, at once.
+    Rise,
+    /// When no body pushes the hand.
+    OnceOut,
+}
+
+impl From<RecoveryChoice> for Recovery {
+    fn from(choice: RecoveryChoice) -> Self {
+        match choice {
+            RecoveryChoice::Rise => Self::Rise,
+            RecoveryChoice::OnceOut => Self::OnceOut,
         }
     }
 }

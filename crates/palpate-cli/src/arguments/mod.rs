@@ -26,7 +26,7 @@ pub(crate) use contact::{ContactOptions, ContactQuestion};
 pub(crate) use descend::DescendOptions;
 pub(crate) use devices::DevicesOptions;
 pub(crate) use eval::EvalOptions;
-pub(crate) use feel::{DeviceChoice, FeelOptions};
+pub(crate) use feel::{DeviceChoice, FeelOptions, RecoveryChoice};
 pub(crate) use gallery::{Format, GalleryOptions, Plane};
 pub(crate) use gradients::GradientsOptions;
 pub(crate) use jitter::JitterOptions;

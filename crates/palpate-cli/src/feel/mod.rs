@@ -24,7 +24,7 @@ use palpate::haptics::{Probe, Progress};
 use palpate::scene::{AnyScene, BuiltScene, BuiltTool, ServoSettings};
 use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as run_servo};
 
-use crate::arguments::{DeviceChoice, FeelOptions};
+use crate::arguments::{DeviceChoice, FeelOptions, RecoveryChoice};
 use crate::emptiness;
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
@@ -80,8 +80,10 @@ where
     let map = held::map(scene, tool.as_ref(), &choice)?;
     let device = held::device(&choice, &paths, turns.as_ref(), &map);
     let mut device = device.map_err(Failure::input)?;
-    let mut settings =
-        ServoSettings::default().with_rate(options.rate).with_strictness(options.strict);
+    let mut settings = ServoSettings::default()
+        .with_rate(options.rate)
+        .with_strictness(options.strict)
+        .with_recovery(options.recovery.into());
     settings.acceptance = options.acceptance.map(Into::into);
     let mut servo = scene.servo_with(device.as_ref(), settings).map_err(Failure::input)?;
     let accepted = servo.accepted().to_vec();
@@ -205,6 +207,7 @@ fn check_forces(choice: &DeviceChoice, options: &FeelOptions) -> Result<(), Fail
                 ("--relative-stiffness", options.relative_stiffness.is_some()),
                 ("--damping", options.damping.is_some()),
                 ("--acceptance", options.acceptance.is_some()),
+                ("--recovery", options.recovery != RecoveryChoice::Rise),
                 ("--strict", options.strict),
             ];
             let given = given.iter().filter(|(_, is_given)| *is_given);

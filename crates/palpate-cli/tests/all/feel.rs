@@ -44,6 +44,29 @@ fn feel_touches_every_body_on_a_table() {
     }
 }
 
+/// A hand begins 1.2 mm inside, leaves, and comes back.
+#[test]
+fn a_force_waits_until_the_hand_is_out_if_asked() {
+    let folder = Folder::new();
+    let scene = folder.write("ball.json", BALL);
+    let rows = "time_s,x_m,y_m,z_m\n0,0,0.4988,0\n0.4,0,0.4988,0\n0.5,0,0.6,0\n0.6,0,0.6,0\n\
+                0.7,0,0.4988,0\n1,0,0.4988,0\n";
+    let (hand, trace) = (folder.write("hand.csv", rows), folder.name("trace.csv"));
+    let forces = |recovery: &[&str]| {
+        let device = ["--device", "simulated:omega", "--trace", &trace, "--json"];
+        let feel = ["feel", &scene, "--path", &hand, "--fast"];
+        json(&[&feel[..], &device, recovery].concat());
+        let forces = column(&std::fs::read_to_string(&trace).unwrap(), "force_y_n");
+        let forces: Vec<f64> = forces.iter().map(|force| force.parse().unwrap()).collect();
+        let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+        [most(&forces[..400]), most(&forces[700..])]
+    };
+    let [at_once, again] = forces(&["--recovery", "rise"]);
+    assert!(at_once > 0.1 && again > 0.1, "{at_once} N, {again} N");
+    let [at_once, again] = forces(&["--recovery", "once-out"]);
+    assert!(at_once == 0.0 && again > 0.1, "{at_once} N, {again} N");
+}
+
 #[test]
 fn a_path_that_starts_inside_a_body_is_said() {
     let folder = Folder::new();
