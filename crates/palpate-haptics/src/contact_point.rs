@@ -392,7 +392,7 @@ impl<const D: usize> ContactPoint<D> {
     /// at the stretch `λᵢ nᵢ + wᵢ t` with the weight `wᵢ = λᵢ / Σ λ`. Dampers, and friction in the next tick, are those of all bodies with these weights. So
     /// bodies of one material feel like one body, and the force does not jump when a body begins or
     /// ceases to push. Behind oblique walls the springs work against each other; their force is at
-    /// most that of the hardest body at the whole stretch. Textures come on top.
+    /// most [`Shared::most`]. Textures come on top.
     fn held_by_several(
         &mut self,
         tick: &mut Tick<'_, D>,
@@ -430,7 +430,7 @@ impl<const D: usize> ContactPoint<D> {
             (touch.body, touch.normal) = (hardest.body, hardest.normal);
         }
         self.tell_changes(tick, touch, before, &crease);
-        let fit = shortening(plain.norm(), shared.most);
+        let fit = shortening(plain.norm(), shared.most());
         let dampers = shared.dampers(touch.velocity, stretch * (1.0 / depth));
         for wall in crease.pushing_mut() {
             wall.force = wall.force * fit + dampers * (wall.push / whole);

