@@ -388,11 +388,12 @@ impl<const D: usize> ContactPoint<D> {
 
     /// The force of several bodies that hold the proxy together [N].
     ///
-    /// With the stretch `s = Σ λᵢ nᵢ + t`, of which friction holds `t` (see [`Crease`]), each body gives the force of its material
-    /// at the stretch `λᵢ nᵢ + wᵢ t` with the weight `wᵢ = λᵢ / Σ λ`. Dampers, and friction in the next tick, are those of all bodies with these weights. So
-    /// bodies of one material feel like one body, and the force does not jump when a body begins or
-    /// ceases to push. Behind oblique walls the springs work against each other; their force is at
-    /// most [`Shared::most`]. Textures come on top.
+    /// With the stretch `s = Σ λᵢ nᵢ + t`, of which friction holds `t` (see [`Crease`]), each body
+    /// gives the force of its material at the stretch `λᵢ nᵢ + wᵢ t` with the weight `wᵢ = λᵢ / Σ λ`.
+    /// Dampers, and friction in the next tick, are those of all bodies with these weights. So bodies
+    /// of one material feel like one body, and the force does not jump when a body begins or ceases
+    /// to push. Behind oblique walls the springs work against each other; their force is at most
+    /// [`Shared::most`]. Textures come on top.
     fn held_by_several(
         &mut self,
         tick: &mut Tick<'_, D>,
@@ -431,7 +432,8 @@ impl<const D: usize> ContactPoint<D> {
         }
         self.tell_changes(tick, touch, before, &crease);
         let fit = shortening(plain.norm(), shared.most());
-        let dampers = shared.dampers(touch.velocity, stretch * (1.0 / depth));
+        let along = stretch.normalized().unwrap_or(Vector::ZERO);
+        let dampers = shared.dampers(touch.velocity, along);
         for wall in crease.pushing_mut() {
             wall.force = wall.force * fit + dampers * (wall.push / whole);
             self.pop(tick, wall.body, wall.push);

@@ -119,8 +119,8 @@ pub struct PassivityReport {
 /// **Controller.** The whole force is scaled down until the energy that it gives out in the
 /// coming tick is no more than the balance plus a reserve. What it takes changes by [`STEP`] a tick
 /// at most, so that walls do not kick when it acts or lets go, unless [`SPARE`] more would be given
-/// out; then it acts at once. The motion is predicted from the
-/// velocity, and from the acceleration of the device's mass by this force and the one before.
+/// out; then it acts at once. The motion is predicted from the velocity, and from the acceleration
+/// of the device's mass by this force and the one before.
 /// If the slew limit would prevent a fast removal of the force, the energy given out during the
 /// removal counts too. The controller always leaves [`FLOOR`] of the force whose leaks damping
 /// covers; a wall that soft comes to rest by itself. The balance is capped at the energy `U`
