@@ -246,8 +246,9 @@ impl<V: InnerProduct> Passivity<V> {
         let held = self.last.map_or(V::ZERO, |last| last.written);
         let may_give = self.options.is_on && wanted != V::ZERO;
         let part = |spare| self.part(wanted, [held, way], state, spare);
-        let parts = if may_give { [part(0.0), part(SPARE)] } else { [1.0; 2] };
-        let part = self.smoothed(parts, wanted.norm());
+        let soft = if may_give { part(0.0) } else { 1.0 };
+        let hard = if soft < 1.0 { part(SPARE) } else { 1.0 };
+        let part = self.smoothed([soft, hard], wanted.norm());
         let changed = (part < 1.0).then(|| wanted * part);
         let allowed = self.report.effect.count(wanted, changed);
         let PortMotion { position, effort, .. } = *state;
