@@ -25,7 +25,7 @@ struct Column<P: 'static> {
     of: fn(&P) -> f64,
 }
 
-const COLUMNS: [Column<DeviceProfile>; 10] = [
+const COLUMNS: [Column<DeviceProfile>; 12] = [
     Column { key: "max_force", unit: "N", head: ["largest", "force"], of: |p| p.max_force },
     Column {
         key: "continuous_force",
@@ -67,6 +67,13 @@ const COLUMNS: [Column<DeviceProfile>; 10] = [
         unit: "m",
         head: ["encoder", "step"],
         of: |p| p.encoder_step,
+    },
+    Column { key: "max_speed", unit: "m/s", head: ["", "speed"], of: |p| p.max_speed },
+    Column {
+        key: "max_acceleration",
+        unit: "m/s²",
+        head: ["accel-", "eration"],
+        of: |p| p.max_acceleration,
     },
 ];
 
