@@ -81,7 +81,9 @@ fn list(name: &str) -> PathBuf {
 }
 
 fn pages(name: &str) -> PathBuf {
-    root().join("target/doc").join(name.replace('-', "_"))
+    let target = std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| root().join("target"), PathBuf::from);
+    target.join("doc").join(name.replace('-', "_"))
 }
 
 fn cannot(verb: &str, path: &Path, error: &std::io::Error) -> Failure {

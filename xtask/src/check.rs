@@ -30,11 +30,12 @@ const STAGES: &[Stage] = &[
 
 /// Makes the documentation of every crate.
 pub(crate) fn document() -> Result<(), Failure> {
-    // rustdoc links to another crate's pages only where their folder is there already, and cargo
-    // takes the crates in any order.
+    // rustdoc links to another crate's pages only where their folder is there already. cargo takes
+    // the crates in any order, and empties a crate's folder just before that crate's rustdoc
+    // makes it anew: one crate at a time, no rustdoc sees the folder of another one missing.
     api::make_folders()?;
     cargo_with(
-        &["doc", "--workspace", "--no-deps", "--locked"],
+        &["doc", "--workspace", "--no-deps", "--locked", "--jobs", "1"],
         &[("RUSTDOCFLAGS", "-D warnings")],
     )
 }
