@@ -3,7 +3,7 @@
 
 //! Errors of hand paths, tours and devices.
 
-use palpate_haptics::NumberError;
+use palpate_haptics::{HapticsError, NumberError};
 
 /// Why a hand path, a tour, a hand or a device is refused. Every variant carries the offending
 /// numbers.
@@ -72,6 +72,15 @@ pub enum DeviceError {
         /// The number of contact points.
         points: usize,
     },
+    /// A press needs a device with a largest force.
+    #[error("a press needs a device with a largest force, got {max_force} N")]
+    NoForce {
+        /// The largest force that the device can give without time limit [N].
+        max_force: f64,
+    },
+    /// A wall to press is refused.
+    #[error(transparent)]
+    Haptics(#[from] HapticsError),
     /// A coordinate of a hand's target is not finite.
     #[error("target {index} must be finite, got {value} m")]
     TargetNotFinite {

@@ -55,6 +55,7 @@ mod oscillator;
 mod profiles;
 mod recorded;
 mod simulated;
+pub mod stability;
 mod steered;
 mod tour;
 mod turning;

@@ -84,9 +84,9 @@ pub use palpate_material::{
 };
 pub use palpate_safety::{
     Acceptance, Accepted, ContinuousReport, Device, DeviceLost, DeviceProfile, Effect,
-    Impedance, NumberError, PassivityReport, PointState, PortState, ReadingsReport, Recovery,
-    Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport, TurnState, TurningProfile,
-    TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
+    Impedance, LimitCycleReport, NumberError, PassivityReport, PointState, PortState,
+    ReadingsReport, Recovery, Rule, SafetyChain, SafetyError, SafetyOptions, SafetyReport,
+    TurnState, TurningProfile, TurningReport, VelocityEstimator, WatchdogReport, WorkspaceMap,
 };
 pub use protection::Protection;
 pub use proxy::{DEFAULT_BUDGET, Following, Probe, Proxy};

@@ -117,6 +117,7 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
         safety.iter().filter_map(|point| point.turning.as_ref()).map(of).sum()
     };
     let stages = [
+        ("limit cycles", ticks(|point| point.limit_cycles.effect.ticks)),
         ("passivity", ticks(|point| point.passivity.effect.ticks)),
         ("force rate", ticks(|point| point.slew.ticks)),
         ("largest force", ticks(|point| point.force_limit.ticks)),
@@ -133,6 +134,11 @@ fn write_safety(f: &mut Formatter<'_>, safety: &[SafetyReport]) -> Result {
     let acted: Vec<_> = acted.map(|(stage, ticks)| format!("{stage} {ticks}")).collect();
     let acted = if acted.is_empty() { "nothing to do".to_owned() } else { acted.join(", ") };
     line(f, "safety, ticks", acted)?;
+    let least = safety.iter().map(|point| point.limit_cycles.least_part).fold(1.0, f64::min);
+    if least < 1.0 {
+        let said = "oscillated against bodies, which became softer: check its profile";
+        line(f, "", format_args!("the device {said}; {least:.3} of the stiffness at least"))?;
+    }
     let trips = ticks(|point| point.watchdog.trips);
     line(f, "", format_args!("{trips} watchdog trips"))
 }

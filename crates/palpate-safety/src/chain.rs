@@ -14,6 +14,7 @@ use crate::error::{NumberError, SafetyError};
 use crate::finite;
 use crate::impedance::Impedance;
 use crate::limit::cut;
+use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{Passivity, PassivityOptions, PassivityReport, PortMotion};
 use crate::report::SafetyReport;
@@ -231,6 +232,7 @@ impl SafetyOptions {
 #[derive(Clone, Debug)]
 pub struct SafetyChain<const D: usize> {
     accepted: Accepted,
+    cycle: LimitCycle<Vector<f64, D>>,
     passivity: Passivity<Vector<f64, D>>,
     channel: Channel<D>,
 }
@@ -264,10 +266,18 @@ impl<const D: usize> SafetyChain<D> {
             mass: limits.mass.not_negative()?,
             max_rate: limits.max_force_rate.positive()?,
             reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
+            rise_rate: options.rise_rate,
             period: 1.0 / rate,
+        };
+        let cycle = LimitCycleOptions {
+            is_on: passivity.is_on,
+            stiffness: passivity.stiffness,
+            mass: passivity.mass,
+            encoder_step: limits.encoder_step.not_negative()?,
         };
         Ok(Self {
             accepted,
+            cycle: LimitCycle::new(cycle),
             passivity: Passivity::new(passivity),
             channel: Channel::new(&limits, &options, 1.0, rate)?,
         })
@@ -287,6 +297,7 @@ impl<const D: usize> SafetyChain<D> {
         self.accepted.renew(accepted);
         let stiffness = accepted.device_stiffness;
         let options = PassivityOptions { stiffness, ..*self.passivity.options() };
+        self.cycle.renew(stiffness, options.mass);
         self.passivity.renew(options);
     }
 
@@ -349,7 +360,15 @@ impl<const D: usize> SafetyChain<D> {
         };
         let elapsed = self.passivity.options().period + late.max(0.0);
         let is_rising = risen.is_some();
-        let seen = PortMotion { position, velocity, effort, is_rising, elapsed };
+        let softness = if is_sound {
+            let input = CycleInput::of([wanted, free_force], effort, position, elapsed);
+            self.cycle.step(&input.disturbed(late > 0.0 || is_rising))
+        } else {
+            self.cycle.lose();
+            1.0
+        };
+        let free_force = if softness < 1.0 { free_force * softness } else { free_force };
+        let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
         let observed = self.passivity.observed(wanted, &seen, is_sound);
         let (force, left) = self.channel.step(observed, free_force, &input);
         self.passivity.written(left);
@@ -400,5 +419,6 @@ impl<const D: usize> SafetyChain<D> {
     #[must_use]
     pub fn report(&self) -> SafetyReport {
         SafetyReport::of(&self.accepted, self.passivity.report(), &self.channel)
+            .with_limit_cycles(self.cycle.report())
     }
 }

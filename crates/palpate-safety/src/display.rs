@@ -26,6 +26,7 @@ impl Display for Accepted {
 impl Display for SafetyReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let stages = [
+            ("limit cycles", self.limit_cycles.effect),
             ("passivity", self.passivity.effect),
             ("slew limit", self.slew),
             ("force limit", self.force_limit),

@@ -26,7 +26,9 @@ mod force_limit;
 mod impedance;
 #[doc(hidden)]
 pub mod internal;
+mod lift;
 mod limit;
+mod limit_cycle;
 mod limits;
 mod passivity;
 mod readings;
@@ -44,6 +46,7 @@ pub use device::{Device, DeviceLost, DeviceProfile, PointState, TurnState, Turni
 pub use effect::Effect;
 pub use error::{NumberError, Refused, SafetyError};
 pub use impedance::Impedance;
+pub use limit_cycle::LimitCycleReport;
 pub use limits::DeviceLimits;
 pub use passivity::PassivityReport;
 pub use readings::{Readings, ReadingsReport};

@@ -16,14 +16,19 @@ use std::ops::{Add, Mul, Sub};
 use palpate_field::Vector;
 
 use crate::effect::Effect;
+use crate::lift::Lift;
 
 /// The factor by which past leaks and losses decay in each tick of contact, when they are
 /// compared: a memory of 100 ticks, which spans several impacts.
 const MEMORY: f64 = 0.99;
 
-/// The controller leaves at least this part of the force whose leaks damping covers. With one,
-/// walls of `2 b / T` would remain, which hardly come to rest; with zero, hands would sink into
-/// walls, because position quantisation looks like work done on a resting hand.
+/// What damping dissipates counts a hundredth more: a wall of exactly `2 b / T`, which many
+/// profiles allow, leaks as much but for the rounding of its forces and places.
+const SLACK: f64 = 1.01;
+
+/// The controller leaves at least this part of the force whose leaks damping covers. With zero,
+/// hands would sink into walls, because position quantisation looks like work done on a resting
+/// hand.
 const FLOOR: f64 = 0.25;
 
 /// The most by which the controller changes what it takes from a force in a tick [N], unless the
@@ -32,7 +37,7 @@ const STEP: f64 = 0.3;
 
 /// Energy that may be given out beyond the balance and the reserve while the controller takes the
 /// force away smoothly [J].
-const SPARE: f64 = 3e-4;
+const SPARE: f64 = 2.5e-4;
 
 /// A force, displacement or velocity with the inner product that gives energy: a vector, or a
 /// [spatial vector](super::SpatialVector) of translation and rotation.
@@ -78,6 +83,19 @@ pub(crate) struct PortMotion<V> {
     pub(crate) is_rising: bool,
     /// The time since the tick before [s].
     pub(crate) elapsed: f64,
+    /// The part of the stiffness that is rendered; less than 1 after a
+    /// [limit cycle](crate::limit_cycle::LimitCycle).
+    pub(crate) softness: f64,
+}
+
+impl<V> PortMotion<V> {
+    /// The part of a force of size `wanted` [N] that a softer wall gives: less was cut from it by
+    /// the force limit.
+    fn softened(&self, wanted: f64) -> f64 {
+        // Written so that a force of zero passes.
+        let is_less = self.softness * self.effort < wanted;
+        if is_less { self.softness * self.effort / wanted } else { 1.0 }
+    }
 }
 
 /// Energies that the passivity observer measured, and the controller's interventions.
@@ -97,6 +115,8 @@ pub struct PassivityReport {
     pub least_balance: f64,
     /// Energy that the wanted forces would have given out, but the written forces did not [J].
     pub dissipated: f64,
+    /// The largest change, from a tick to the next, of what the controller took from a force [N].
+    pub largest_step: f64,
     /// Energy that the forces were allowed to give out beyond what they took, to lift the hand out
     /// of a body after they were zeroed or a body moved onto it [J].
     pub credited: f64,
@@ -117,21 +137,26 @@ pub struct PassivityReport {
 /// before.
 ///
 /// **Controller.** The whole force is scaled down until the energy that it gives out in the
-/// coming tick is no more than the balance plus a reserve. What it takes changes by [`STEP`] a tick
-/// at most, so that walls do not kick when it acts or lets go, unless [`SPARE`] more would be given
-/// out; then it acts at once. The motion is predicted from the velocity, and from the acceleration
-/// of the device's mass by this force and the one before.
-/// If the slew limit would prevent a fast removal of the force, the energy given out during the
-/// removal counts too. The controller always leaves [`FLOOR`] of the force whose leaks damping
-/// covers; a wall that soft comes to rest by itself. The balance is capped at the energy `U`
-/// that a spring of the material's stiffness has stored at this depth under the force limit
-/// `M`, so that a long rub against friction does not pay for an oscillation: with the force `F`
-/// before the limit, `U = F² / 2K` up to `M` and `(F − M/2) M / K` beyond. A source of constant
-/// force that must give back more than that cannot use this stage.
+/// coming tick is no more than the balance plus a reserve. What the controller takes changes by
+/// [`STEP`] a tick at most, so that walls do not kick when it acts or lets go, unless [`SPARE`]
+/// more would be given out; then it acts at once. The motion is predicted from the velocity, and
+/// from the acceleration of the device's mass by this force and the one before. If the slew limit
+/// would prevent a fast removal of the force, the energy given out during the removal counts too.
+/// The controller always leaves [`FLOOR`] of the force whose leaks damping covers. The balance is
+/// capped at the energy `U` that a spring of the material's stiffness has stored at this depth
+/// under the force limit `M`, so that a long rub against friction does not pay for an oscillation:
+/// with the force `F` before the limit, `U = F² / 2K` up to `M` and `(F − M/2) M / K` beyond. A
+/// source of constant force that must give back more than that cannot use this stage.
+///
+/// **Lift.** While a force that the controller took comes back to a hand at rest ([`Lift`]), the
+/// balance is at least `U`, and the force grows by the rate of a [rise](crate::rise::Rise).
+///
+/// **Softer walls.** Forces, leaks and `U` are those of the wall that is rendered, which may have
+/// become softer after a limit cycle.
 ///
 /// **Rise.** While a force rises after it was zeroed, the balance is at least `U`: in the time
-/// without force the hand sank in for nothing, and the wall lifts it out again. This energy
-/// is [counted](PassivityReport::credited).
+/// without force the hand sank in for nothing, and the wall lifts it out again. The energy of rises
+/// and lifts is [counted](PassivityReport::credited).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passivity<V> {
     options: PassivityOptions,
@@ -146,6 +171,7 @@ pub(crate) struct Passivity<V> {
     last: Option<Last<V>>,
     /// What the controller took from the last force [N].
     taken: f64,
+    lift: Lift<V>,
     report: PassivityReport,
 }
 
@@ -164,6 +190,8 @@ pub(crate) struct PassivityOptions {
     pub(crate) max_rate: f64,
     /// Energy that may be given out before any was taken in [J].
     pub(crate) reserve: f64,
+    /// How fast a force that the controller took comes back to a hand at rest [N/s].
+    pub(crate) rise_rate: f64,
     /// The duration of a tick [s].
     pub(crate) period: f64,
 }
@@ -194,6 +222,7 @@ impl<V: InnerProduct> Passivity<V> {
             losses: 0.0,
             last: None,
             taken: 0.0,
+            lift: Lift::new(),
             report: PassivityReport::default(),
         }
     }
@@ -240,34 +269,43 @@ impl<V: InnerProduct> Passivity<V> {
         if let Some(last) = self.last {
             self.observe(&last, wanted, way, state);
         }
-        if state.is_rising {
-            self.credit(if wanted == V::ZERO { 0.0 } else { self.stored(state.effort) });
+        let is_taken = (wanted != V::ZERO).then_some(self.taken > 0.0);
+        let is_lifted = self.lift.step(state.position, state.elapsed, is_taken);
+        if state.is_rising || is_lifted {
+            self.credit(if wanted == V::ZERO { 0.0 } else { self.stored(state.effort, state) });
         }
         let held = self.last.map_or(V::ZERO, |last| last.written);
-        let may_give = self.options.is_on && wanted != V::ZERO;
-        let part = |spare| self.part(wanted, [held, way], state, spare);
-        let soft = if may_give { part(0.0) } else { 1.0 };
+        let softened = state.softened(wanted.norm());
+        let force = if softened < 1.0 { wanted * softened } else { wanted };
+        let may_act = self.options.is_on && force != V::ZERO;
+        let part = |spare| self.part(force, [held, way], state, spare);
+        let soft = if may_act { part(0.0) } else { 1.0 };
         let hard = if soft < 1.0 { part(SPARE) } else { 1.0 };
-        let part = self.smoothed([soft, hard], wanted.norm());
-        let changed = (part < 1.0).then(|| wanted * part);
-        let allowed = self.report.effect.count(wanted, changed);
+        let back = if is_lifted { self.options.rise_rate * state.elapsed } else { STEP };
+        let part = self.smoothed([soft, hard], force.norm(), back);
+        let changed = (part < 1.0).then(|| force * part);
+        let allowed = self.report.effect.count(force, changed);
         let PortMotion { position, effort, .. } = *state;
         self.last = Some(Last { position, effort, wanted, written: allowed });
         allowed
     }
 
-    /// The part of a force of size `wanted` [N] that passes, towards `soft` by [`STEP`] a tick, and at
-    /// most `hard`.
-    fn smoothed(&mut self, [soft, hard]: [f64; 2], wanted: f64) -> f64 {
-        if soft >= 1.0 && self.taken == 0.0 || wanted == 0.0 {
+    /// The part of a force of size `force` [N] that passes: `soft`, approached by [`STEP`] a tick,
+    /// or by `back` [N] if more is to pass than before; and at most `hard`.
+    fn smoothed(&mut self, [soft, hard]: [f64; 2], force: f64, back: f64) -> f64 {
+        if soft >= 1.0 && self.taken == 0.0 || force == 0.0 {
             self.taken = 0.0;
             return 1.0;
         }
-        let taken = wanted * (1.0 - soft);
-        let taken = taken.clamp(self.taken - STEP, self.taken + STEP);
-        self.taken = taken.max(wanted * (1.0 - hard)).min(wanted);
+        let before = self.taken;
+        let taken = (force * (1.0 - soft)).clamp(before - back, before + STEP);
+        self.taken = taken.max(force * (1.0 - hard)).min(force);
+        if self.taken > before {
+            self.lift.end();
+        }
+        self.report.largest_step = self.report.largest_step.max((self.taken - before).abs());
         // Written so that NaN takes all.
-        if self.taken <= wanted { 1.0 - self.taken / wanted } else { 0.0 }
+        if self.taken <= force { 1.0 - self.taken / force } else { 0.0 }
     }
 
     /// Records the force that was written.
@@ -308,14 +346,15 @@ impl<V: InnerProduct> Passivity<V> {
         report.dissipated += (last.wanted.dot(way).max(0.0) - given.max(0.0)).max(0.0);
         self.balance -= given;
         if last.wanted != V::ZERO || wanted != V::ZERO {
-            let loss = damping * way.dot(way) / state.elapsed;
-            self.leaks = MEMORY * self.leaks - 0.5 * (wanted - last.wanted).dot(way);
+            let loss = SLACK * damping * way.dot(way) / state.elapsed;
+            let leak = -0.5 * (wanted - last.wanted).dot(way);
+            self.leaks = MEMORY * self.leaks + state.softness * leak;
             self.losses = MEMORY * self.losses + loss;
             if self.is_covered() {
                 self.balance += loss;
             }
         }
-        self.balance = self.balance.min(self.stored(state.effort.max(last.effort)));
+        self.balance = self.balance.min(self.stored(state.effort.max(last.effort), state));
         if !(self.balance.is_finite() && self.leaks.is_finite() && self.losses.is_finite()) {
             // Numbers overflowed: assume that no energy was taken in.
             (self.balance, self.leaks, self.losses) = (-reserve, 1.0, 0.0);
@@ -333,12 +372,12 @@ impl<V: InnerProduct> Passivity<V> {
         }
     }
 
-    /// The energy that a spring of the material's stiffness stores at a force, if it presses with no
-    /// more than the largest [J].
-    fn stored(&self, force: f64) -> f64 {
+    /// The energy that the wall stores where a spring of the material's stiffness gives a force, if
+    /// it presses with no more than the largest [J].
+    fn stored(&self, force: f64, state: &PortMotion<V>) -> f64 {
         let PassivityOptions { stiffness, max_force, .. } = self.options;
-        let pressed = force.min(max_force);
-        (force - 0.5 * pressed) * pressed / stiffness
+        let pressed = (force * state.softness).min(max_force);
+        (force - 0.5 * pressed / state.softness) * pressed / stiffness
     }
 
     /// `true` if the device's own damping dissipates what the rendering leaks.
@@ -346,8 +385,8 @@ impl<V: InnerProduct> Passivity<V> {
         self.leaks <= self.losses
     }
 
-    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J], where
-    /// the force `held` moved the device by `way` in the last tick.
+    /// The part of `wanted` that gives out no more than the balance, the reserve and `spare` [J],
+    /// where the force `held` moved the device by `way` in the last tick.
     fn part(&self, wanted: V, [held, way]: [V; 2], state: &PortMotion<V>, spare: f64) -> f64 {
         let PassivityOptions { damping, max_rate, reserve, period, .. } = self.options;
         let available = (self.balance + reserve + spare).max(0.0);
@@ -421,6 +460,7 @@ mod tests {
             max_rate: f64::INFINITY,
             max_force: f64::INFINITY,
             reserve: 1e-4,
+            rise_rate: 20.0,
             period: 1e-3,
         });
         let held = [(0.0, 2.0), (0.5, 4.0), (-0.25, 0.0), (1.0, 0.0)];
@@ -432,6 +472,7 @@ mod tests {
                 effort: force,
                 is_rising: false,
                 elapsed: 1e-3,
+                softness: 1.0,
             };
             let _ = passivity.limit(Vector([force, 0.0]), &state);
             passivity.written(Vector([force, 0.0]));

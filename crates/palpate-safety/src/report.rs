@@ -6,6 +6,7 @@
 use crate::Accepted;
 use crate::channel::Channel;
 use crate::effect::Effect;
+use crate::limit_cycle::LimitCycleReport;
 use crate::passivity::PassivityReport;
 use crate::readings::ReadingsReport;
 
@@ -20,6 +21,8 @@ pub struct SafetyReport {
     pub impedance: Accepted,
     /// Readings of the device that no hand can have made.
     pub readings: ReadingsReport,
+    /// Limit cycles, after which the stiffness is less.
+    pub limit_cycles: LimitCycleReport,
     /// Passivity observer and controller.
     pub passivity: PassivityReport,
     /// The slew limit. A tick counts twice if the force had to be limited again after the later
@@ -115,6 +118,11 @@ impl SafetyReport {
         Self { readings, ..self }
     }
 
+    /// This report with the limit cycles that were found.
+    pub(crate) fn with_limit_cycles(self, limit_cycles: LimitCycleReport) -> Self {
+        Self { limit_cycles, ..self }
+    }
+
     /// The report of a chain of forces.
     pub(crate) fn of<const D: usize>(
         accepted: &Accepted,
@@ -126,6 +134,7 @@ impl SafetyReport {
             ticks: effects.ticks,
             impedance: accepted.clone(),
             readings: ReadingsReport::default(),
+            limit_cycles: LimitCycleReport::default(),
             passivity,
             slew: effects.slew,
             force_limit: effects.force_limit,

@@ -16,6 +16,7 @@ use palpate_field::Vector;
 use crate::channel::{Channel, TickInput};
 use crate::error::{NumberError, SafetyError};
 use crate::limit::cut;
+use crate::limit_cycle::{CycleInput, LimitCycle, LimitCycleOptions};
 use crate::limits::DeviceLimits;
 use crate::passivity::{InnerProduct, Passivity, PassivityOptions, PortMotion};
 use crate::{Accepted, PassivityReport, SafetyOptions, SafetyReport, TurningReport};
@@ -105,6 +106,7 @@ pub struct WrenchChain<const D: usize> {
     sides: PerMotion<AxisLimits>,
     /// A radian as a length [m].
     unit: f64,
+    cycle: LimitCycle<SpatialVector<D>>,
     passivity: Passivity<SpatialVector<D>>,
     force: Channel<D>,
     torque: Channel<3>,
@@ -188,12 +190,23 @@ impl<const D: usize> WrenchChain<D> {
             mass,
             max_rate,
             reserve: NumberError::check_not_negative("reserve", options.reserve, "J")?,
+            rise_rate: options.rise_rate,
             period: 1.0 / rate,
+        };
+        let cycle = LimitCycleOptions {
+            is_on: passivity.is_on,
+            stiffness,
+            mass,
+            encoder_step: along
+                .encoder_step
+                .not_negative()?
+                .max(about.encoder_step.not_negative()? * unit),
         };
         Ok(Self {
             accepted,
             sides,
             unit,
+            cycle: LimitCycle::new(cycle),
             passivity: Passivity::new(passivity),
             force: Channel::new(along, options, 1.0, rate)?,
             torque: Channel::new(about, options, unit, rate)?,
@@ -216,6 +229,7 @@ impl<const D: usize> WrenchChain<D> {
             self.sides.along.with(&self.sides.about, unit);
         let options = *self.passivity.options();
         let options = PassivityOptions { stiffness, damping, mass, max_rate, ..options };
+        self.cycle.renew(stiffness, mass);
         self.passivity.renew(options);
     }
 
@@ -266,8 +280,17 @@ impl<const D: usize> WrenchChain<D> {
         let free_force = free_force * along;
         let wanted = SpatialVector { along: wanted.along * along, about: wanted.about * about };
         let elapsed = self.passivity.options().period + late.max(0.0);
-        let seen = PortMotion { position, velocity, effort, is_rising, elapsed };
         let as_lengths = wanted.turning(1.0 / unit);
+        let softness = if is_sound {
+            let free = SpatialVector { along: free_force, about: Vector::ZERO };
+            let input = CycleInput::of([as_lengths, free], effort, position, elapsed);
+            self.cycle.step(&input.disturbed(late > 0.0 || is_rising))
+        } else {
+            self.cycle.lose();
+            1.0
+        };
+        let free_force = if softness < 1.0 { free_force * softness } else { free_force };
+        let seen = PortMotion { position, velocity, effort, is_rising, elapsed, softness };
         let allowed = self.passivity.observed(as_lengths, &seen, is_sound);
         // An unchanged wrench keeps its bits.
         let allowed = if allowed == as_lengths { wanted } else { allowed.turning(unit) };
@@ -323,6 +346,7 @@ impl<const D: usize> WrenchChain<D> {
         SafetyReport {
             turning: Some(turning),
             ..SafetyReport::of(along, self.passivity.report(), &self.force)
+                .with_limit_cycles(self.cycle.report())
         }
     }
 }

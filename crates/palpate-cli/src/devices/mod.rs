@@ -5,6 +5,7 @@
 
 mod actuators;
 mod rendered;
+mod stability;
 
 use std::io::Write;
 
@@ -127,6 +128,9 @@ const TURNING: [Column<TurningProfile>; 9] = [
 pub(crate) fn run(options: &DevicesOptions) -> Result<Outcome, Failure> {
     if options.materials {
         return rendered::report(options);
+    }
+    if options.stability {
+        return stability::report(options);
     }
     if options.actuators {
         return actuators::report(options.json);

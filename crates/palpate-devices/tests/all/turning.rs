@@ -361,5 +361,5 @@ fn a_lever_too_stiff_is_made_softer_or_kept_in_bounds() {
     println!("given at most {most} J");
     assert!(most < 1e-3, "{most} J");
     let report = &as_it_is.servo.safety()[0];
-    assert!(report.passivity.effect.ticks > 0, "{report:?}");
+    assert!(report.limit_cycles.found > 0, "{report:?}");
 }

@@ -142,7 +142,8 @@ fn a_wall_three_times_too_stiff_gives_out_at_most_a_millijoule() {
     presses(3000.0, |wall, outcome| {
         let least = outcome.least_balance;
         assert!(least >= -1e-3, "{least} J at grip {}, start {}", wall.grip, wall.start);
-        assert!(outcome.x > -0.001 && outcome.x < 0.0 && outcome.v.abs() < 0.01);
+        // Halved until its oscillation decays, also without a hand: 1 N rests at an eighth.
+        assert!(outcome.x > -1.0 / 370.0 && outcome.x < 0.0 && outcome.v.abs() < 0.01);
         // Seen at ticks only, the balance is that of the observer.
         let seen = outcome.report.passivity.least_balance;
         assert!(seen >= least - 1e-12 && seen < least + 2e-5, "{seen} {least}");
@@ -215,7 +216,8 @@ fn a_material_that_was_accepted_is_never_touched() {
             let mut chain = chain::<2>(&device, wanted.with_rise_rate(f64::INFINITY));
             let impedance = chain.accepted().impedance;
             let mut estimator = VelocityEstimator::new(RATE, encoder_step).unwrap();
-            let mut plant = Plant { mass: 0.05, damping: 0.5, x: 0.01, v: 0.0 };
+            // A hand of 0.5 N·s/m: without one, a wall of 2 b / T is a spring without loss.
+            let mut plant = Plant { mass: 0.05, damping: 1.0, x: 0.01, v: 0.0 };
             for _ in 0..5000 {
                 let position = Vector([0.0, reading(plant.x, encoder_step)]);
                 let velocity = estimator.update(position);

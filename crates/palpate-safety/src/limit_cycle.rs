@@ -1,0 +1,424 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Limit cycles: a wall that oscillates by itself is made softer.
+//!
+//! What a device renders stably is computed from its profile. A device with less damping or
+//! friction, with coarser encoders, or with a delay between reading and force oscillates against
+//! walls that its profile allows. The observer of energy cannot see all of that: a delayed force
+//! does other work than it counts.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::TAU;
+
+use crate::effect::Effect;
+use crate::passivity::InnerProduct;
+
+/// Half cycles whose ways are kept; so many make a limit cycle if they do not decay.
+const SEVERAL: usize = 8;
+
+/// An oscillation decays if its way shrinks to this part of the longest of [`SEVERAL`] half cycles.
+const DECAYED: f64 = 0.7;
+
+/// So many half cycles make a limit cycle if both of its sides grow by [`GROWN`].
+const FEW: usize = 4;
+
+/// The growth within two half cycles that is no play of chance.
+const GROWN: f64 = 1.2;
+
+/// Half cycles up to this duration count as quick on every device [s]: few hands go to and fro six
+/// times a second.
+const QUICK: f64 = 0.08;
+
+/// Half cycles are quick up to this duration at most [s].
+const LONGEST_QUICK: f64 = 0.16;
+
+/// Longer half cycles do not count at all [s].
+const LONGEST: f64 = 0.2;
+
+/// A mass of the hand that moves with the device [kg].
+const HAND: f64 = 0.1;
+
+/// How far a position goes to and fro at least in an oscillation that a hand feels [m].
+const FELT_WAY: f64 = 5e-5;
+
+/// How far a force does [N].
+const FELT_FORCE: f64 = 0.15;
+
+/// Readings of a device at rest may go to and fro by so many encoder steps.
+const STEPS: f64 = 3.0;
+
+/// How much the change of the force between two extremes may differ from that of the spring, as a
+/// part of it: beyond, a body moves, and not the hand alone.
+const FORCED: f64 = 0.3;
+
+/// The part of the stiffness that remains after a limit cycle.
+const SOFTER: f64 = 0.5;
+
+/// The least part of the stiffness that remains.
+const LEAST: f64 = 1.0 / 32.0;
+
+/// The most by which a force changes in a tick because its wall becomes softer [N].
+const STEP: f64 = 0.3;
+
+/// The time away from all bodies in which the stiffness comes back by a factor of e [s].
+const RECOVERY: f64 = 20.0;
+
+/// Options of the stage.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LimitCycleOptions {
+    pub(crate) is_on: bool,
+    /// The stiffness at the device [N/m].
+    pub(crate) stiffness: f64,
+    /// The mass of the device [kg].
+    pub(crate) mass: f64,
+    /// The encoder step [m].
+    pub(crate) encoder_step: f64,
+}
+
+/// What the stage sees in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CycleInput<V> {
+    pub(crate) position: V,
+    /// The force of bodies and guides, as far as the force limit lets it pass [N].
+    pub(crate) force: V,
+    /// The size of that force before the force limit [N].
+    pub(crate) effort: f64,
+    /// Whether guides give a part of the force: their stiffness is not known here.
+    pub(crate) is_guided: bool,
+    /// The time since the tick before [s].
+    pub(crate) elapsed: f64,
+    /// Whether the tick is late or the force rises after it was zeroed: an oscillation then has
+    /// causes that pass.
+    pub(crate) is_disturbed: bool,
+}
+
+impl<V: InnerProduct> CycleInput<V> {
+    /// The input of a force by bodies that was of size `effort` before the force limit [N], and a
+    /// force by guides.
+    pub(crate) fn of([bodies, guides]: [V; 2], effort: f64, position: V, elapsed: f64) -> Self {
+        let is_guided = guides != V::ZERO;
+        let force = if is_guided { bodies + guides } else { bodies };
+        let effort = if is_guided { force.norm() } else { effort };
+        Self { position, force, effort, is_guided, elapsed, is_disturbed: false }
+    }
+
+    /// This input in a tick that is disturbed or not.
+    pub(crate) fn disturbed(self, is_disturbed: bool) -> Self {
+        Self { is_disturbed, ..self }
+    }
+}
+
+/// Limit cycles that were found, and what was done about them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct LimitCycleReport {
+    /// Ticks in which a force was made softer, and the largest change.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub effect: Effect,
+    /// How often an oscillation was found and the stiffness halved.
+    pub found: u64,
+    /// The least part of the accepted stiffness that was rendered.
+    pub least_part: f64,
+}
+
+impl Default for LimitCycleReport {
+    fn default() -> Self {
+        Self { effect: Effect::default(), found: 0, least_part: 1.0 }
+    }
+}
+
+/// An extreme of the motion along the force.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extreme {
+    /// The place along the force, into the body [m].
+    place: f64,
+    /// The size of the force there [N].
+    effort: f64,
+    /// The time since the extreme before [s].
+    time: f64,
+}
+
+/// Finds oscillations of the device against the force, and makes the force softer until they end.
+///
+/// The motion along the force is parted at its extremes into half cycles: ways of at least 50 µm,
+/// or of 0.15 N in the force if that is less, and of three encoder steps. A half cycle counts if it
+/// takes at most 0.2 s and the force changes as the spring explains, so that it is the hand that
+/// moves and not a body, and if no tick in it is late or of a rise. It is quick within 80 ms, or `2π √(M/K)` up to 160 ms with
+/// the mass `M` of device and hand and the stiffness `K`: the natural half cycle of a bouncing
+/// mass is longer than that of one in contact, `π √(M/K)`. There is a limit cycle if
+///
+/// - four quick half cycles grow, both sides by 1.2 a cycle;
+/// - or eight quick half cycles shrink to no less than 0.9 together;
+/// - or eight half cycles grow, each cycle a little.
+///
+/// The stiffness is then halved, at the rate of 0.3 N a tick, and half cycles are counted anew. It
+/// comes back by a factor of e in 20 s in which nothing touches; never in contact, where the
+/// oscillation would return.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LimitCycle<V> {
+    options: LimitCycleOptions,
+    /// The position of the last tick, unless it was not finite.
+    last_position: Option<V>,
+    /// The direction of the last force that was not zero.
+    direction: V,
+    /// 1 on the way into the body, −1 on the way out.
+    heading: f64,
+    /// The place along the force, into the body [m].
+    place: f64,
+    /// The extreme from which the present way came.
+    last: Extreme,
+    /// The farthest place on the present way.
+    farthest: Extreme,
+    /// The time since the farthest place [s].
+    since: f64,
+    /// The last half cycles, the newest first [m].
+    ways: [f64; SEVERAL],
+    /// How many of them count.
+    counted: usize,
+    /// How many of them are quick.
+    quick: usize,
+    /// The part of the stiffness to come.
+    target: f64,
+    /// The part of the stiffness in this tick.
+    part: f64,
+    report: LimitCycleReport,
+}
+
+impl<V: InnerProduct> LimitCycle<V> {
+    pub(crate) fn new(options: LimitCycleOptions) -> Self {
+        Self {
+            options,
+            last_position: None,
+            direction: V::ZERO,
+            heading: 1.0,
+            place: 0.0,
+            last: Extreme::default(),
+            farthest: Extreme::default(),
+            since: 0.0,
+            ways: [0.0; SEVERAL],
+            counted: 0,
+            quick: 0,
+            target: 1.0,
+            part: 1.0,
+            report: LimitCycleReport::default(),
+        }
+    }
+
+    /// Replaces the stiffness [N/m] and the mass [kg], where an angle may count as another length
+    /// than before.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn renew(&mut self, stiffness: f64, mass: f64) {
+        self.options = LimitCycleOptions { stiffness, mass, ..self.options };
+        self.lose();
+    }
+
+    /// Forgets the motion so far, because a position is not finite.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn lose(&mut self) {
+        self.last_position = None;
+        (self.counted, self.quick) = (0, 0);
+    }
+
+    /// One tick: the part of the stiffness to render.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic.
+    pub(crate) fn step(&mut self, input: &CycleInput<V>) -> f64 {
+        if !self.options.is_on {
+            return 1.0;
+        }
+        self.follow(input);
+        if input.is_disturbed {
+            (self.counted, self.quick) = (0, 0);
+        }
+        if self.target == 1.0 && self.part == 1.0 {
+            return 1.0;
+        }
+        self.soften(input)
+    }
+
+    #[cold]
+    fn soften(&mut self, input: &CycleInput<V>) -> f64 {
+        let force = input.force.norm();
+        if force == 0.0 {
+            self.target = (self.target * (1.0 + input.elapsed / RECOVERY)).min(1.0);
+            self.part = self.target;
+        } else {
+            let most = STEP / force;
+            self.part += (self.target - self.part).clamp(-most, most);
+            self.report.effect.count_size(force * (1.0 - self.part));
+            self.report.least_part = self.report.least_part.min(self.part);
+        }
+        self.part
+    }
+
+    /// Follows the motion along the force to its next extreme.
+    fn follow(&mut self, input: &CycleInput<V>) {
+        let size = input.force.norm();
+        if size > 0.0 {
+            self.direction = input.force * (1.0 / size);
+        }
+        let way = self.last_position.map_or(V::ZERO, |last| input.position - last);
+        self.last_position = Some(input.position);
+        self.place -= way.dot(self.direction);
+        self.since += input.elapsed;
+        let beyond = self.heading * (self.place - self.farthest.place);
+        let here = Extreme { place: self.place, effort: input.effort, time: self.since };
+        if beyond > 0.0 {
+            self.farthest = Extreme { time: self.farthest.time + self.since, ..here };
+            self.since = 0.0;
+        } else if -beyond >= self.least_way() {
+            self.turn(input.is_guided);
+            self.farthest = here;
+            self.since = 0.0;
+        }
+    }
+
+    /// The least way that counts as an oscillation [m].
+    fn least_way(&self) -> f64 {
+        let LimitCycleOptions { stiffness, encoder_step, .. } = self.options;
+        FELT_WAY.min(FELT_FORCE / stiffness).max(STEPS * encoder_step)
+    }
+
+    /// Ends a half cycle at the farthest place.
+    fn turn(&mut self, is_guided: bool) {
+        let (from, to) = (self.last, self.farthest);
+        let way = (to.place - from.place).abs();
+        let of_spring = self.options.stiffness * way;
+        let change = (to.effort - from.effort).abs();
+        let is_touching = to.effort > 0.0 || from.effort > 0.0;
+        // Outside of the body, the hand moves without a force.
+        let is_always_touching = to.effort > 0.0 && from.effort > 0.0;
+        let least = if is_always_touching { 1.0 - FORCED } else { 0.0 };
+        let is_of_spring = (least * of_spring..=(1.0 + FORCED) * of_spring).contains(&change);
+        let is_free = is_guided || is_of_spring;
+        if is_free && is_touching && to.time <= LONGEST {
+            self.count(way, to.time);
+        } else {
+            (self.counted, self.quick) = (0, 0);
+        }
+        self.last = to;
+        self.heading = -self.heading;
+    }
+
+    /// Counts a half cycle of a way [m] that took a time [s].
+    fn count(&mut self, way: f64, time: f64) {
+        let [a, b, c, d, e, f, g, _] = self.ways;
+        self.ways = [way, a, b, c, d, e, f, g];
+        self.counted = (self.counted + 1).min(SEVERAL);
+        let LimitCycleOptions { stiffness, mass, .. } = self.options;
+        let natural = TAU * ((mass + HAND) / stiffness).sqrt();
+        let is_quick = time <= natural.clamp(QUICK, LONGEST_QUICK);
+        self.quick = if is_quick { (self.quick + 1).min(SEVERAL) } else { 0 };
+        if self.is_limit_cycle() {
+            self.target = (self.target * SOFTER).max(LEAST);
+            self.report.found += 1;
+            // What follows is the motion in a softer wall, whose ways are longer.
+            (self.counted, self.quick) = (0, 0);
+        }
+    }
+
+    fn is_limit_cycle(&self) -> bool {
+        let [a, b, c, d, e, f, g, h] = self.ways;
+        let explodes = self.quick >= FEW && a >= GROWN * c && b >= GROWN * d;
+        let longest = self.ways.iter().copied().fold(0.0, f64::max);
+        let persists = self.quick >= SEVERAL && a >= DECAYED * longest;
+        let [out, back] =
+            [[a, c, e, g], [b, d, f, h]].map(|ways| ways.is_sorted_by(|x, y| x > y));
+        explodes || persists || self.counted >= SEVERAL && out && back
+    }
+
+    pub(crate) fn report(&self) -> LimitCycleReport {
+        self.report
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate_field::Vector;
+
+    use super::*;
+
+    const PERIOD: f64 = 1e-3;
+
+    /// The stage of a device of 0.1 kg at a wall of 1000 N/m: with a hand of 0.1 kg, half cycles up
+    /// to 89 ms are quick.
+    fn stage() -> LimitCycle<Vector<f64, 2>> {
+        LimitCycle::new(LimitCycleOptions {
+            is_on: true,
+            stiffness: 1000.0,
+            mass: 0.1,
+            encoder_step: 0.0,
+        })
+    }
+
+    /// Moves a device to `depth(t)` for two seconds at a wall that is `stiff` [N/m].
+    fn moved(stage: &mut LimitCycle<Vector<f64, 2>>, stiff: f64, depth: impl Fn(f64) -> f64) {
+        for tick in 0..2000 {
+            let depth = depth(f64::from(tick) * PERIOD);
+            let force = Vector([0.0, stiff * depth.max(0.0)]);
+            let position = Vector([0.0, -depth]);
+            let input = CycleInput::of([force, Vector::ZERO], force.norm(), position, PERIOD);
+            let _ = stage.step(&input);
+        }
+    }
+
+    fn found(stiff: f64, depth: impl Fn(f64) -> f64) -> u64 {
+        let mut stage = stage();
+        moved(&mut stage, stiff, depth);
+        stage.report().found
+    }
+
+    #[test]
+    fn what_persists_is_a_limit_cycle_and_what_decays_is_none() {
+        let wave = |frequency: f64, decay: f64| {
+            move |t: f64| 2e-3 + 1e-3 * (-decay * t).exp() * (TAU * frequency * t).sin()
+        };
+        assert!(found(1000.0, wave(20.0, 0.0)) > 0);
+        // Eight half cycles at 20 Hz take 0.2 s.
+        assert_eq!(found(1000.0, wave(20.0, 3.0)), 0);
+        // A hand goes to and fro three times a second, and tremor is small.
+        assert_eq!(found(1000.0, wave(3.0, 0.0)), 0);
+        assert_eq!(found(1000.0, |t| 2e-3 + 2e-5 * (TAU * 10.0 * t).sin()), 0);
+        // A mass that bounces higher each time.
+        assert!(found(1000.0, |t| 1e-3 * (0.5 * t).exp() * (TAU * 4.0 * t).sin()) > 0);
+    }
+
+    #[test]
+    fn a_body_that_moves_the_hand_makes_no_limit_cycle() {
+        for stiff in [500.0, 2000.0] {
+            assert_eq!(found(stiff, |t| 2e-3 + 1e-3 * (TAU * 20.0 * t).sin()), 0);
+        }
+    }
+
+    #[test]
+    fn a_wall_is_halved_smoothly_and_comes_back_when_nothing_touches() {
+        let mut stage = stage();
+        let mut last = 1.0;
+        let mut least = 1.0_f64;
+        for tick in 0..250 {
+            let depth = 2e-3 + 1e-3 * (TAU * 20.0 * f64::from(tick) * PERIOD).sin();
+            let force = Vector([0.0, 1000.0 * depth]);
+            let position = Vector([0.0, -depth]);
+            let part = stage.step(&CycleInput::of(
+                [force, Vector::ZERO],
+                force.norm(),
+                position,
+                PERIOD,
+            ));
+            assert!((part - last).abs() * force.norm() <= STEP * (1.0 + 1e-9));
+            last = part;
+            least = least.min(part);
+        }
+        assert_eq!((least, stage.report().least_part, stage.report().found), (0.5, 0.5, 1));
+        // By a factor of e in 20 s: e^0.1 in two, and all of it after 14.
+        moved(&mut stage, 0.0, |_| -0.01);
+        assert!((stage.part - 0.5 * 0.1_f64.exp()).abs() < 1e-5, "{}", stage.part);
+        (0..6).for_each(|_| moved(&mut stage, 0.0, |_| -0.01));
+        assert_eq!(stage.part, 1.0);
+    }
+}
