@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! The device during an identification: one axis is pushed, and limits are kept.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use palpate_field::{Rotation, Vector};
+use palpate_haptics::{Device, DeviceLost, PointState};
+
+use super::options::{Bounds, IdentifyOptions};
+use super::{DeviceAxis, IdentifyError, IdentifyProgress};
+
+/// Gives the time of the next tick [s], when that has come; `None` to stop.
+pub(super) type NextTick<'a> = dyn FnMut(&IdentifyProgress) -> Option<f64> + 'a;
+
+/// The time over which a speed is measured [s].
+const SPEED_WINDOW: f64 = 0.004;
+
+/// A handle that is faster than a stroke accelerates by this factor is stopped.
+const SPEED_RESERVE: f64 = 2.0;
+
+/// One reading of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reading {
+    /// The time [s].
+    pub(super) time: f64,
+    /// The place from the start of the identification [m], or the angle [rad].
+    pub(super) place: f64,
+    /// The force held since the reading before [N], or the torque [N·m].
+    pub(super) held: f64,
+}
+
+/// A device of which one axis is pushed. Zero forces are written when it is dropped.
+pub(super) struct Port<'a, const D: usize> {
+    device: &'a mut dyn Device<D>,
+    next_tick: &'a mut NextTick<'a>,
+    pub(super) progress: IdentifyProgress,
+    options: IdentifyOptions,
+    pub(super) bounds: Bounds,
+    points: Vec<PointState<D>>,
+    forces: Vec<Vector<f64, D>>,
+    start: Option<PointState<D>>,
+    start_turn: Option<Rotation<D>>,
+    has_torque: bool,
+    last: Reading,
+    /// Readings of the last [`SPEED_WINDOW`], the oldest at `oldest`.
+    recent: Vec<Reading>,
+    oldest: usize,
+}
+
+impl<'a, const D: usize> Port<'a, D> {
+    pub(super) fn new(
+        device: &'a mut dyn Device<D>,
+        options: IdentifyOptions,
+        next_tick: &'a mut NextTick<'a>,
+    ) -> Self {
+        let count = device.points();
+        let axis = DeviceAxis::Along(0);
+        let bounds = options.along(device.profile());
+        Self {
+            has_torque: options.about(device.profile()).is_some(),
+            device,
+            next_tick,
+            progress: IdentifyProgress { axis, axis_number: 0, axes: 0, strokes: 0 },
+            options,
+            bounds,
+            points: vec![PointState::at_rest(Vector::ZERO); count],
+            forces: vec![Vector::ZERO; count],
+            start: None,
+            start_turn: None,
+            last: Reading { time: f64::NEG_INFINITY, place: 0.0, held: 0.0 },
+            recent: Vec::new(),
+            oldest: 0,
+        }
+    }
+
+    /// Takes up another axis, and reads where it is.
+    pub(super) fn turn_to(
+        &mut self,
+        axis: DeviceAxis,
+        bounds: Bounds,
+    ) -> Result<(), IdentifyError> {
+        self.progress.axis = axis;
+        self.progress.axis_number += 1;
+        self.progress.strokes = 0;
+        self.bounds = bounds;
+        let window = (SPEED_WINDOW * self.options.rate).ceil().max(2.0) as usize;
+        self.recent.clear();
+        let reading = self.tick(0.0)?;
+        self.recent = vec![reading; window];
+        self.oldest = 0;
+        Ok(())
+    }
+
+    pub(super) fn axis(&self) -> DeviceAxis {
+        self.progress.axis
+    }
+
+    pub(super) fn rate(&self) -> f64 {
+        self.options.rate
+    }
+
+    /// Holds `force` until the next tick, and reads then. A change that is faster than the
+    /// device allows takes several ticks; the reading says what was held.
+    ///
+    /// Real-time: allocates nothing, takes no lock, cannot panic, if the device and the clock
+    /// keep that.
+    pub(super) fn tick(&mut self, force: f64) -> Result<Reading, IdentifyError> {
+        let axis = self.axis();
+        let force = self.within_rate(force);
+        let lost = |lost| IdentifyError::Lost { axis, lost };
+        self.write(force).map_err(lost)?;
+        let time =
+            (self.next_tick)(&self.progress).ok_or(IdentifyError::Interrupted { axis })?;
+        let before = self.last.time;
+        // Written so that NaN is refused.
+        let goes_on = time > before && time < f64::INFINITY;
+        if !goes_on {
+            return Err(IdentifyError::TimeNotIncreasing { axis, before, time });
+        }
+        self.device.read(time, &mut self.points).map_err(lost)?;
+        let turn = if self.has_torque { self.device.read_turn().map_err(lost)? } else { None };
+        let point = self.points.first().copied();
+        let point = point.filter(|point| point.position.is_finite());
+        let turn = turn.map(|turn| turn.orientation);
+        let Some(point) = point else { return Err(IdentifyError::NotFinite { axis, time }) };
+        let start = *self.start.get_or_insert(point);
+        let moved = point.position - start.position;
+        let turned = match (self.start_turn, turn) {
+            (Some(start), Some(turn)) => start.turn_to(&turn),
+            _ => {
+                self.start_turn = turn;
+                Vector::ZERO
+            }
+        };
+        self.check_range(moved, turned)?;
+        let place = match axis {
+            DeviceAxis::Along(i) => moved.0.get(i).copied(),
+            DeviceAxis::About(i) => turned.0.get(i).copied(),
+        };
+        // A range check lets no NaN through.
+        let reading = Reading { time, place: place.unwrap_or_default(), held: force };
+        self.last = reading;
+        if let Some(oldest) = self.recent.get_mut(self.oldest) {
+            *oldest = reading;
+            self.oldest = (self.oldest + 1) % self.recent.len();
+        }
+        let (speed, limit) = (self.speed().abs(), SPEED_RESERVE * self.bounds.speed);
+        if speed > limit {
+            return Err(IdentifyError::TooFast { axis, speed, limit });
+        }
+        Ok(reading)
+    }
+
+    /// The velocity over the last [`SPEED_WINDOW`] [m/s], or [rad/s].
+    pub(super) fn speed(&self) -> f64 {
+        let Some(oldest) = self.recent.get(self.oldest) else { return 0.0 };
+        let time = self.last.time - oldest.time;
+        if time > 0.0 && time.is_finite() { (self.last.place - oldest.place) / time } else { 0.0 }
+    }
+
+    /// The last reading.
+    pub(super) fn last(&self) -> Reading {
+        self.last
+    }
+
+    /// Writes zero forces.
+    pub(super) fn release(&mut self) -> Result<(), DeviceLost> {
+        self.last.held = 0.0;
+        self.write(0.0)
+    }
+
+    fn within_rate(&self, force: f64) -> f64 {
+        let change = self.bounds.force_rate / self.options.rate;
+        let bound = self.bounds.force;
+        let held = self.last.held;
+        // Not `clamp`, which panics where a bound is NaN.
+        force.max(held - change).min(held + change).max(-bound).min(bound)
+    }
+
+    fn write(&mut self, force: f64) -> Result<(), DeviceLost> {
+        let (mut along, mut about) = (Vector::ZERO, Vector::ZERO);
+        let place = match self.axis() {
+            DeviceAxis::Along(i) => along.0.get_mut(i),
+            DeviceAxis::About(i) => about.0.get_mut(i),
+        };
+        if let Some(place) = place {
+            *place = force;
+        }
+        if let Some(first) = self.forces.first_mut() {
+            *first = along;
+        }
+        self.device.write(&self.forces)?;
+        if self.has_torque { self.device.write_torque(about) } else { Ok(()) }
+    }
+
+    /// Refuses a handle that left its range along or about any axis.
+    fn check_range(
+        &self,
+        moved: Vector<f64, D>,
+        turned: Vector<f64, 3>,
+    ) -> Result<(), IdentifyError> {
+        let along = moved.0.iter().enumerate();
+        let along = along.map(|(i, x)| (DeviceAxis::Along(i), *x, self.options.travel));
+        let about = turned.0.iter().enumerate();
+        let about = about.map(|(i, x)| (DeviceAxis::About(i), *x, self.options.angle));
+        // Written so that NaN is refused.
+        match along.chain(about).find(|(_, x, limit)| !matches!(x.abs().partial_cmp(limit), Some(o) if o.is_le())) {
+            Some((axis, moved, limit)) => {
+                Err(IdentifyError::LeftRange { axis, moved: moved.abs(), limit })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+impl<const D: usize> Drop for Port<'_, D> {
+    fn drop(&mut self) {
+        // Ignored: the error that ends the identification says more, and a device that is lost
+        // takes no zero.
+        let _ = self.release();
+    }
+}
