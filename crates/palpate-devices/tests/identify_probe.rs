@@ -13,9 +13,10 @@ fn probe() {
     let rate: f64 = std::env::var("RATE").map_or(1000.0, |r| r.parse().unwrap());
     let seed: u64 = std::env::var("SEED").map_or(0, |r| r.parse().unwrap());
     let mut jobs = vec![];
-    for (name, p) in &PROFILES { for fb in [0.3,1.0,3.0] { for ff in [0.3,1.0,3.0] { for fm in [0.5,2.0] { for fs in [1.0,3.0] {
+    for (name, p) in &PROFILES { for fb in [0.3,1.0,3.0] { for ff in [0.3,1.0,3.0] { for fm in [0.5,2.0] { for fs in if std::env::var("ALL").is_ok() {vec![1.0,3.0]} else {vec![3.0]} {
         let mut q = p.clone().with_mass(p.mass*fm).with_least_damping(p.least_damping*fb).with_friction(p.friction*ff).with_encoder_step(p.encoder_step*fs);
         if let Some(t) = &p.turning { q = q.with_turning(t.clone().with_inertia(t.inertia*fm).with_least_damping(t.least_damping*fb).with_friction(t.friction*ff).with_encoder_step(t.encoder_step*fs)); }
+        if std::env::var("LOW").is_ok() && (ff != 0.3 || fb != 0.3) { continue; }
         jobs.push((format!("{name} b{fb} f{ff} m{fm} s{fs}"), q));
     }}}}}
     let next = std::sync::atomic::AtomicUsize::new(0);
@@ -42,4 +43,23 @@ fn probe() {
         }
     }); });
     println!("{:?} in {:.1} s of {} devices", worst.lock().unwrap(), t0.elapsed().as_secs_f64(), jobs.len());
+}
+#[test]
+fn trace() {
+    let p = profile_named("virtuose6d").unwrap();
+    let q = p.clone().with_mass(2.0).with_friction(0.15).with_least_damping(1.0).with_encoder_step(1.8e-4);
+    let hand = Hand::resting(Vector([0.01, -0.02])).unwrap().with_mass(0.0).unwrap().with_spring(0.0,0.0).unwrap().with_inertia(0.0).unwrap().with_angular_spring(0.0,0.0).unwrap();
+    struct T(SimulatedDevice<2>, Vec<(f64,f64,f64,f64)>);
+    impl Device<2> for T {
+        fn points(&self) -> usize { 1 }
+        fn profile(&self) -> &DeviceProfile { self.0.profile() }
+        fn read(&mut self, t: f64, p: &mut [PointState<2>]) -> Result<(), DeviceLost> { self.0.read(t, p)?; let s=self.0.states().next().unwrap(); let f=self.0.forces().next().unwrap(); self.1.push((t, s.position[0]-0.01, s.velocity[0], f[0])); Ok(()) }
+        fn write(&mut self, f: &[Vector<f64,2>]) -> Result<(), DeviceLost> { self.0.write(f) }
+    }
+    let mut d = T(SimulatedDevice::<2>::new(q, vec![hand]).unwrap(), vec![]);
+    let mut n = 0u64;
+    let r = identify(&mut d, IdentifyOptions::new(1000.0), &mut |_| { n += 1; Some(n as f64 / 1000.0) });
+    println!("{:?}", r.map(|_| ()));
+    let k = d.1.len();
+    for (i,(t,x,v,f)) in d.1.iter().enumerate() { if i + 150 > k { println!("{t:.3} {:.3} mm {:.4} m/s {f:.3} N", x*1e3, v); } }
 }

@@ -5,6 +5,8 @@
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::collections::VecDeque;
+
 use palpate_field::{Rotation, Vector};
 use palpate_haptics::{Device, DeviceLost, PointState};
 
@@ -14,8 +16,11 @@ use super::{DeviceAxis, IdentifyError, IdentifyProgress};
 /// Gives the time of the next tick [s], when that has come; `None` to stop.
 pub(super) type NextTick<'a> = dyn FnMut(&IdentifyProgress) -> Option<f64> + 'a;
 
-/// The time over which a speed is measured [s].
+/// The time over which the speed limit is checked [s].
 const SPEED_WINDOW: f64 = 0.004;
+
+/// The time over which the speed of a known mass is measured [s].
+const LONG_WINDOW: f64 = 0.016;
 
 /// A handle that is faster than a stroke accelerates by this factor is stopped.
 const SPEED_RESERVE: f64 = 2.0;
@@ -44,9 +49,8 @@ pub(super) struct Port<'a, const D: usize> {
     start_turn: Option<Rotation<D>>,
     has_torque: bool,
     last: Reading,
-    /// Readings of the last [`SPEED_WINDOW`], the oldest at `oldest`.
-    recent: Vec<Reading>,
-    oldest: usize,
+    /// Readings of the last [`LONG_WINDOW`], the newest first.
+    recent: VecDeque<Reading>,
 }
 
 impl<'a, const D: usize> Port<'a, D> {
@@ -70,8 +74,7 @@ impl<'a, const D: usize> Port<'a, D> {
             start: None,
             start_turn: None,
             last: Reading { time: f64::NEG_INFINITY, place: 0.0, held: 0.0 },
-            recent: Vec::new(),
-            oldest: 0,
+            recent: VecDeque::new(),
         }
     }
 
@@ -85,11 +88,10 @@ impl<'a, const D: usize> Port<'a, D> {
         self.progress.axis_number += 1;
         self.progress.strokes = 0;
         self.bounds = bounds;
-        let window = (SPEED_WINDOW * self.options.rate).ceil().max(2.0) as usize;
+        let window = (LONG_WINDOW * self.options.rate).ceil().max(2.0) as usize;
         self.recent.clear();
         let reading = self.tick(0.0)?;
-        self.recent = vec![reading; window];
-        self.oldest = 0;
+        self.recent = vec![reading; window].into();
         Ok(())
     }
 
@@ -141,11 +143,10 @@ impl<'a, const D: usize> Port<'a, D> {
         };
         // A range check lets no NaN through.
         let reading = Reading { time, place: place.unwrap_or_default(), held: force };
-        self.last = reading;
-        if let Some(oldest) = self.recent.get_mut(self.oldest) {
-            *oldest = reading;
-            self.oldest = (self.oldest + 1) % self.recent.len();
+        if self.recent.pop_back().is_some() {
+            self.recent.push_front(reading);
         }
+        self.last = reading;
         let (speed, limit) = (self.speed().abs(), SPEED_RESERVE * self.bounds.speed);
         if speed > limit {
             return Err(IdentifyError::TooFast { axis, speed, limit });
@@ -153,11 +154,36 @@ impl<'a, const D: usize> Port<'a, D> {
         Ok(reading)
     }
 
-    /// The velocity over the last [`SPEED_WINDOW`] [m/s], or [rad/s].
+    /// The mean velocity over the last [`SPEED_WINDOW`] [m/s], or [rad/s].
     pub(super) fn speed(&self) -> f64 {
-        let Some(oldest) = self.recent.get(self.oldest) else { return 0.0 };
-        let time = self.last.time - oldest.time;
-        if time > 0.0 && time.is_finite() { (self.last.place - oldest.place) / time } else { 0.0 }
+        let time = |earlier: &&Reading| self.last.time - earlier.time;
+        let earlier = self.recent.iter().find(|earlier| time(earlier) >= SPEED_WINDOW);
+        earlier.map_or(0.0, |earlier| (self.last.place - earlier.place) / time(&earlier))
+    }
+
+    /// The velocity now of a handle of a known mass [m/s], or [rad/s]: the slope of the line
+    /// through the readings of the last [`LONG_WINDOW`], without what the forces moved. Encoder
+    /// steps average out, and it does not lag behind as a mean does.
+    pub(super) fn speed_of(&self, mass: f64) -> f64 {
+        // Backwards from now: time, and what the forces added to the place and the velocity.
+        let (mut time, mut place, mut velocity) = (0.0, 0.0, 0.0);
+        let mut sums = Sums::default();
+        let later = self.recent.iter().zip(self.recent.iter().skip(1));
+        if let Some(now) = self.recent.front() {
+            sums.add(0.0, now.place);
+        }
+        for (after, before) in later {
+            let duration = after.time - before.time;
+            if duration <= 0.0 {
+                break;
+            }
+            let gained = duration * after.held / mass;
+            velocity += gained;
+            place += (velocity - 0.5 * gained) * duration;
+            time += duration;
+            sums.add(-time, before.place - place);
+        }
+        sums.slope()
     }
 
     /// The last reading.
@@ -212,6 +238,32 @@ impl<'a, const D: usize> Port<'a, D> {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// Sums for a line by least squares.
+#[derive(Default)]
+struct Sums {
+    count: f64,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+}
+
+impl Sums {
+    fn add(&mut self, x: f64, y: f64) {
+        self.count += 1.0;
+        self.x += x;
+        self.y += y;
+        self.xx += x * x;
+        self.xy += x * y;
+    }
+
+    /// The slope; zero of a point.
+    fn slope(&self) -> f64 {
+        let spread = self.count * self.xx - self.x * self.x;
+        if spread > 0.0 { (self.count * self.xy - self.x * self.y) / spread } else { 0.0 }
     }
 }
 

@@ -5,8 +5,10 @@
 //!
 //! A stroke pushes the handle over a part of its way, brakes it by a force against the motion
 //! or lets it coast, and waits until it rests. It ends within the travel whatever the mass: the
-//! work that the push did is known from force and way, and the brake begins where that work
-//! just fits into what is left of the travel. Friction and damping only shorten the way.
+//! work of the push is known from force and way and bounds the kinetic energy, which a brake
+//! takes away within what is left of the travel. Friction and damping only shorten the way.
+
+#![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::IdentifyError;
 use super::port::{Port, Reading};
@@ -26,17 +28,26 @@ const BROKEN_AWAY: f64 = 0.025;
 const REST: f64 = 0.1;
 
 /// The longest that a stroke waits for a rest [s].
-const LONGEST_WAIT: f64 = 2.0;
+const LONGEST_WAIT: f64 = 4.0;
 
 /// The longest push, and the longest brake [s]: strokes with forces near the friction are slow.
 const LONGEST_PUSH: f64 = 0.25;
 
-/// A brake ends at this part of the stroke's largest speed; friction does the rest.
-const SLOW: f64 = 0.1;
+/// A brake ends at this part of the stroke's largest speed, so that it does not push the handle
+/// back.
+const SLOW: f64 = 0.15;
 
-/// A brake begins where this part of the work fits into what is left, for the ticks until it
-/// acts.
+/// A push ends where a brake would need this part of the largest force.
 const BRAKE_RESERVE: f64 = 0.8;
+
+/// The part of the travel at whose ends a coasting handle is braked, as gently as it can be.
+const GUARDED: f64 = 0.5;
+
+/// A guard brakes as if only this part of what is left were there: the mass is known to a third.
+const GUARD_RESERVE: f64 = 0.7;
+
+/// The part of the travel within which a guarded handle stops.
+const STOPPED: f64 = 0.85;
 
 /// The forces above breakaway, over the largest ones.
 const LEVELS: [f64; 5] = [0.08, 0.2, 0.4, 0.7, 1.0];
@@ -46,6 +57,13 @@ const BRAKES: [f64; 2] = [1.0, 0.0];
 
 /// Strokes of each level and brake in a round: one each way.
 const WAYS: usize = 2;
+
+/// The least part of the available way that is pushed, and by how much it varies, so that strokes
+/// meet encoder steps at different places.
+const PUSHED: (f64, f64) = (0.2, 0.25);
+
+/// Readings beyond those of the longest stroke, for ticks that round up.
+const SPARE: usize = 16;
 
 /// The fractional parts of multiples of the golden ratio spread evenly (Weyl 1916).
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -82,6 +100,12 @@ pub(super) struct Motions<'p, 'a, const D: usize> {
     breakaway: Breakaway,
     /// The largest force above breakaway.
     excess: f64,
+    /// About the mass of the handle, for brakes [kg], or [kg·m²].
+    mass: f64,
+    /// The force of the brake that keeps the handle within its travel; zero if there is no need.
+    guard: f64,
+    /// The level of the strokes that showed the mass.
+    strongest: f64,
     seed: u64,
 }
 
@@ -89,9 +113,17 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
     /// Waits for a rest, and raises the force in each direction until the handle moves.
     pub(super) fn begin(port: &'p mut Port<'a, D>, seed: u64) -> Result<Self, IdentifyError> {
         let no_forces = Breakaway { up: 0.0, down: 0.0 };
-        let mut motions =
-            Self { port, strokes: Vec::new(), breakaway: no_forces, excess: 0.0, seed };
-        motions.rest(None, None)?;
+        let mut motions = Self {
+            port,
+            strokes: Vec::new(),
+            breakaway: no_forces,
+            excess: 0.0,
+            mass: 0.0,
+            guard: 0.0,
+            strongest: 0.0,
+            seed,
+        };
+        motions.rest(&mut Stroke::default())?;
         // Away from the nearer end.
         let first = -motions.port.last().place.signum();
         for way in [first, -first] {
@@ -139,9 +171,12 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
                 return Err(IdentifyError::Stuck { axis: self.port.axis(), force: bounds.force });
             }
             let reading = self.port.tick(way * force)?;
-            if (reading.place - start.place).abs() > BROKEN_AWAY * bounds.travel {
-                let work = force * (reading.place - start.place).abs();
-                self.coast(None, Moving { way, work, brake: bounds.force })?;
+            let moved = (reading.place - start.place).abs();
+            if moved > BROKEN_AWAY * bounds.travel {
+                // All work as kinetic energy: no less than the handle's mass.
+                let speed = self.port.speed();
+                self.mass = 2.0 * force * moved / (speed * speed);
+                self.rest(&mut Stroke::default())?;
                 return Ok(force);
             }
         }
@@ -149,40 +184,45 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
 
     fn stroke(&mut self, level: f64, brake: f64) -> Result<(), IdentifyError> {
         let bounds = self.port.bounds;
-        let place = self.port.last().place;
-        let way = if place > 0.0 { -1.0 } else { 1.0 };
-        let force = self.breakaway.towards(way) + level * self.excess;
-        let available = USED * bounds.travel - way * place;
-        let part = self.next_part();
-        // Half of the way is pushed, if a brake of the same force follows.
-        let push = available * (0.25 + 0.35 * part) * if brake > 0.0 { 1.0 } else { 0.7 };
-        let mut stroke = Stroke::default();
-        let longest = 2.0 * LONGEST_PUSH + LONGEST_WAIT + REST;
-        // What is recorded allocates nothing during a stroke.
-        stroke.readings.reserve_exact((longest * self.port.rate()) as usize + 16);
         let start = Reading { held: 0.0, ..self.port.last() };
+        self.guard = 0.0;
+        let way = if start.place > 0.0 { -1.0 } else { 1.0 };
+        let force = self.breakaway.towards(way) + level * self.excess;
+        let available = USED * bounds.travel - way * start.place;
+        // Less than half of the way is pushed: a brake of the same force needs as much.
+        let push = available * (PUSHED.0 + PUSHED.1 * self.next_part());
+        let mut stroke = Stroke::default();
+        // What is recorded allocates nothing during a stroke.
+        let longest = 2.0 * LONGEST_PUSH + LONGEST_WAIT + REST;
+        stroke.readings.reserve_exact((longest * self.port.rate()) as usize + SPARE);
         stroke.readings.push(start);
-        let mut moving = Moving { way, work: 0.0, brake: bounds.force };
-        let mut fastest = 0.0_f64;
+        let (mut work, mut fastest) = (0.0, 0.0_f64);
         loop {
             let before = self.port.last().place;
             let reading = self.port.tick(way * force)?;
             stroke.readings.push(reading);
-            moving.add(before, &reading);
+            work += reading.held * (reading.place - before);
             let speed = way * self.port.speed();
             fastest = fastest.max(speed);
+            let left = USED * bounds.travel - way * reading.place;
             let is_over = way * (reading.place - start.place) >= push
                 || reading.time - start.time >= LONGEST_PUSH
                 || speed >= bounds.speed
-                || self.must_brake(&moving);
+                || work >= BRAKE_RESERVE * bounds.force * left;
             if is_over {
                 break;
             }
         }
-        if brake > 0.0 {
-            self.brake(&mut stroke, &mut moving, brake * force, SLOW * fastest)?;
+        if level >= self.strongest {
+            self.strongest = level;
+            let (end, friction) = (self.port.last(), self.breakaway.friction());
+            let (time, moved) = (end.time - start.time, way * (end.place - start.place));
+            self.mass = 0.5 * (force - friction).max(0.0) * time * time / moved.max(0.0);
         }
-        self.coast(Some(&mut stroke), moving)?;
+        if brake > 0.0 {
+            self.brake(&mut stroke, -way * brake * force, SLOW * fastest)?;
+        }
+        self.rest(&mut stroke)?;
         if fastest > bounds.speed {
             // The speed rises with the root of the force.
             let too_fast = fastest / bounds.speed;
@@ -197,52 +237,30 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
     fn brake(
         &mut self,
         stroke: &mut Stroke,
-        moving: &mut Moving,
         force: f64,
         slow: f64,
     ) -> Result<(), IdentifyError> {
         let start = self.port.last().time;
         loop {
-            let before = self.port.last().place;
-            let reading = self.port.tick(-moving.way * force)?;
+            let guard = self.guard();
+            let reading =
+                self.port.tick(if guard.abs() > force.abs() { guard } else { force })?;
             stroke.readings.push(reading);
-            moving.add(before, &reading);
-            let is_slow = moving.way * self.port.speed() <= slow;
+            let is_slow = -force.signum() * self.speed() <= slow;
             if is_slow || reading.time - start >= LONGEST_PUSH {
                 return Ok(());
             }
         }
     }
 
-    /// Lets the handle come to rest, and brakes only where it would leave its travel.
-    fn coast(
-        &mut self,
-        mut stroke: Option<&mut Stroke>,
-        mut moving: Moving,
-    ) -> Result<(), IdentifyError> {
-        if self.must_brake(&moving) {
-            let mut unrecorded = Stroke::default();
-            let into = stroke.as_deref_mut().unwrap_or(&mut unrecorded);
-            let force = moving.brake;
-            self.brake(into, &mut moving, force, 0.0)?;
-        }
-        self.rest(stroke, Some(moving))
-    }
-
-    /// Waits without a force until the readings stay.
-    fn rest(
-        &mut self,
-        mut stroke: Option<&mut Stroke>,
-        mut moving: Option<Moving>,
-    ) -> Result<(), IdentifyError> {
+    /// Waits until the readings stay, and brakes a handle that would leave its travel.
+    fn rest(&mut self, stroke: &mut Stroke) -> Result<(), IdentifyError> {
         let start = self.port.last().time;
         let mut still = self.port.last();
         loop {
-            let before = self.port.last().place;
-            let reading = self.port.tick(0.0)?;
-            if let Some(stroke) = stroke.as_deref_mut() {
-                stroke.readings.push(reading);
-            }
+            let guard = self.guard();
+            let reading = self.port.tick(guard)?;
+            stroke.readings.push(reading);
             if reading.place != still.place {
                 still = reading;
             }
@@ -253,23 +271,34 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
             if time > LONGEST_WAIT {
                 return Err(IdentifyError::NeverRests { axis: self.port.axis(), time });
             }
-            let Some(mut now) = moving else { continue };
-            now.add(before, &reading);
-            moving = Some(now);
-            if self.must_brake(&now) && now.way * self.port.speed() > 0.0 {
-                let mut unrecorded = Stroke::default();
-                let into = stroke.as_deref_mut().unwrap_or(&mut unrecorded);
-                let force = now.brake;
-                self.brake(into, &mut now, force, 0.0)?;
-                moving = None;
-            }
         }
     }
 
-    /// `true` where the brake must begin.
-    fn must_brake(&self, moving: &Moving) -> bool {
-        let left = USED * self.port.bounds.travel - moving.way * self.port.last().place;
-        moving.work >= BRAKE_RESERVE * moving.brake * left
+    /// The velocity, from the mass if it is known.
+    fn speed(&self) -> f64 {
+        let is_known = self.mass > 0.0 && self.mass.is_finite();
+        if is_known { self.port.speed_of(self.mass) } else { self.port.speed() }
+    }
+
+    /// The force that stops the handle within its travel, where it is near the end: it grows to
+    /// what is needed, and acts until the handle turns around.
+    fn guard(&mut self) -> f64 {
+        let (bounds, speed) = (self.port.bounds, self.speed());
+        let way = speed.signum();
+        let left = STOPPED * bounds.travel - way * self.port.last().place;
+        // Beyond the end as near to it.
+        let left = left.max((1.0 - STOPPED) * bounds.travel);
+        let needed = 0.5 * self.mass * speed * speed / left;
+        let is_near = left < GUARDED * bounds.travel;
+        let must_brake = is_near || needed >= BRAKE_RESERVE * bounds.force;
+        let is_braking = self.guard * way < 0.0;
+        if !is_braking {
+            self.guard = 0.0;
+        }
+        if must_brake && needed.is_finite() {
+            self.guard = -way * self.guard.abs().max(needed / GUARD_RESERVE);
+        }
+        self.guard
     }
 
     /// The next number from 0 to 1.
@@ -278,22 +307,5 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
         // A seed shifts the sequence by a part of its own.
         let shift = (self.seed % 1_000_003) as f64 * std::f64::consts::SQRT_2;
         (count * GOLDEN + shift).fract()
-    }
-}
-
-/// A handle that was pushed.
-#[derive(Clone, Copy, Debug)]
-struct Moving {
-    /// The direction, 1 or −1.
-    way: f64,
-    /// The work of the forces so far [J]: at least the kinetic energy.
-    work: f64,
-    /// The force of the brake that keeps it within its travel.
-    brake: f64,
-}
-
-impl Moving {
-    fn add(&mut self, before: f64, reading: &Reading) {
-        self.work += reading.held * (reading.place - before);
     }
 }
