@@ -53,6 +53,17 @@ pub enum IdentifyError {
         /// The time of the tick [s].
         time: f64,
     },
+    /// A tick came so late that a force was held too long.
+    #[error(
+        "{axis}: a tick was {late:.3} s after the one before, 0.02 s at most are allowed while a force \
+         is held; see palpate jitter"
+    )]
+    Late {
+        /// The axis that was moved.
+        axis: DeviceAxis,
+        /// The time since the tick before [s].
+        late: f64,
+    },
     /// The handle left the range of the motions.
     #[error(
         "{axis}: the handle is {moved:.3e} {unit} from its start, {limit:.3e} {unit} at most are \

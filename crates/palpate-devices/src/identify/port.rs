@@ -22,6 +22,10 @@ const SPEED_WINDOW: f64 = 0.004;
 /// The time over which the speed of a known mass is measured [s].
 const LONG_WINDOW: f64 = 0.016;
 
+/// The longest that a force may be held because a tick is late [s]: the handle moves by some
+/// millimetres meanwhile.
+const LONGEST_HOLD: f64 = 0.02;
+
 /// A handle that is faster than a stroke accelerates by this factor is stopped.
 const SPEED_RESERVE: f64 = 2.0;
 
@@ -123,6 +127,9 @@ impl<'a, const D: usize> Port<'a, D> {
         }
         self.device.read(time, &mut self.points).map_err(lost)?;
         let turn = if self.has_torque { self.device.read_turn().map_err(lost)? } else { None };
+        if force != 0.0 && time - before > LONGEST_HOLD {
+            return Err(IdentifyError::Late { axis, late: time - before });
+        }
         let point = self.points.first().copied();
         let point = point.filter(|point| point.position.is_finite());
         let turn = turn.map(|turn| turn.orientation);

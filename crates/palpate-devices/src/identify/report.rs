@@ -166,6 +166,25 @@ pub struct Identified {
     pub is_turning_unknown: bool,
 }
 
+impl IdentifiedAxis {
+    /// `true` if mass, damping and friction are [seen](Estimate::is_seen).
+    #[must_use]
+    pub fn is_seen(&self) -> bool {
+        [self.mass, self.damping, self.friction].iter().all(Estimate::is_seen)
+    }
+
+    /// `true` if the constant force beside the motors' is more than its error, and more than a
+    /// fifth of the friction: the weight of the handle is not balanced.
+    #[must_use]
+    pub fn has_weight(&self) -> bool {
+        let offset = self.offset.value.abs();
+        offset > self.offset.error && offset > WEIGHT * self.friction.value
+    }
+}
+
+/// The constant force that counts as weight, over the friction.
+const WEIGHT: f64 = 0.2;
+
 /// Names of the numbers that are found along axes.
 const ALONG: [&str; 4] = ["mass", "least_damping", "friction", "encoder_step"];
 
