@@ -22,8 +22,9 @@ const ENOUGH: f64 = 0.03;
 /// A spring is one if its stiffness exceeds its standard deviation by this factor.
 const SURE: f64 = 5.0;
 
-/// A spring counts if it pulls at the end of the travel by this part of the largest force.
-const FELT: f64 = 0.02;
+/// A spring counts if it pulls at the end of the travel by this part of the friction: a hand that
+/// is softer is not told from cables and unbalanced weight.
+const FELT: f64 = 0.2;
 
 /// The largest misfit of a device that moves as a mass with damping and friction.
 const MOST_MISFIT: f64 = 5.0;
@@ -54,7 +55,7 @@ pub(super) fn identify_axis<const D: usize>(
         let sprung = fit(&observed, &guess, true);
         if let Some(sprung) = &sprung {
             let (stiffness, deviation) = (sprung.model.stiffness, sprung.deviations.stiffness);
-            let is_felt = stiffness * bounds.travel > FELT * bounds.force;
+            let is_felt = stiffness * bounds.travel > FELT * sprung.model.friction;
             if is_felt && stiffness > SURE * deviation {
                 return Err(IdentifyError::Held { axis, stiffness });
             }

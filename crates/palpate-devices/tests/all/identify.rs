@@ -308,7 +308,8 @@ fn a_hand_that_holds_the_handle_is_noticed() {
             let hand = Hand::free(START).unwrap().with_mass(mass).unwrap();
             let hand = hand.with_spring(stiffness, damping).unwrap();
             let mut device = SimulatedDevice::new(profile.clone(), vec![hand]).unwrap();
-            let refused = identify(&mut device, IdentifyOptions::new(1000.0)).unwrap_err();
+            let found = identify(&mut device, IdentifyOptions::new(1000.0));
+            let Err(refused) = found else { panic!("{name}, {stiffness} N/m: {found:?}") };
             let IdentifyError::Held { stiffness: seen, .. } = refused else {
                 // A weak device does not move a stiff hand, and a stiff hand swings.
                 let is_stiff = matches!(
