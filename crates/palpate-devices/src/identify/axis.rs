@@ -86,16 +86,21 @@ pub(super) fn identify_axis<const D: usize>(
 fn guess(strokes: &[Stroke], breakaway: Breakaway, bounds: &Bounds) -> Model {
     let friction = breakaway.friction();
     let fallback = bounds.force * bounds.travel / (bounds.speed * bounds.speed);
-    let pushed = strokes.iter().rev().filter_map(|stroke| {
+    let mut pushed = strokes.iter().rev().filter_map(|stroke| {
         let mut readings = stroke.readings.iter();
         let start = readings.next()?;
         let way = (stroke.readings.get(1)?.held).signum();
-        let end = readings.take_while(|reading| way * reading.held > 0.0).last()?;
+        // A force rises and falls within its rate: most of the push has the largest.
+        let (mut end, mut most) = (start, 0.0_f64);
+        for reading in readings.take_while(|reading| way * reading.held > 0.0) {
+            most = most.max(way * reading.held);
+            end = reading;
+        }
         let (moved, time) = (way * (end.place - start.place), end.time - start.time);
-        let force = way * end.held - friction;
+        let force = most - friction;
         (moved > 0.0 && force > 0.0).then(|| 0.5 * force * time * time / moved)
     });
-    let mass = pushed.take(1).next().unwrap_or(fallback);
+    let mass = pushed.next().unwrap_or(fallback);
     Model {
         mass,
         damping: DECAY * mass,

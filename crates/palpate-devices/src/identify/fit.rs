@@ -60,7 +60,7 @@ pub(super) fn fit(observed: &[Observed], guess: &Model, has_spring: bool) -> Opt
 }
 
 /// Starts that are tried at most.
-const MOST_STARTS: usize = 3;
+const MOST_STARTS: usize = 5;
 
 /// The misfit of a fit after which no other start is tried.
 const FITS: f64 = 1.5;
