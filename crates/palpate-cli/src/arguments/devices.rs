@@ -5,6 +5,7 @@
 
 use clap::Args;
 
+use super::ProfileChoice;
 use super::numbers::positive;
 
 pub(super) const EXAMPLES: &str = "\
@@ -12,7 +13,8 @@ Examples:
   palpate devices
   palpate devices --json
   palpate devices --actuators
-  palpate devices --materials --rate 4000";
+  palpate devices --materials --rate 4000
+  palpate devices --profile falcon.json";
 
 /// The options of `palpate devices`.
 #[derive(Args, Debug)]
@@ -24,6 +26,9 @@ pub(crate) struct DevicesOptions {
     /// The actuators for `palpate feel --actuator` alone.
     #[arg(long, conflicts_with = "materials")]
     pub(crate) actuators: bool,
+    /// One device in place of all: its name, or a JSON file with its profile.
+    #[arg(long, value_name = "NAME|JSON", conflicts_with = "actuators")]
+    pub(crate) profile: Option<ProfileChoice>,
     /// Ticks a second, on which that depends [Hz].
     #[arg(long, requires = "materials", default_value = "1000", allow_negative_numbers = true, value_parser = positive("Hz"))]
     pub(crate) rate: f64,
