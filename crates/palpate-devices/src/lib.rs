@@ -66,8 +66,8 @@ pub use glove::Glove;
 pub use hand::Hand;
 pub use hand_path::{HandPath, Interpolation};
 pub use identify::{
-    DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis, IdentifyError, IdentifyOptions,
-    IdentifyProgress, identify,
+    DeviceAxis, EncoderStep, Estimate, Identified, IdentifiedAxis, IdentifyError,
+    IdentifyOptions, IdentifyProgress, identify,
 };
 pub use mailbox::{Mailbox, MailboxDevice};
 pub use motion::Energies;

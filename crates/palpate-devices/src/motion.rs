@@ -163,12 +163,7 @@ impl Body {
     /// Moves `axis` for `duration` [s] under `load`. Returns the energies of this time.
     ///
     /// Real-time: allocates nothing, takes no lock, cannot panic; at most [`MOST_PIECES`] pieces.
-    pub(crate) fn advance(
-        &mut self,
-        axis: &mut Axis,
-        load: Load,
-        duration: f64,
-    ) -> Energies {
+    pub(crate) fn advance(&mut self, axis: &mut Axis, load: Load, duration: f64) -> Energies {
         let mut energies = Energies::default();
         self.advance_by_pieces(axis, load, duration, |body, axis, load, piece| {
             energies.add(&body.energies(axis, load, piece));

@@ -278,7 +278,6 @@ fn written(profile: &DeviceProfile) -> WrittenDevice {
 mod tests {
     use super::*;
 
-    #[expect(clippy::unwrap_used, reason = "a profile of the list can be written")]
     fn text(name: &str) -> String {
         device_to_json(&palpate_devices::profile_named(name).unwrap()).unwrap()
     }
@@ -325,6 +324,9 @@ mod tests {
     fn a_device_without_limits_is_not_written() {
         let ideal = DeviceProfile::unlimited("ideal");
         let error = device_to_json(&ideal).unwrap_err().to_string();
-        assert!(error.contains("max_force: max_force must be zero or more, got inf N"), "{error}");
+        assert!(
+            error.contains("max_force: max_force must be zero or more, got inf N"),
+            "{error}"
+        );
     }
 }

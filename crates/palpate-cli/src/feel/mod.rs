@@ -191,9 +191,9 @@ fn choice(options: &FeelOptions) -> Result<DeviceChoice, Failure> {
     Ok(match (&options.device, &options.scene) {
         (Some(choice), _) => choice.clone(),
         (None, Some(_)) => DeviceChoice::Recorded,
-        (None, None) => {
-            DeviceChoice::Simulated(Box::new(ProfileChoice::named(SHOWN).map_err(Failure::input)?))
-        }
+        (None, None) => DeviceChoice::Simulated(Box::new(
+            ProfileChoice::named(SHOWN).map_err(Failure::input)?,
+        )),
     })
 }
 

@@ -23,7 +23,10 @@ use report::Report;
 /// The mass [kg] and the damping [N·s/m] of a hand that holds the handle.
 const HAND: (f64, f64) = (0.1, 5.0);
 
-pub(crate) fn run(options: &IdentifyOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+pub(crate) fn run(
+    options: &IdentifyOptions,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
     let given = [Some(&options.device), options.plant.as_ref()];
     let inputs = given.into_iter().flatten().filter_map(|choice| choice.file.as_deref());
     let mut files = Files::reading(inputs);
@@ -124,7 +127,9 @@ fn identified(
             told = Some(at);
             let IdentifyProgress { axis, axis_number, axes, strokes, .. } = progress;
             if shows_line {
-                output::live(format_args!("{axis} ({axis_number} of {axes}): {strokes} strokes"));
+                output::live(format_args!(
+                    "{axis} ({axis_number} of {axes}): {strokes} strokes"
+                ));
             } else if is_new {
                 output::remark(format_args!("{axis} ({axis_number} of {axes})"));
             }

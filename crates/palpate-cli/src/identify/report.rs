@@ -109,7 +109,10 @@ impl Report<'_> {
         }
         if axis.has_weight() {
             let (force, unit) = (rounded(axis.offset.value), axis.axis.force_unit());
-            writeln!(out, "  a constant force of {force} {unit} pulls: balance the handle's weight")?;
+            writeln!(
+                out,
+                "  a constant force of {force} {unit} pulls: balance the handle's weight"
+            )?;
         }
         Ok(())
     }
@@ -119,20 +122,18 @@ impl Report<'_> {
         let made = Numbers::of(self.plant, axis.axis);
         let is_turning = matches!(axis.axis, DeviceAxis::About(_));
         let mass = if is_turning { ["inertia"; 2] } else { ["mass"; 2] };
-        let row = |[key, name]: [&'static str; 2], unit, found: Estimate, profile, made_with| {
+        let row = |[key, name]: [&'static str; 2],
+                   unit,
+                   found: Estimate,
+                   profile,
+                   made_with| {
             Row { key, name, unit, found, is_seen: found.is_seen(), profile, made_with }
         };
         let at = axis.axis;
         let step = Estimate { value: axis.encoder_step.size(), error: 0.0 };
         [
             row(mass, at.mass_unit(), axis.mass, assumed.mass, made.mass),
-            row(
-                ["damping"; 2],
-                at.damping_unit(),
-                axis.damping,
-                assumed.damping,
-                made.damping,
-            ),
+            row(["damping"; 2], at.damping_unit(), axis.damping, assumed.damping, made.damping),
             row(
                 ["friction"; 2],
                 at.force_unit(),
@@ -196,20 +197,23 @@ impl Row {
     fn said(&self) -> String {
         let Self { found, unit, profile, made_with, .. } = self;
         let number = if self.is_seen {
-            let value = measured(found.value, found.error);
-            let error = if found.error > 0.0 {
-                format!(" ± {}", rounded(found.error))
+            if found.error > 0.0 {
+                let [value, error] =
+                    [found.value, found.error].map(|x| measured(x, found.error));
+                format!("{value} ± {error} {unit}")
             } else {
-                String::new()
-            };
-            format!("{value}{error} {unit}")
+                format!("{} {unit}", rounded(found.value))
+            }
         } else {
             let (least, most) = (rounded(found.least()), rounded(found.most()));
             format!("cannot be told: from {least} to {most} {unit}")
         };
         let beside = beside(found.value, *profile);
         let off = beside_truth(found.value, *made_with);
-        format!("{number}; {beside} the profile's {}; {off} what it was made with", rounded(*profile))
+        format!(
+            "{number}; {beside} the profile's {}; {off} what it was made with",
+            rounded(*profile)
+        )
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! What `docs/formats.md` says of the output of `feel`, `devices` and `jitter` is what they print.
+//! What `docs/formats.md` says of the output of `feel`, `devices`, `identify` and `jitter` is what they print.
 
 use std::collections::BTreeSet;
 
@@ -108,9 +108,10 @@ fn the_keys_and_columns_of_feel_are_documented() {
 }
 
 #[test]
-fn the_keys_of_devices_and_jitter_are_documented() {
+fn the_keys_of_devices_identify_and_jitter_are_documented() {
     for (heading, commands) in [
         ("Devices", &[&["devices", "--json"][..], &["devices", "--actuators", "--json"]][..]),
+        ("Identified devices", &[&["identify", "--device", "premium15", "--json"]]),
         ("Lateness", &[&["jitter", "--duration", "0.03", "--json"]]),
     ] {
         let mut printed = Names::new();

@@ -159,9 +159,8 @@ fn descend(
 /// `JᵀJ` and `Jᵀr`.
 fn normal_equations(at: &Linear) -> (Matrix, [f64; PARAMETERS]) {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum();
-    let normal = std::array::from_fn(|i| {
-        std::array::from_fn(|j| product(&at.slopes[i], &at.slopes[j]))
-    });
+    let normal =
+        std::array::from_fn(|i| std::array::from_fn(|j| product(&at.slopes[i], &at.slopes[j])));
     (normal, std::array::from_fn(|i| product(&at.slopes[i], &at.misses)))
 }
 
@@ -197,9 +196,8 @@ fn deviations(
     misfit: f64,
 ) -> Option<Model> {
     let (normal, _) = normal_equations(at);
-    let identity: Matrix = std::array::from_fn(|i| {
-        std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 })
-    });
+    let identity: Matrix =
+        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
     let inverse: Matrix = solve(&normal, &identity, free)?;
     let mut spread = [[0.0; PARAMETERS]; PARAMETERS];
     let mut first = 0;

@@ -56,13 +56,18 @@ impl Observed {
         };
         let change = |i: usize| {
             let [before, after] = [places[i - 1], places[i]];
-            let (first, final_) = (i.saturating_sub(1 + NEIGHBOURS), (i + NEIGHBOURS).min(last));
+            let (first, final_) =
+                (i.saturating_sub(1 + NEIGHBOURS), (i + NEIGHBOURS).min(last));
             let count = (final_ - first) as f64;
             let per_tick = (places[final_] - places[first]).abs() / count;
             // A handle that turns around has a way too.
             let way = per_tick.max(step / count).min(step);
             let deviation = (way / TWELVE.sqrt()).max(finest);
-            Place { between: [i - 1, i], at: 0.5 * (before + after) - start, weight: 1.0 / deviation }
+            Place {
+                between: [i - 1, i],
+                at: 0.5 * (before + after) - start,
+                weight: 1.0 / deviation,
+            }
         };
         let changes = (1..places.len()).filter(|i| places[*i] != places[*i - 1]).map(change);
         let ends = [0, last].into_iter().filter(|i| *i < places.len()).map(at_rest);

@@ -239,7 +239,10 @@ impl<'a, const D: usize> Port<'a, D> {
         let about = turned.0.iter().enumerate();
         let about = about.map(|(i, x)| (DeviceAxis::About(i), *x, self.options.angle));
         // Written so that NaN is refused.
-        match along.chain(about).find(|(_, x, limit)| !matches!(x.abs().partial_cmp(limit), Some(o) if o.is_le())) {
+        match along
+            .chain(about)
+            .find(|(_, x, limit)| !matches!(x.abs().partial_cmp(limit), Some(o) if o.is_le()))
+        {
             Some((axis, moved, limit)) => {
                 Err(IdentifyError::LeftRange { axis, moved: moved.abs(), limit })
             }

@@ -238,15 +238,26 @@ impl Identified {
     fn worst(&self, is_meant: impl Fn(DeviceAxis) -> bool) -> Option<Worst> {
         let axes = || self.axes.iter().filter(|found| is_meant(found.axis));
         axes().next()?;
-        let least = |of: fn(&IdentifiedAxis) -> f64| axes().map(of).fold(f64::INFINITY, f64::min);
-        let safe = |number: Estimate| if number.is_seen() { number.value } else { number.least() };
+        let least =
+            |of: fn(&IdentifiedAxis) -> f64| axes().map(of).fold(f64::INFINITY, f64::min);
+        let safe =
+            |number: Estimate| if number.is_seen() { number.value } else { number.least() };
         Some(Worst {
-            mass: least(|found| found.mass.value),
-            damping: axes().map(|found| safe(found.damping)).fold(f64::INFINITY, f64::min),
-            friction: axes().map(|found| safe(found.friction)).fold(f64::INFINITY, f64::min),
-            step: axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max),
+            mass: rounded(least(|found| found.mass.value)),
+            damping: rounded(
+                axes().map(|found| safe(found.damping)).fold(f64::INFINITY, f64::min),
+            ),
+            friction: rounded(
+                axes().map(|found| safe(found.friction)).fold(f64::INFINITY, f64::min),
+            ),
+            step: rounded(axes().map(|found| found.encoder_step.size()).fold(0.0, f64::max)),
         })
     }
+}
+
+/// A number with five digits, of which the errors leave fewer.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.4e}").parse().unwrap_or(number)
 }
 
 fn without(assumed: &[&'static str], found: &[&str]) -> Vec<&'static str> {

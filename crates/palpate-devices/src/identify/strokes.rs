@@ -168,7 +168,10 @@ impl<'p, 'a, const D: usize> Motions<'p, 'a, D> {
             let time = self.port.last().time - start.time;
             let force = bounds.force * time / RAMP;
             if force > bounds.force {
-                return Err(IdentifyError::Stuck { axis: self.port.axis(), force: bounds.force });
+                return Err(IdentifyError::Stuck {
+                    axis: self.port.axis(),
+                    force: bounds.force,
+                });
             }
             let reading = self.port.tick(way * force)?;
             let moved = (reading.place - start.place).abs();
