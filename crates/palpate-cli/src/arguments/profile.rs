@@ -25,9 +25,7 @@ impl ProfileChoice {
     /// The profile of this name in the list of devices.
     pub(crate) fn named(name: &str) -> Result<Self, String> {
         let names = PROFILES.each_ref().map(|(name, _)| *name);
-        let profile = profile_named(name).map_err(|_| {
-            format!("{}; a file ends in .json", unknown_name("device", name, &names))
-        })?;
+        let profile = profile_named(name).map_err(|_| unknown_name("device", name, &names))?;
         Ok(Self { name: name.to_owned(), profile, file: None })
     }
 }

@@ -119,6 +119,14 @@ fn a_hand_is_noticed_and_wrong_input_is_refused() {
     let said = errors(&output);
     assert!(said.contains("mass, line 2: mass must be a number, got"), "{said}");
     assert_eq!(status(&output), 2);
+    for (option, value, rule) in [
+        ("--rate", "20000", "must be from 500 to 10000 Hz, got 20000 Hz"),
+        ("--travel", "0", "must be from 0.0001 to 0.05 m, got 0 m"),
+        ("--plant-mass", "0", "must be positive and finite, got 0"),
+    ] {
+        let said = errors(&palpate(&["identify", "--device", "omega", option, value]));
+        assert!(said.contains(rule), "{said}");
+    }
     assert_refused(
         &["identify", "--device", "omega", "--out", "no/such/folder.json"],
         "no/such/folder.json: there is no folder no/such",

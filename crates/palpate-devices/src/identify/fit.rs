@@ -276,3 +276,25 @@ fn solve<const N: usize>(
 
 /// A pivot below this, over a unit diagonal, is rounding.
 const SINGULAR: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn free_parameters_are_solved_and_the_others_stay() {
+        // 4 x + 2 y = 10, 2 x + 3 y = 11: x = 1, y = 3, in units a million apart.
+        let mut matrix = [[0.0; PARAMETERS]; PARAMETERS];
+        matrix[1][1] = 4.0;
+        matrix[1][3] = 2e6;
+        matrix[3][1] = 2e6;
+        matrix[3][3] = 3e12;
+        let right = [7.0, 10.0, 7.0, 11e6, 7.0];
+        let free = [false, true, false, true, false];
+        let [solved] = solve(&matrix, &[right], free).unwrap();
+        assert!((solved[1] - 1.0).abs() < 1e-14 && (solved[3] - 3e-6).abs() < 1e-20);
+        assert_eq!((solved[0], solved[2], solved[4]), (0.0, 0.0, 0.0));
+        matrix[3][3] = 1e12;
+        assert_eq!(solve(&matrix, &[right], free), None, "singular");
+    }
+}

@@ -172,25 +172,7 @@ impl<'a, const D: usize> Port<'a, D> {
     /// through the readings of the last [`LONG_WINDOW`], without what the forces moved. Encoder
     /// steps average out, and it does not lag behind as a mean does.
     pub(super) fn speed_of(&self, mass: f64) -> f64 {
-        // Backwards from now: time, and what the forces added to the place and the velocity.
-        let (mut time, mut place, mut velocity) = (0.0, 0.0, 0.0);
-        let mut sums = Sums::default();
-        let later = self.recent.iter().zip(self.recent.iter().skip(1));
-        if let Some(now) = self.recent.front() {
-            sums.add(0.0, now.place);
-        }
-        for (after, before) in later {
-            let duration = after.time - before.time;
-            if duration <= 0.0 {
-                break;
-            }
-            let gained = duration * after.held / mass;
-            velocity += gained;
-            place += (velocity - 0.5 * gained) * duration;
-            time += duration;
-            sums.add(-time, before.place - place);
-        }
-        sums.slope()
+        velocity_now(self.recent.iter(), mass)
     }
 
     /// The last reading.
@@ -251,6 +233,28 @@ impl<'a, const D: usize> Port<'a, D> {
     }
 }
 
+/// The velocity of a mass at the first of its readings, the newest, by least squares.
+fn velocity_now<'r>(recent: impl Iterator<Item = &'r Reading> + Clone, mass: f64) -> f64 {
+    // Backwards from now: time, and what the forces added to the place and the velocity.
+    let (mut time, mut place, mut velocity) = (0.0, 0.0, 0.0);
+    let mut sums = Sums::default();
+    if let Some(now) = recent.clone().next() {
+        sums.add(0.0, now.place);
+    }
+    for (after, before) in recent.clone().zip(recent.skip(1)) {
+        let duration = after.time - before.time;
+        if duration <= 0.0 {
+            break;
+        }
+        let gained = duration * after.held / mass;
+        velocity += gained;
+        place += (velocity - 0.5 * gained) * duration;
+        time += duration;
+        sums.add(-time, before.place - place);
+    }
+    sums.slope()
+}
+
 /// Sums for a line by least squares.
 #[derive(Default)]
 struct Sums {
@@ -282,5 +286,30 @@ impl<const D: usize> Drop for Port<'_, D> {
         // Ignored: the error that ends the identification says more, and a device that is lost
         // takes no zero.
         let _ = self.release();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_velocity_of_an_accelerated_mass_is_exact() {
+        // x = 0.1 t + ½ (F/m) t² at uneven times; now at t = 5 ms.
+        let (force, mass) = (3.0, 0.2);
+        let at = |time: f64| Reading {
+            time,
+            place: 0.1 * time + 0.5 * force / mass * time * time,
+            held: force,
+        };
+        let readings = [0.005, 0.004, 0.0025, 0.0011, 0.0].map(at);
+        let velocity = velocity_now(readings.iter(), mass);
+        assert!((velocity - (0.1 + force / mass * 0.005)).abs() < 1e-14, "{velocity} m/s");
+    }
+
+    #[test]
+    fn a_single_reading_rests() {
+        let alone = [Reading { time: 1.0, place: 2.0, held: 3.0 }];
+        assert_eq!(velocity_now(alone.iter(), 1.0), 0.0);
     }
 }

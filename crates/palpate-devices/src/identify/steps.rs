@@ -68,3 +68,39 @@ fn single_steps(stroke: &Stroke) -> impl Iterator<Item = f64> {
         is_single.then_some((c.place - b.place).abs())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::port::Reading;
+    use super::*;
+
+    fn stroke(places: impl IntoIterator<Item = f64>) -> Stroke {
+        let reading = |(i, place)| Reading { time: f64::from(i), place, held: 0.0 };
+        Stroke { readings: (0..).zip(places).map(reading).collect() }
+    }
+
+    #[test]
+    fn the_step_divides_all_differences() {
+        // Steps of 6, 10 and 15 times 7 µm, without a single one.
+        let places = [0.0, 6.0, 16.0, 31.0, 31.0, 25.0].map(|n| n * 7e-6);
+        let EncoderStep::Even(step) = steps(&[stroke(places)], 0.005) else { panic!("even") };
+        assert!((step / 7e-6 - 1.0).abs() < 1e-12, "{step}");
+    }
+
+    #[test]
+    fn rounding_to_single_precision_hides_no_step() {
+        let places = (0..200_i32).map(|i| {
+            let place = 0.1 + 1e-5 * f64::from(i * i % 37);
+            f64::from(place as f32)
+        });
+        let EncoderStep::Even(step) = steps(&[stroke(places)], 0.005) else { panic!("even") };
+        assert!((step / 1e-5 - 1.0).abs() < 1e-4, "{step}");
+    }
+
+    #[test]
+    fn readings_without_steps_show_none() {
+        let places = (0..200).map(|i| 1e-3 * f64::from(i).sin());
+        assert_eq!(steps(&[stroke(places)], 0.005), EncoderStep::Unseen(1e-5 * 0.005));
+        assert_eq!(steps(&[stroke([0.0; 3])], 0.005), EncoderStep::Unseen(1e-5 * 0.005));
+    }
+}
