@@ -136,3 +136,15 @@ fn a_hand_is_noticed_and_wrong_input_is_refused() {
         "found.txt: the name of a profile must end in .json",
     );
 }
+
+#[test]
+fn an_interrupted_run_writes_no_profile() {
+    let folder = Folder::new();
+    let file = folder.path("found.json");
+    let interrupt = palpate_cli::Interrupt::new();
+    interrupt.asked().store(true, std::sync::atomic::Ordering::Relaxed);
+    let out = file.to_str().unwrap();
+    let options = ["palpate", "identify", "--device", "omega", "--out", out];
+    assert_eq!(palpate_cli::run_until(options, &interrupt), 130);
+    assert!(!file.exists());
+}
