@@ -4,9 +4,10 @@
 //! The motions: breakaway, then strokes back and forth between two rests.
 //!
 //! A stroke pushes the handle over a part of its way, brakes it by a force against the motion
-//! or lets it coast, and waits until it rests. It ends within the travel whatever the mass: the
-//! work of the push is known from force and way and bounds the kinetic energy, which a brake
-//! takes away within what is left of the travel. Friction and damping only shorten the way.
+//! or lets it coast, and waits until it rests. The push ends while its work, which is known from
+//! force and way and bounds the kinetic energy, still fits into what is left of the travel. A
+//! guard then brakes a handle that comes near the end, by its velocity and the mass that the
+//! push showed. Friction and damping only shorten the way.
 
 #![deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
